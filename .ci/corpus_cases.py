@@ -28,7 +28,7 @@ TANGENTIAL = [
     ("springs", {"springs": 8}), ("springs", {"springs": 8, "grid": "doubling"}),
     ("stronge", {}), ("stronge", {"stiffness_ratio": 0.9}),
     ("walton", {"slip_restitution": 0.3}), ("mindlin_cap", {"form": "increment_rescaled"}),
-    ("sharp_annulus", {"annuli": 8}), ("frictionless", {}), ("coulomb", {}),
+    ("frictionless", {}), ("coulomb", {}),
 ]  # fmt: skip
 INTEGRATORS = [
     ("events", {}), ("paper", {"steps": 60}), ("symplectic", {"steps": 50}),

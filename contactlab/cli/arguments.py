@@ -161,27 +161,45 @@ def save(
     """Write each file whose path is not None, and return the exit status.
 
     After an interruption what is finished goes beside the file, as ``NAME.partial.SUFFIX``, until
-    the whole is written; a file of an earlier run stays as it was. A file that cannot be written
-    is reported on stderr, so that the other files and the printed results of long work are not
-    lost.
+    the whole is written; a file of an earlier run stays as it was. A file that cannot be written,
+    or that Ctrl-C meets, is reported on stderr, so that the other files and the printed results
+    of long work are not lost. A function that has nothing to write says so, and returns False.
     """
     status = OK
     wanted = [(path, write) for path, write in writings if path is not None]
     with progress(progress_wanted, "files") as counted:
         for done, (path, write) in enumerate(wanted, start=1):
             partial = path.with_name(f"{path.stem}.partial{path.suffix}")
+            target = partial if interrupted else path
             try:
-                write(partial if interrupted else path)
-                if interrupted:
-                    print(f"contactlab: interrupted: {partial} has what is done", file=sys.stderr)
-                else:
-                    partial.unlink(missing_ok=True)
+                if write(target) is False:
+                    continue
             except OSError as error:
-                print(f"contactlab: error: {error}", file=sys.stderr)
+                print(f"contactlab: error: {target} is not written: {error}", file=sys.stderr)
                 status = FAILED
+                continue
+            except KeyboardInterrupt:
+                for left, _ in wanted[done - 1 :]:
+                    print(f"contactlab: interrupted: {left} is not written", file=sys.stderr)
+                return INTERRUPTED
+            if interrupted:
+                print(f"contactlab: interrupted: {partial} has what is done", file=sys.stderr)
+            else:
+                with contextlib.suppress(OSError):
+                    partial.unlink(missing_ok=True)
             if counted is not None:
                 counted(done, len(wanted))
     return status
+
+
+def make_folder(option: str, folder: Path) -> None:
+    """Make a folder for files, or refuse it before the work."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ValueError(f"{option} {folder}: cannot make the folder: {error.strerror}") from None
+    if why_not := unwritable(folder / "file"):
+        raise ValueError(f"{option} {folder}: {why_not}")
 
 
 @contextlib.contextmanager

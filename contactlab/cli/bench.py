@@ -59,15 +59,16 @@ def execute(arguments: argparse.Namespace) -> int:
     return shared.INTERRUPTED if benchmark.interrupted else saved
 
 
-def _draw(path: Path, benchmark: Benchmark, **look: Any) -> None:
-    """Draw error against run time; ``look`` as in ``arguments.look``."""
+def _draw(path: Path, benchmark: Benchmark, **look: Any) -> bool:
+    """Draw error against run time, or return False; ``look`` as in ``arguments.look``."""
     if not benchmark.rows:
         print("no figure drawn: nothing was measured", file=sys.stderr)
-        return
+        return False
     from contactlab.figures.files import save  # matplotlib only when drawing
     from contactlab.figures.work_precision import work_precision
 
     save(path, lambda axes: work_precision(axes, benchmark), columns=2, **look)
+    return True
 
 
 def _content(benchmark: Benchmark) -> dict[str, object]:

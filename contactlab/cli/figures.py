@@ -15,7 +15,7 @@ from pathlib import Path
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import composed
-from contactlab.outcome.files import unwritable, write_table
+from contactlab.outcome.files import write_table
 from contactlab.scene_file import LawChoice
 from contactlab.study.paper_figures import CAPTIONS, FigureData, paper_data
 
@@ -46,14 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Write the figures and print their paths."""
     simulation = composed(arguments, LawChoice(tangential="annulus", integrator="paper"))
-    try:
-        arguments.out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ValueError(
-            f"--out {arguments.out}: cannot make the folder: {error.strerror}"
-        ) from None
-    if why_not := unwritable(arguments.out / "figure-1.csv"):
-        raise ValueError(f"--out {arguments.out}: {why_not}")
+    shared.make_folder("--out", arguments.out)
     with shared.progress(arguments.progress, "figures") as progress:
         from contactlab.figures.files import save  # matplotlib only when drawing
         from contactlab.figures.paper import draw_paper

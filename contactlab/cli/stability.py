@@ -63,8 +63,8 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def _draw(
     path: Path, arguments: argparse.Namespace, chosen: Sequence[Method], result: Stability
-) -> None:
-    """Draw the steps that the laws need, or report on stderr why there is nothing to draw."""
+) -> bool:
+    """Draw the steps that the laws need, or say on stderr why not, and return False."""
     maps = error_maps(chosen, quick=arguments.quick) if result.complete else []
     if not maps:
         why = (
@@ -73,10 +73,11 @@ def _draw(
             else f"{shared.why_not(result)} before the map was done"
         )
         print(f"no map drawn: {why}", file=sys.stderr)
-        return
+        return False
     from contactlab.figures.stability import draw_stability  # matplotlib only when drawing
 
     draw_stability(path, maps, **shared.look(arguments))
+    return True
 
 
 def report(result: Stability) -> str:

@@ -81,26 +81,39 @@ def execute(arguments: argparse.Namespace) -> int:
     if before:
         print(f"contactlab sweep: {before} impacts were done before", file=sys.stderr)
     varied = file.varied if file else {}
+    written: list[Path] = []
+
+    def write(path: Path) -> None:
+        WRITERS[path.suffix.lower()](result, path)
+        written.append(path)
+
     saved = shared.save(
-        (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
+        (arguments.out, write),
         (arguments.figure, lambda path: draw(path, result, **shared.look(arguments))),
         progress_wanted=arguments.progress,
         interrupted=was_interrupted(result),
     )
-    if keep is not None and saved == shared.OK:
-        _clear(keep, result)
+    if keep is not None and saved == shared.OK and _finished(result) == len(result):
+        _clear(keep)
+        keep = None
     if arguments.csv:
         units = {column.name: column.unit for column in COLUMNS}
         print(",".join(csv_heading(name, units[name], result.scene) for name in SHOWN))
         for psi1, chi, psi2, status in _rows(result):
             print(f"{psi1!r},{chi!r},{psi2!r},{status}")
     elif not arguments.json:
-        _print_table(result, varied, arguments.out)
-    return max(saved, report(result, as_json=arguments.json, varied=varied))
+        _print_table(result, varied, *written)
+        if arguments.out and not written:
+            print(f"all {len(result)} impacts; {arguments.out} is not written")
+    failed = report(result, as_json=arguments.json, varied=varied)
+    if keep is not None:
+        words = f"{_done(keep)} impacts are kept in {keep}; the same command goes on from them"
+        print(f"contactlab sweep: {words}", file=sys.stderr)
+    return max(saved, failed)
 
 
-def _print_table(result: ImpactResult, varied: Mapping[str, Any], out: Path | None) -> None:
-    """Print one row for each impact; evenly spread rows if a file ``out`` holds all."""
+def _print_table(result: ImpactResult, varied: Mapping[str, Any], out: Path | None = None) -> None:
+    """Print one row for each impact; evenly spread rows if the file ``out`` holds all."""
     most = None if out is None else MOST_ROWS
     if varied:
         shown = {name: (entry_unit(name), values) for name, values in varied.items()}
@@ -109,7 +122,9 @@ def _print_table(result: ImpactResult, varied: Mapping[str, Any], out: Path | No
         rows = _rows(result)
         print(table(SHOWN, [rows[index] for index in evenly(len(rows), most)]))
     if most is not None and len(result) > most:
-        print(f"{most} of {len(result)} impacts; all of them are in {out}")
+        done = _finished(result)
+        which = "all of them" if done == len(result) else f"the {done} finished ones"
+        print(f"{most} of {len(result)} impacts; {which} are in {out}")
 
 
 def _executor(count: int | None) -> AbstractContextManager[Executor | None]:
@@ -135,12 +150,18 @@ def _done(folder: Path) -> int:
     return count(folder)
 
 
-def _clear(folder: Path, result: ImpactResult) -> None:
-    """Delete the finished impacts of a sweep, unless some impacts will be tried again."""
-    from contactlab.compose.kept import TRIED_AGAIN, remove
+def _clear(folder: Path) -> None:
+    """Delete the impacts that were kept."""
+    from contactlab.compose.kept import remove
 
-    if not any(status in TRIED_AGAIN for status in result.status):
-        remove(folder)
+    remove(folder)
+
+
+def _finished(result: ImpactResult | EccentricResult) -> int:
+    """Return the number of impacts that a resumed sweep does not try again."""
+    from contactlab.compose.kept import TRIED_AGAIN
+
+    return sum(status not in TRIED_AGAIN for status in result.status)
 
 
 def _ranges(psi1: Any, chi: Any) -> Scene:

@@ -39,8 +39,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Validate and report; the status is 1 if a bound is not met."""
     folder: Path | None = arguments.figures
-    if folder is not None and not folder.parent.is_dir():
-        raise ValueError(f"--figures {folder}: there is no folder {folder.parent}")
+    if folder is not None:
+        if not folder.parent.is_dir():
+            raise ValueError(f"--figures {folder}: there is no folder {folder.parent}")
+        shared.make_folder("--figures", folder)
     findings: list[Finding] = []
     gathered: list[Evidence] = []
     interrupted = False
@@ -56,7 +58,6 @@ def execute(arguments: argparse.Namespace) -> int:
     findings += [finding for evidence in gathered for finding in evidence.findings()]
     saved = shared.OK
     if folder is not None:
-        folder.mkdir(exist_ok=True)
         drawings = [
             (folder / f"{item.source.name}.png", lambda path, item=item: _draw(path, item))
             for item in gathered

@@ -39,11 +39,11 @@ class Kept:
         if os.path.lexists(folder) and not os.path.isdir(folder):
             what = "is a link to nothing" if os.path.islink(folder) else "is a file"
             raise refuse("keep", str(folder), what, "name a folder")
-        self.folder = Path(folder)
+        self.folder, self.impacts = Path(folder), scene.shape[0]
         by_kind = laws.by_kind()
         about = {
             **{kind: f"{REGISTRY.describe(law)}: {law!r}" for kind, law in by_kind.items()},
-            "impacts": scene.shape[0],
+            "impacts": self.impacts,
             "scene": fingerprint(scene),
             "options": fingerprint(by_kind),
             "block": block,
@@ -75,12 +75,22 @@ class Kept:
             raise refuse("keep", str(self.folder), rule, remedy)
 
     def keep(self, piece: Piece) -> None:
-        """Write a piece, unless it has impacts that were not computed."""
-        if any(status in TRIED_AGAIN for status in piece.motion.status):
+        """Write a piece, unless it is there or has impacts that were not computed."""
+        path = self.folder / _name(piece.chunk)
+        if path.exists() or any(status in TRIED_AGAIN for status in piece.motion.status):
             return
         arrays = _arrays(piece) | {"sweep": np.array(self.sweep)}
-        with written(self.folder / _name(piece.chunk), binary=True) as stream:
-            np.savez(stream, **arrays, checksum=np.array(_checksum(arrays)))
+        try:
+            with written(path, binary=True) as stream:
+                np.savez(stream, **arrays, checksum=np.array(_checksum(arrays)))
+        except OSError as error:
+            first, stop = piece.chunk
+            words = (
+                f"keep = {str(self.folder)!r}: impacts {first} to {stop} are not written: "
+                f"{error.strerror or error}; {self.folder} holds {count(self.folder)} of "
+                f"{self.impacts} impacts; the same sweep goes on from them"
+            )
+            raise OSError(*filter(None, (error.errno, words))) from error
 
     def pieces(self) -> list[Piece]:
         """Return the pieces in the folder, no impact in two of them; refuse other files."""

@@ -199,6 +199,9 @@ class Simulation:
             If there are no scenes, an entry is not a Scene, or scenes with bodies stand beside
             scenes of psi1 and chi; if a law cannot be sent to ``executor``; if ``keep`` holds
             another sweep.
+        OSError
+            If a chunk cannot be written into ``keep``. Those before stay there, and the same sweep
+            resumes from them.
         """
         started, laws = time.perf_counter(), self.laws
         options: dict[str, Any] = {"progress": progress, "chunk": chunk}

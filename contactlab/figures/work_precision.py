@@ -29,7 +29,6 @@ NUMBERED = "springs"
 COLOURS = {
     "springs": LAW_COLOURS[1],
     "annulus": LAW_COLOURS[0],
-    "sharp_annulus": LAW_COLOURS[5],
     "halfspace": LAW_COLOURS[3],
 }
 EXACT_COLOUR = LAW_COLOURS[2]

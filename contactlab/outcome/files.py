@@ -63,7 +63,7 @@ def written(path: str | Path, *, binary: bool = False) -> Iterator[Any]:
         os.replace(part, target)
     except OSError as error:
         if error.errno is not None and error.filename in (None, part):
-            error.filename, error.filename2 = str(path), None
+            raise OSError(error.errno, error.strerror, str(path)) from error
         raise
     finally:
         with contextlib.suppress(OSError):

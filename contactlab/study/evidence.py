@@ -58,7 +58,6 @@ SOURCES = (
         bounds={
             (E_T, "fronts"): 0.015,
             (E_T, "springs, tsuji restitution=0.98"): 0.015,
-            (E_T, "sharp_annulus, tsuji restitution=0.98"): 0.015,
         },
     ),
     Source(name="finite-elements", kind="finite elements", bounds={("psi2", "fronts"): 0.06}),

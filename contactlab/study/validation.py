@@ -45,7 +45,6 @@ FORCE_READING, OTHER_READING = 0.003, 0.01
 COMPOSITIONS: tuple[tuple[str, dict[str, Any], str, dict[str, Any], float], ...] = (
     ("fronts", {}, "events", {}, 1e-9),
     ("springs", {"springs": 50}, "symplectic", {"steps": 200}, 2e-3),
-    ("sharp_annulus", {"annuli": 50}, "symplectic", {"steps": 200}, 2e-3),
     ("annulus", {"annuli": 50}, "symplectic", {"steps": 200}, 0.03),
     ("annulus", {"annuli": 50}, "paper", {"steps": 500}, 0.03),
 )

@@ -29,7 +29,9 @@ def test_every_file_is_written_though_one_fails(tmp_path, capsys):
     status = shared.save((one, full), (None, full), (two, done.append), (three, done.append),
                          progress_wanted=False)  # fmt: skip
     assert (status, done) == (shared.FAILED, [two, three])
-    assert capsys.readouterr().err == "contactlab: error: no space\n"
+    assert capsys.readouterr().err == (
+        f"contactlab: error: {tmp_path / 'a'} is not written: no space\n"
+    )
     assert shared.save((one, done.append), progress_wanted=False) == shared.OK
     assert shared.save((None, full), progress_wanted=False) == shared.OK
 

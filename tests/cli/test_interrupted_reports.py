@@ -40,6 +40,7 @@ def test_bench(run, monkeypatch, tmp_path):
     content = json.loads(ran.out)
     assert (content["rows"], content["complete"]) == ([], False)
     assert not (tmp_path / "none.png").exists()
+    assert "what is done" not in ran.err
 
 
 @pytest.mark.parametrize("after", [0, 7])
@@ -49,13 +50,17 @@ def test_stability(run, monkeypatch, tmp_path, after):
     clock = SimpleNamespace(perf_counter=interrupting(time.perf_counter, after + 1))
     monkeypatch.setattr("contactlab.study.stability.time", clock)
     table, picture = tmp_path / "s.csv", tmp_path / "s.png"
+    partial(picture).write_text("earlier")
     ran = run("stability", "--quick", "--csv", table, "--figure", picture)
     assert ran.status == 130
     assert ran.out.endswith("not complete: interrupted\n")
     assert f"{after} runs tried" in ran.out
     assert len(rows(partial(table))) == after
     assert not picture.exists()
+    assert partial(picture).read_text() == "earlier"
     assert "no map drawn: interrupted" in ran.err
+    assert f"{partial(table)} has what is done" in ran.err
+    assert f"{partial(picture)} has what is done" not in ran.err
 
 
 def test_figures(run, monkeypatch, tmp_path):

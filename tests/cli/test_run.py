@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import errno
 import itertools
 import json
 import time
@@ -12,7 +11,7 @@ import numpy as np
 import pytest
 
 from contactlab.cli import progress
-from contactlab.outcome import export
+from tests.full_disk import full_disk
 
 RIGID = ("--tangential", "coulomb", "--integrator", "symplectic")
 PSI = ("--psi1", "6", "--chi", "1", *RIGID)
@@ -235,10 +234,7 @@ def test_two_outputs_that_are_one_file_are_refused_before_the_run(run, tmp_path,
 def test_a_file_that_cannot_be_written_does_not_take_the_answer_with_it(
     run, tmp_path, monkeypatch, command
 ):
-    def full(*_):
-        raise OSError(errno.ENOSPC, "No space left on device", "a.csv")
-
-    monkeypatch.setitem(export.WRITERS, ".csv", full)
+    full_disk(monkeypatch)
     psi1 = "6" if command == "run" else "6:7:2"
     words = ("--psi1", psi1, "--chi", "1", *RIGID, "--json", "--out", tmp_path / "a.csv")
     ran = run(command, *words)

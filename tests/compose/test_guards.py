@@ -175,7 +175,7 @@ def test_a_few_failures_in_a_large_batch_are_found(shape):
     assert np.delete(result.psi2.ravel(), [3, 70, 71]).tolist() == good.psi2.tolist()
 
 
-@pytest.mark.parametrize("law", ["springs", "sharp_annulus", "annulus", "mindlin_cap"])
+@pytest.mark.parametrize("law", ["springs", "annulus", "mindlin_cap"])
 @pytest.mark.parametrize("chi", [41.6, 1000.0])
 def test_adaptive_steps_are_stable_where_slip_is_too_small_to_see(law, chi):
     """Unstable steps grew it up to the tolerance, unseen: by 1e14 for psi1 = 1e-20."""

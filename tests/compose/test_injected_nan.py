@@ -38,7 +38,7 @@ SCENES = [
     Scene.nondimensional(psi1=0.6, chi=0.4),
     Scene(Sphere(6.35e-3, STEEL), HalfSpace(STEEL), 0.15, 1.93, 0.9, -40.0),
 ]
-COARSE = {"annulus": 4, "sharp_annulus": 4, "springs": 6}
+COARSE = {"annulus": 4, "springs": 6}
 
 
 def options_of(method):

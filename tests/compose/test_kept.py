@@ -1,5 +1,8 @@
 """Sweeps that are kept go on where they stopped, and only they."""
 
+import errno
+import shutil
+
 import attrs
 import numpy as np
 import pytest
@@ -8,6 +11,7 @@ import contactlab
 from contactlab import Scene, Simulation
 from contactlab.compose import kept
 from tests.compose.test_sweep import CHI, RIGID, assert_same, blocks_of, scene
+from tests.full_disk import full_disk
 
 
 @pytest.fixture(autouse=True)
@@ -38,6 +42,37 @@ def test_a_sweep_goes_on_where_it_stopped(tmp_path, tangential, chunk):
     assert_same(again, whole)
     finished = simulation.sweep(scene(), keep=str(folder), progress=lambda *_: pytest.fail("ran"))
     assert_same(finished, whole)
+
+
+def test_a_disk_that_is_full_in_the_middle_leaves_what_was_kept(tmp_path, monkeypatch):
+    simulation, folder = Simulation(**RIGID), tmp_path / "kept"
+    with monkeypatch.context() as patched:
+        full_disk(patched, after=3)
+        with pytest.raises(OSError, match="No space left on device") as caught:
+            simulation.sweep(scene(), keep=folder)
+    assert caught.value.errno == errno.ENOSPC
+    assert f"keep = {str(folder)!r}: impacts 80 to 120 are not written" in str(caught.value)
+    assert f"{folder} holds 80 of 150 impacts; the same sweep goes on" in str(caught.value)
+    seen = []
+    again = simulation.sweep(scene(), keep=folder, progress=lambda *n: seen.append(n[0]))
+    assert seen[0] == 120
+    assert_same(again, simulation.sweep(scene()))
+
+
+def test_ctrl_c_needs_no_room_for_what_is_kept(tmp_path, monkeypatch):
+    full_disk(monkeypatch, after=3)
+    result = interrupted(Simulation(**RIGID), tmp_path / "kept")
+    assert np.isfinite(result.psi2).sum() == 80
+
+
+def test_a_folder_that_goes_in_the_middle_is_told(tmp_path):
+    folder = tmp_path / "kept"
+
+    def gone(done, total):
+        shutil.rmtree(folder)
+
+    with pytest.raises(OSError, match=r"impacts 40 to 80.*there is no folder.*holds 0 of 150"):
+        Simulation(**RIGID).sweep(scene(), keep=folder, progress=gone)
 
 
 def test_failures_are_kept_with_their_sentences(tmp_path):

@@ -62,8 +62,8 @@ def workers():
 
 @pytest.fixture(scope="module")
 def exact():
-    """A law whose last bits depend on the impacts beside: an array solver iterates for all."""
-    return Simulation(tangential="sharp_annulus")
+    """A law whose last bits depend on the impacts beside."""
+    return Simulation(tangential="springs")
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,6 @@ from tests.longer import longer
 STEEL = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
 LAWS = {
     "springs": {"springs": 30},
-    "sharp_annulus": {"annuli": 30},
     "annulus": {"annuli": 20},
     "mindlin_cap": {},
     "mindlin_deresiewicz": {},

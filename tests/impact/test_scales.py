@@ -13,7 +13,6 @@ CHI = 49.0 / 34.0
 ALL = {
     "fronts": {},
     "springs": {"springs": 12},
-    "sharp_annulus": {"annuli": 12},
     "annulus": {"annuli": 12},
     "mindlin_cap": {},
     "mindlin_deresiewicz": {},

@@ -43,7 +43,6 @@ NORMAL = (
 #: Tangential laws at resolutions of which half and all are extrapolated: option, count, order.
 TANGENTIAL = {
     "springs": ("springs", 200, 2),
-    "sharp_annulus": ("annuli", 200, 2),
     "annulus": ("annuli", 100, 1),
 }
 #: Steps to a spring or an annulus.

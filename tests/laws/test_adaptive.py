@@ -40,7 +40,6 @@ def mindlin(form):
 
 LAWS = {
     "springs": lambda: contactlab.create("tangential.springs", springs=12),
-    "sharp_annulus": lambda: contactlab.create("tangential.sharp_annulus", annuli=12),
     "annulus": lambda: contactlab.create("tangential.annulus", annuli=10),
     "displacement": mindlin("displacement"),
     "increment": mindlin("increment"),
@@ -53,9 +52,7 @@ LAWS = {
     "smoothed": lambda: of_guide("Smoothed")(),
 }
 #: Of second order in the step; the others jump as they come to slip, and are of first.
-SECOND = (
-    "springs", "sharp_annulus", "displacement", "increment", "increment_rescaled", "smoothed",
-)  # fmt: skip
+SECOND = ("springs", "displacement", "increment", "increment_rescaled", "smoothed")
 
 
 def adaptive(tolerance):

@@ -10,14 +10,12 @@ from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import AllStepsResponse, AllStepsTangentialLaw, TangentialResponse
 from contactlab.testing.impacts import all_steps
 from contactlab_laws.march.division import midpoints
-from tests.laws.test_springs import BOTH
 from tests.testing.broken_impacts import AllAtOnce
 
 
-@pytest.mark.parametrize(("law", "name"), BOTH)
-def test_batches_of_one_scaled_contact_are_taken_at_once(law, name):
+def test_batches_of_one_scaled_contact_are_taken_at_once():
     """Hertz impacts of any speed are one contact in units of their own; of two axes none is."""
-    law = contactlab.create(f"tangential.{law}", **{name: 9})
+    law = contactlab.create("tangential.springs", springs=9)
     impact = Scene.nondimensional(psi1=np.array([0.3, 1.2, 3.0]), chi=np.array([1.0, 1.4, 2.0]))
     unlike = attrs.evolve(impact, normal_speed=np.array([0.1, 1.0, 7.0]))
     for scene in (impact, unlike):

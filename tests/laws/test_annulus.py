@@ -123,15 +123,6 @@ def test_whole_slip_comes_to_the_closed_form(psi1, integrator):
     assert order((10, 20, 40), errors) > 1.0
 
 
-def test_sharper_annuli_are_the_same_model_with_less_error():
-    """At the same number of annuli, a quarter of the error or less, at a fifth of the steps."""
-    psi1, chi, psi2 = grid()
-    scene = Scene.nondimensional(psi1=psi1, chi=chi)
-    sharp = simulation("sharp_annulus", steps=100, annuli=50).run(scene).check().psi2
-    paper = simulation("annulus", "paper", steps=500, annuli=50).run(scene).check().psi2
-    assert rms(sharp - psi2) < 0.25 * rms(paper - psi2)
-
-
 @pytest.mark.parametrize("displacement", ["midpoint", "mean"])
 def test_many_annuli_have_the_answers_of_one_solve_a_step(displacement, monkeypatch):
     """The kept responses of all divisions are exchanges after exchanges; a solve is none."""

@@ -1,4 +1,4 @@
-"""The spring bundle and the sharp annuli: right, second order, and the same in every shape."""
+"""The spring bundle: right, second order, and the same in every shape."""
 
 import attrs
 import numpy as np
@@ -10,7 +10,6 @@ from contactlab.contracts import Increment, NormalContact, NormalLaw
 from tests.laws.exact_laws import CHI, grid, marched_change, rebound, rms, simulation
 from tests.laws.reference import TABLE
 
-BOTH = [("springs", "springs"), ("sharp_annulus", "annuli")]
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 
 
@@ -33,19 +32,17 @@ def take(law, at, moves, radii, forces=None):
     return responses, state
 
 
-@pytest.mark.parametrize(("law", "name"), BOTH)
 @pytest.mark.parametrize("chi", [1.4411764706, 1.0, 3.0])
-def test_reference_table(law, name, chi):
+def test_reference_table(chi):
     """Theory §5, at 400 steps and 100 places."""
     psi1, psi2 = np.array([row[1:] for row in TABLE if row[0] == chi]).T
-    found = rebound(psi1, chi, law, steps=400, **{name: 100})
+    found = rebound(psi1, chi, "springs", steps=400, springs=100)
     assert found == pytest.approx(psi2, abs=6e-4)
 
 
-@pytest.mark.parametrize(("law", "name"), BOTH)
-def test_grid_of_all_regimes(law, name):
+def test_grid_of_all_regimes():
     psi1, chi, psi2 = grid()
-    error = rebound(psi1, chi, law, steps=400, **{name: 100}) - psi2
+    error = rebound(psi1, chi, "springs", steps=400, springs=100) - psi2
     assert np.abs(error).max() < 1e-3
     assert rms(error) < 2.5e-4
 
@@ -59,10 +56,9 @@ def test_a_sweep_at_few_springs():
     assert rms(swept - exact) < 5e-4
 
 
-@pytest.mark.parametrize(("law", "name"), BOTH)
-def test_a_batch_gives_what_its_impacts_give_one_by_one(law, name):
+def test_a_batch_gives_what_its_impacts_give_one_by_one():
     """Whether normal motions are shared, alike up to scale, or different."""
-    sim = simulation(law, steps=60, **{name: 20})
+    sim = simulation("springs", steps=60, springs=20)
     psi1 = np.array([0.01, 0.4, -1.1, 2.5, 4.0, 9.0])
     for chi in (CHI, np.array([0.4, 1.0, 1.4, 2.0, 3.0, 1.4])):
         batch = Scene.nondimensional(psi1=psi1, chi=chi)
@@ -79,10 +75,9 @@ def test_a_batch_gives_what_its_impacts_give_one_by_one(law, name):
             assert together.motion.friction_work == pytest.approx(work, rel=1e-11, abs=1e-14)
 
 
-@pytest.mark.parametrize(("law", "name"), BOTH)
-def test_a_batch_of_unlike_impacts_in_si_units(law, name):
+def test_a_batch_of_unlike_impacts_in_si_units():
     """Speeds, sizes and friction differ; one without friction, one central."""
-    sim = simulation(law, steps=60, **{name: 20})
+    sim = simulation("springs", steps=60, springs=20)
     scenes = [
         Scene(Sphere(radius, STEEL), HalfSpace(STEEL), mu, speed, tangential, spin)
         for radius, mu, speed, tangential, spin in [
@@ -116,20 +111,18 @@ class OtherHertz(NormalLaw):
         return NormalContact(force, radius, approach), state
 
 
-@pytest.mark.parametrize(("law", "name"), BOTH)
-def test_any_normal_law_with_a_radius(law, name):
+def test_any_normal_law_with_a_radius():
     """Under a Hertz law without closed form the answer is the exact one too."""
-    sim = attrs.evolve(simulation(law, steps=400, **{name: 100}), normal=OtherHertz())
+    sim = attrs.evolve(simulation("springs", steps=400, springs=100), normal=OtherHertz())
     exact = Simulation().run(Scene.nondimensional(psi1=1.2, chi=CHI)).check()
     assert sim.run(Scene.nondimensional(psi1=1.2, chi=CHI)).check().psi2 == pytest.approx(
         exact.psi2, abs=2e-3
     )
 
 
-@pytest.mark.parametrize(("law", "name"), BOTH)
-def test_unequal_contacts_of_a_batch_away_from_hertz(law, name):
+def test_unequal_contacts_of_a_batch_away_from_hertz():
     """A batch whose contact radii do not go together takes another path to the same end."""
-    sim = attrs.evolve(simulation(law, steps=80, **{name: 15}), normal=OtherHertz(factor=2.0))
+    sim = attrs.evolve(simulation("springs", steps=80, springs=15), normal=OtherHertz(factor=2.0))
     psi1, chi = np.array([0.3, 1.4, -2.0]), np.array([0.8, 1.4, 2.0])
     scenes = [
         attrs.evolve(Scene.nondimensional(psi1=p, chi=c), normal_speed=v)
@@ -142,11 +135,10 @@ def test_unequal_contacts_of_a_batch_away_from_hertz(law, name):
         assert batch.psi2[k] == pytest.approx(alone, abs=1e-8)
 
 
-@pytest.mark.parametrize(("law", "name"), BOTH)
 @pytest.mark.parametrize("places", [1, 2, 3, 200])
-def test_any_number_of_places(law, name, places):
+def test_any_number_of_places(places):
     """One or two are coarse, but still friction: |F| <= mu P, and no energy from nothing."""
-    sim = simulation(law, steps=200, **{name: places})
+    sim = simulation("springs", steps=200, springs=places)
     for psi1 in (0.3, 1.2, 3.0):
         result = sim.run(Scene.nondimensional(psi1=psi1, chi=CHI), history=True).check()
         history = result.history
@@ -156,32 +148,29 @@ def test_any_number_of_places(law, name, places):
         assert result.psi2 == pytest.approx(exact, abs=0.5 / places**2 + 2e-3)
 
 
-@pytest.mark.parametrize(("law", "name"), BOTH)
 @pytest.mark.parametrize("places", [1, 2, 7, 50])
-def test_gross_slip_is_exactly_coulomb(law, name, places):
+def test_gross_slip_is_exactly_coulomb(places):
     """F = mu P to rounding, in loading and in unloading."""
     radii = [0.1, 0.35, 0.7, 1.0, 0.95, 0.6, 0.52]
-    law = contactlab.create(f"tangential.{law}", **{name: places})
+    law = contactlab.create("tangential.springs", springs=places)
     responses, _ = take(law, contact(), [9.0] * len(radii), radii)
     for response, radius in zip(responses, radii, strict=True):
-        met = radius * places > 0.5 or law.resolution == "annuli"  # else no spring is met yet
+        met = radius * places > 0.5  # else no spring is met yet
         assert response.force == pytest.approx(1.25 * radius**3 * met, rel=1e-12)
 
 
 @pytest.mark.parametrize(("integrator", "tolerance"), [("paper", 1e-9), ("symplectic", 1e-6)])
-@pytest.mark.parametrize(("law", "name"), BOTH)
-def test_whole_slip_is_the_closed_form(law, name, integrator, tolerance):
+def test_whole_slip_is_the_closed_form(integrator, tolerance):
     """Eq. (45) in both directions, to the error of the steps."""
     psi1 = np.array([4.0 * CHI - 1.0, -6.0, 50.0, 1e9])
-    sim = simulation(law, integrator, steps=500, **{name: 10})
+    sim = simulation("springs", integrator, steps=500, springs=10)
     expected = -np.sign(psi1) * 4.0 * CHI
     assert marched_change(sim, psi1, CHI) == pytest.approx(expected, rel=tolerance)
 
 
-@pytest.mark.parametrize(("law", "name"), BOTH)
-def test_fixed_normal_force_gives_cattaneo_and_mindlin(law, name):
+def test_fixed_normal_force_gives_cattaneo_and_mindlin():
     """F = 1 - (1 - xi)^1.5 on loading, and Masing's rule when the motion turns back."""
-    law = contactlab.create(f"tangential.{law}", **{name: 400})
+    law = contactlab.create("tangential.springs", springs=400)
     moves = np.array([0.2, 0.2, 0.2, -0.3, -0.4])
     first, _ = take(law, contact(), [0.0, *moves], [1.0] * 6)
     xi = np.cumsum(moves)
@@ -191,9 +180,8 @@ def test_fixed_normal_force_gives_cattaneo_and_mindlin(law, name):
     assert found == pytest.approx(np.concatenate((forth, back)), abs=1e-5)
 
 
-@pytest.mark.parametrize(("law", "name"), BOTH)
-def test_growing_pressure_alone_makes_no_force(law, name):
-    law = contactlab.create(f"tangential.{law}", **{name: 30})
+def test_growing_pressure_alone_makes_no_force():
+    law = contactlab.create("tangential.springs", springs=30)
     responses, _ = take(law, contact(), [0.1, 0.0, 0.0], [0.5, 0.7, 1.0])
     assert responses[1].force == pytest.approx(responses[0].force, rel=2e-2)
     assert responses[2].force == pytest.approx(responses[1].force, rel=2e-2)
@@ -201,20 +189,18 @@ def test_growing_pressure_alone_makes_no_force(law, name):
     assert [response.force for response in nothing] == [0.0, 0.0, 0.0]
 
 
-@pytest.mark.parametrize(("law", "name"), BOTH)
-def test_odd_to_the_last_bit(law, name):
+def test_odd_to_the_last_bit():
     psi1, chi, _ = grid()
-    sim = simulation(law, steps=50, **{name: 12})
+    sim = simulation("springs", steps=50, springs=12)
     forth = sim.run(Scene.nondimensional(psi1=psi1, chi=chi)).check().psi2
     back = sim.run(Scene.nondimensional(psi1=-psi1, chi=chi)).check().psi2
     assert (forth == -back).all()
 
 
-@pytest.mark.parametrize(("law", "name"), BOTH)
 @pytest.mark.parametrize("shape", [(), (3,)])
-def test_nan_gives_nan(law, name, shape):
+def test_nan_gives_nan(shape):
     """Never "no contact", whichever number it is and whether or not there is contact."""
-    law = contactlab.create(f"tangential.{law}", **{name: 10})
+    law = contactlab.create("tangential.springs", springs=10)
     at = contact(psi1=np.full(shape, 1.2) if shape else 1.2)
     for spoilt in range(3):
         for radius in (0.0, 0.6):
@@ -224,11 +210,10 @@ def test_nan_gives_nan(law, name, shape):
             assert np.isnan(responses[0].force).all()
 
 
-@pytest.mark.parametrize(("law", "name"), BOTH)
 @pytest.mark.parametrize("psi1", [1.2, np.array([0.3, 1.2])])
-def test_fields(law, name, psi1):
+def test_fields(psi1):
     """Stuck inside, slipping outside, nothing beyond the contact; w follows the limit there."""
-    result = simulation(law, steps=40, **{name: 25}).run(
+    result = simulation("springs", steps=40, springs=25).run(
         Scene.nondimensional(psi1=psi1, chi=CHI), history="fields"
     )
     fields, history = result.check().history.fields, result.history

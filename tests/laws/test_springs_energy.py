@@ -1,4 +1,4 @@
-"""The energy of the spring bundle and the sharp annuli: none from nothing, the books close."""
+"""The energy of the spring bundle: none from nothing, the books close."""
 
 import itertools
 
@@ -9,15 +9,14 @@ import contactlab
 from contactlab import Scene, Simulation
 from tests.laws.exact_laws import CHI, grid, simulation
 
-BOTH = [("springs", "springs"), ("sharp_annulus", "annuli")]
 
-
-@pytest.mark.parametrize(("law", "name"), BOTH)
-def test_energy_books_close_to_second_order(law, name):
+def test_energy_books_close_to_second_order():
     psi1, chi, _ = grid()
     scene = Scene.nondimensional(psi1=psi1, chi=chi)
     worst = [
-        np.abs(simulation(law, steps=4 * n, **{name: n}).run(scene).energy.relative_imbalance).max()
+        np.abs(
+            simulation("springs", steps=4 * n, springs=n).run(scene).energy.relative_imbalance
+        ).max()
         for n in (25, 50, 100)
     ]
     assert worst[2] < 2e-4
@@ -40,13 +39,12 @@ def test_few_springs_make_no_energy(count, chi):
         assert (np.abs(result.check().psi2) <= 1.02 * psi1).all()
 
 
-@pytest.mark.parametrize(("law", "name"), BOTH)
 @pytest.mark.parametrize("count", [1, 2, 3, 10, 50])
-def test_books_stay_within_what_the_law_declares(law, name, count):
+def test_books_stay_within_what_the_law_declares(count):
     """With as few steps as the integrators allow, and bodies from slow to quick to turn."""
     psi1 = np.concatenate(([1e-3, 0.98, 1.0, 1.2, 10.0], np.linspace(0.02, 4.0, 12)))
     for chi, integrator in itertools.product((0.05, 0.5, CHI, 8.0, 100.0), ("symplectic", "paper")):
-        chosen = contactlab.create(f"tangential.{law}", **{name: count})
+        chosen = contactlab.create("tangential.springs", springs=count)
         steps = contactlab.create(f"integrator.{integrator}", steps=7)
         result = Simulation(tangential=chosen, integrator=steps).run(
             Scene.nondimensional(psi1=psi1, chi=chi)
@@ -55,12 +53,11 @@ def test_books_stay_within_what_the_law_declares(law, name, count):
         result.check()
 
 
-@pytest.mark.parametrize(("law", "name"), BOTH)
-def test_finer_laws_declare_tighter_books(law, name):
+def test_finer_laws_declare_tighter_books():
     """A bound that grew with the parts would bound nothing: all the energy is 1."""
     scene = Scene.nondimensional(psi1=1.0, chi=CHI)
     bounds = [
-        contactlab.create(f"tangential.{law}", **{name: count}).books_bound(scene)
+        contactlab.create("tangential.springs", springs=count).books_bound(scene)
         for count in (1, 2, 10, 50, 200)
     ]
     assert bounds == sorted(bounds, reverse=True)

@@ -49,11 +49,10 @@ def test_annuli_agree_with_springs(name):
     """Two laws of the continuum, written apart, that know the contact's radius and load."""
     law, given = contactlab.create(f"normal.{name}", **LAWS[name]), scene(slip=0.4)
     found = {}
-    for tangential in ("springs", "sharp_annulus", "annulus"):
+    for tangential in ("springs", "annulus"):
         chosen = contactlab.create(f"tangential.{tangential}")
         if chosen.needs <= law.offers:
             chosen = attrs.evolve(chosen, **{chosen.resolution: 100})
             found[tangential] = Simulation(normal=law, tangential=chosen).run(given).check().psi2
-    assert found["sharp_annulus"] == pytest.approx(found["springs"], abs=1e-3)
     # of first order: at 100 annuli and 200 steps 0.011 off; springs up to 0.02 (see the caution)
     assert found["annulus"] == pytest.approx(found["springs"], abs=0.02)

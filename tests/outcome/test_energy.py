@@ -52,7 +52,7 @@ def test_the_loss_is_the_work_of_the_normal_force(integrator):
     assert result.energy.normal_loss == pytest.approx(work, rel=2e-3)
 
 
-@pytest.mark.parametrize("law", ["annulus", "springs", "sharp_annulus"])
+@pytest.mark.parametrize("law", ["annulus", "springs"])
 def test_a_damped_impact_is_no_breach_of_the_books(law):
     """Laws that declare a bound declare it of friction alone."""
     simulation = Simulation(normal=Damped(damping=1.0), tangential=law, integrator="symplectic")

@@ -53,7 +53,7 @@ def test_that_of_a_spring_is_what_finer_steps_leave(law):
     assert found.error[0] > 0.02
 
 
-@pytest.mark.parametrize("law", ["annulus", "fronts", "springs", "sharp_annulus"])
+@pytest.mark.parametrize("law", ["annulus", "fronts", "springs"])
 def test_laws_that_converge_to_the_continuum_have_none(law):
     assert model_error(law, (CHI,), (1.2,)) is None
 

@@ -8,7 +8,6 @@ from contactlab.testing import parametrize_with_checks
 #: Smaller than the defaults, for speed; as fine as the checks' tolerances need.
 OPTIONS = {
     "tangential.annulus": {"annuli": 40},
-    "tangential.sharp_annulus": {"annuli": 30},
     "tangential.springs": {"springs": 30},
     "tangential.halfspace": {"rings": 16, "angles": 1},
 }
@@ -41,7 +40,6 @@ LONGER = {
     "Annulus": "all_steps answers batch books closed_cycles friction_work impact_coulomb_limit "
     "impact_units load_impulse odd_in_slip partial_unloading random_paths sliding_impulse "
     "stiffness turning_points units whole_impact_form whole_impacts",
-    "SharpAnnulus": "all_steps answers closed_cycles whole_impact_form whole_impacts",
     "Springs": "vectors_on_a_line vectors_rotate whole_impacts",
     "MindlinCap": "impact_units vectors_on_a_line vectors_rotate whole_impact_form whole_impacts",
     "MindlinDeresiewicz": "begin_is_start impact_odd impact_units",
@@ -88,4 +86,4 @@ def test_a_law_that_claims_partial_slip_expects_to_fail_under_damping_at_most(la
 
 def test_the_laws_of_partial_slip_claim_it():
     names = {type(law).__name__ for law in CLAIMING}
-    assert names == {"Annulus", "Fronts", "SharpAnnulus", "Springs"}
+    assert names == {"Annulus", "Fronts", "Springs"}

@@ -4,8 +4,7 @@ By the theorem of Ciavarella and Jaeger the axisymmetric contact with friction i
 w(s) of one coordinate, 0 <= s < b, whose values do not depend on each other, like the deflections
 of independent springs: w grows with the slip displacement while abs(w) is below the limit l(s), and
 is otherwise held at +-l(s); it begins from zero where the contact grows; the force is 2 G* times
-its integral. A law gives the positions of its springs and the rule of integration (its
-``Bundle``).
+its integral. ``Bundle`` has the positions of the springs and the rule of integration.
 
 Scaled by the largest contact, as everywhere in this package: s, b by a; w and displacement by
 mu a²/(kappa R), so that l = p (b² - s²) with p the pressure over Hertz's at the same radius;

@@ -1,9 +1,9 @@
-"""The bundle of springs: positions s at which a law keeps w(s), and its geometry in a step."""
+"""The bundle of springs, at whose positions s a law keeps w(s), and its geometry in a step."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from bisect import bisect_left
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,42 +14,68 @@ from contactlab.numeric.checks import Real
 Array = NDArray[np.float64]
 
 
-class Bundle(ABC):
-    """Springs along the contact radius, with weights that give the force; never changed.
+class Bundle:
+    """Springs in the middle of equal cells: F = mu P times the sum of w over the sum of l.
+
+    With this rule, rather than 1.5/n times the sum, gross slip gives mu P to rounding and
+    abs(F) never exceeds it. While the contact holds the first spring only, the factor would
+    fall from infinity to 9/8 of 1.5/n, and a stretched spring that becomes softer or stiffer
+    makes or loses energy: the factor stays at 9/8 then, and the limit grows instead.
 
     Parameters
     ----------
-    positions : array, shape (n,)
-        s of each spring over the largest contact radius, ascending, below 1.
-    full_weights : array, shape (n,)
-        Weights of 1.5 times the integral of w over the largest contact.
+    springs : int
+        n, along the radius of the largest contact.
 
     Attributes
     ----------
     squares : array, shape (n,)
-        s²; ``squares_listed`` is the same as a list.
+        s² of each spring over that of the largest contact; ``squares_listed`` is the same as a
+        list.
     full_weights : array, shape (n,)
+        Weights of 1.5 times the integral of w over the largest contact.
     """
 
-    def __init__(self, positions: Array, full_weights: Array) -> None:
+    def __init__(self, springs: int) -> None:
+        positions = (np.arange(springs) + 0.5) / springs
         self.squares = positions * positions
         self.squares_listed = self.squares.tolist()
-        self.full_weights = full_weights
+        self.full_weights = np.full(springs, 1.5 / springs)
         for array in (self.squares, self.full_weights):
             array.flags.writeable = False
+        self.sums = np.concatenate(([0.0], np.cumsum(self.squares)))  # of s² over the first m
+        self.sums_listed = self.sums.tolist()
+        self.ones = np.ones(springs)
+        self.heaviest = 1.125 * 1.5 / springs
 
-    @abstractmethod
     def weights(self, square: Array) -> Array:
         """Return weights of F in w, shape (n, K), for contacts of b² = ``square``, shape (K,)."""
-        # They hold for the springs in contact; gross slip must give F = b³ with them.
+        # b³ over the sum of b² - s², equal for all springs.
+        factor = np.minimum(self._factor(square), self.heaviest)
+        return np.broadcast_to(factor, (len(self.squares), len(square)))
 
-    @abstractmethod
     def weights_of_one(self, square: float, touching: int) -> Array:
         """Return the weights of the innermost springs of one contact, shape (touching,)."""
+        return self.ones[:touching] * min(self._factor_of_one(square), self.heaviest)
 
     def limit_factor(self, square: Real) -> Real:
-        """Return the factor on the limits for which gross slip gives b³; by default 1."""
-        return 1.0
+        """Return the factor on the limits: above 1 where the weight of one spring is capped."""
+        if isinstance(square, float):
+            return max(self._factor_of_one(square) / self.heaviest, 1.0)
+        return np.maximum(self._factor(square) / self.heaviest, 1.0)
+
+    def _factor(self, square: Array) -> Array:
+        touching = self.squares.searchsorted(square)
+        full = touching * square - self.sums[touching]
+        return np.where(touching > 0, square**1.5 / (full + (touching == 0)), 0.0)
+
+    def _factor_of_one(self, square: float) -> float:
+        touching = bisect_left(self.squares_listed, square)
+        full = touching * square - self.sums_listed[touching]
+        return square**1.5 / full if touching else 0.0
+
+
+bundle = lru_cache(maxsize=32)(Bundle)
 
 
 class Geometry(NamedTuple):

@@ -1,9 +1,8 @@
-"""Laws of springs: all but the positions of the springs."""
+"""The law of springs that span the largest contact."""
 
 from __future__ import annotations
 
 import math
-from abc import abstractmethod
 from collections.abc import Mapping
 from typing import Any, ClassVar, NamedTuple
 
@@ -23,7 +22,7 @@ from contactlab.numeric.arrays import flat
 from contactlab.numeric.checks import Real
 from contactlab_laws.differences.table import springs
 from contactlab_laws.jaeger import all_steps, step
-from contactlab_laws.jaeger.bundle import Array, Bundle, spring_fields
+from contactlab_laws.jaeger.bundle import Array, bundle, spring_fields
 from contactlab_laws.jaeger.partial_slip import PartialSlip, Scales, hemisphere
 
 #: Most numbers in a table of a whole run (16 MB); longer runs go step by step.
@@ -39,16 +38,14 @@ class State(NamedTuple):
 
 
 class ProfileLaw(PartialSlip):
-    """A law of independent springs; a subclass gives their positions."""
+    """A law of independent springs; a subclass gives their number."""
 
     expected_failures: ClassVar[Mapping[str, str]] = {
         "coulomb_at_a_point_damped": "each spring is limited separately: that is Coulomb's law "
         "at a point only while the stuck part is a disc, as in elastic Hertz impacts",
     }
 
-    @abstractmethod
-    def bundle(self) -> Bundle:
-        """Return the springs, cached for each number of springs."""
+    springs: int
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of every law, of separately limited springs, and of the pressure."""
@@ -68,16 +65,17 @@ class ProfileLaw(PartialSlip):
     ) -> tuple[TangentialResponse, State]:
         """Return the force after the step."""
         shape, scales, memory = state
+        own = bundle(self.springs)
         radius = step.float_of_one(after.radius) / scales.radius
         pressure = scales.pressure(radius, step.float_of_one(after.friction_load))
         radius, pressure = step.common(radius, shape), step.common(pressure, shape)
         moved = increment.displacement * scales.displacement
         if not shape:
-            force, work, memory = step.advance(self.bundle(), memory, moved, radius, pressure, 1)
+            force, work, memory = step.advance(own, memory, moved, radius, pressure, 1)
             response = TangentialResponse(force.item() * scales.force, work.item() * scales.work)
             return response, State(shape, scales, memory)
         items, moved = math.prod(shape), flat(moved, shape)
-        force, work, memory = step.advance(self.bundle(), memory, moved, radius, pressure, items)
+        force, work, memory = step.advance(own, memory, moved, radius, pressure, items)
         force, work = force.reshape(shape) * scales.force, work.reshape(shape) * scales.work
         return TangentialResponse(force, work), State(shape, scales, memory)
 
@@ -86,8 +84,8 @@ class ProfileLaw(PartialSlip):
     ) -> AllStepsResponse | None:
         """Return the forces of one impact, or of a batch whose contacts differ in scale only."""
         # Batches of several axes and runs of large tables are faster step by step.
-        shape, bundle = scene.shape, self.bundle()
-        columns = max(len(bundle.squares), math.prod(shape))
+        shape, own = scene.shape, bundle(self.springs)
+        columns = max(self.springs, math.prod(shape))
         if len(shape) > 1 or len(steps.drift) * columns > LARGEST_RUN:
             return None
         scales = Scales.of(scene, normal)
@@ -99,12 +97,12 @@ class ProfileLaw(PartialSlip):
             kick=steps.kick * (scales.force / scene.pair.tangential_mass),
         )
         if not shape:
-            force, work = all_steps.advance_all(bundle, scaled, float(scene.slip_velocity))
+            force, work = all_steps.advance_all(own, scaled, float(scene.slip_velocity))
             return AllStepsResponse(force * scales.force, float(work * scales.work), True)
         if not (_alike(scaled.radius) and _alike(scaled.pressure)):
             return None
         scaled = scaled._replace(radius=scaled.radius[:, 0], pressure=scaled.pressure[:, 0])
-        forces, works = all_steps.advance_batch(bundle, scaled, scene.slip_velocity, *shape)
+        forces, works = all_steps.advance_batch(own, scaled, scene.slip_velocity, *shape)
         forces *= scales.force
         return AllStepsResponse(forces, works * scales.work, True)
 
@@ -115,7 +113,7 @@ class ProfileLaw(PartialSlip):
         of w where the spring is at its limit, 0 elsewhere.
         """
         shape, scales, memory = state
-        squares = self.bundle().squares
+        squares = bundle(self.springs).squares
         items = math.prod(shape)
 
         def of_all(rows: Array) -> Array:

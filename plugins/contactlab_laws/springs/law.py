@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Mapping
-from functools import lru_cache
 from typing import Any, ClassVar
 
 import attrs
-import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import (
@@ -21,54 +18,8 @@ from contactlab.contracts import (
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, choice, count, refuse
-from contactlab_laws.jaeger.bundle import Array, Bundle
 from contactlab_laws.jaeger.law import ProfileLaw
 from contactlab_laws.springs import doubling
-
-
-class Midpoints(Bundle):
-    """Springs in the middle of equal cells: F = mu P times the sum of w over the sum of l.
-
-    With this rule, rather than 1.5/n times the sum, gross slip gives mu P to rounding and
-    abs(F) never exceeds it. While the contact holds the first spring only, the factor would
-    fall from infinity to 9/8 of 1.5/n, and a stretched spring that becomes softer or stiffer
-    makes or loses energy: the factor stays at 9/8 then, and the limit grows instead.
-    """
-
-    def __init__(self, springs: int) -> None:
-        super().__init__((np.arange(springs) + 0.5) / springs, np.full(springs, 1.5 / springs))
-        self.sums = np.concatenate(([0.0], np.cumsum(self.squares)))  # of s² over the first m
-        self.sums_listed = self.sums.tolist()
-        self.ones = np.ones(springs)
-        self.heaviest = 1.125 * 1.5 / springs
-
-    def weights(self, square: Array) -> Array:
-        """Return the weights, shape (n, K): b³ over the sum of b² - s², equal for all springs."""
-        factor = np.minimum(self._factor(square), self.heaviest)
-        return np.broadcast_to(factor, (len(self.squares), len(square)))
-
-    def weights_of_one(self, square: float, touching: int) -> Array:
-        """Return the weights of the innermost springs of one contact, shape (touching,)."""
-        return self.ones[:touching] * min(self._factor_of_one(square), self.heaviest)
-
-    def limit_factor(self, square: Real) -> Real:
-        """Return the factor on the limits: above 1 where the weight of one spring is capped."""
-        if isinstance(square, float):
-            return max(self._factor_of_one(square) / self.heaviest, 1.0)
-        return np.maximum(self._factor(square) / self.heaviest, 1.0)
-
-    def _factor(self, square: Array) -> Array:
-        touching = self.squares.searchsorted(square)
-        full = touching * square - self.sums[touching]
-        return np.where(touching > 0, square**1.5 / (full + (touching == 0)), 0.0)
-
-    def _factor_of_one(self, square: float) -> float:
-        touching = bisect_left(self.squares_listed, square)
-        full = touching * square - self.sums_listed[touching]
-        return square**1.5 / full if touching else 0.0
-
-
-midpoints = lru_cache(maxsize=32)(Midpoints)
 
 
 @attrs.frozen(kw_only=True)
@@ -121,10 +72,6 @@ class Springs(ProfileLaw):
         Both fall as the squares of steps and springs; with 50 and 200 it is 1e-4.
         """
         return 0.05 + 0.03 / self.springs
-
-    def bundle(self) -> Bundle:
-        """Return springs in the middle of equal cells."""
-        return midpoints(self.springs)
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return 2 G* a, and half a spring more on a doubling grid, whose cells are not a's."""
