@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import copyreg
+import os
 import sys
 import traceback
 from collections.abc import Iterator
@@ -16,7 +17,7 @@ from zlib import crc32
 import numpy as np
 import pluggy
 
-from contactlab.compose.names import FILE, PROJECT, PluginInfo
+from contactlab.compose.names import FILE, PROJECT, PluginInfo, Untrusted
 from contactlab.contracts.law import API_VERSION, Law
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
@@ -92,14 +93,21 @@ def law_at(place: str) -> type[Law]:
     ------
     ValueError
         If there is no such file, or no such law in the file; the message names the laws there.
+        If a scene names the place without the user's word.
     PluginError
         If the file or module raises an exception, or the law breaks the contract.
     """
     from importlib import import_module
 
     where, _, title = place.rpartition(":") if not place.endswith(".py") else (place, "", "")
+    if "\0" in place:
+        raise refuse("name", place, "must not hold a null character")
+    if isinstance(place, Untrusted):
+        code = os.path.realpath(where) if where.endswith(".py") else where
+        remedy = "if you trust it, add --allow-code, or in Python read_scene(path, allow_code=True)"
+        raise refuse("name", place, f"the scene names code, which would run: {code!r}", remedy)
     if where.endswith(".py"):
-        path = Path(where).expanduser()
+        path = Path(os.path.expanduser(where))
         try:
             stat = path.stat()
         except OSError as error:
