@@ -8,15 +8,14 @@ import os
 import sys
 import traceback
 from collections.abc import Iterator
-from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeGuard
-from zlib import crc32
 
 import numpy as np
 import pluggy
 
+from contactlab.compose import sources
 from contactlab.compose.names import FILE, PROJECT, PluginInfo, Untrusted
 from contactlab.contracts.law import API_VERSION, Law
 from contactlab.numeric.checks import refuse
@@ -109,12 +108,12 @@ def law_at(place: str) -> type[Law]:
     if where.endswith(".py"):
         path = Path(os.path.expanduser(where))
         try:
-            stat = path.stat()
+            path.stat()
         except OSError as error:
             remedy = f"the path begins in {Path.cwd()}" if not path.is_absolute() else ""
             raise refuse("name", place, f"{where}: {error.strerror}", remedy) from None
         with _guarded(repr(place), "could not be loaded"):
-            module = _module(str(path.resolve()), (stat.st_mtime_ns, stat.st_size))
+            module = _module(str(path.resolve()))
     else:
         with _guarded(repr(place), "could not be imported (a file is named by its path, x.py)"):
             module = import_module(where)
@@ -127,21 +126,27 @@ def law_at(place: str) -> type[Law]:
     return _checked(law, law.kind, repr(place))
 
 
-@lru_cache(maxsize=64)
-def _module(path: str, _: tuple[int, int]) -> ModuleType:
-    """Return a file as a module; a file that has changed is loaded again."""
-    module = ModuleType(path.removesuffix(".py").replace(".", "_"))
-    source = Path(path).read_bytes()
+def _module(path: str) -> ModuleType:
+    """Return a file as a module, loaded again if it or a file beside it that it needs changed."""
+    name, folder = path.removesuffix(".py").replace(".", "_"), os.path.dirname(path)
+    sources.forget_changed(folder)
+    if name in sources.SEEN and name in sys.modules:
+        return sys.modules[name]
+    module = ModuleType(name)
     module.__file__ = path
-    sys.modules[module.__name__] = module
-    sys.path.append(str(Path(path).parent))  # for other files beside this one
+    sys.modules[name] = module
+    sys.path.append(folder)  # for other files beside this one
     try:
-        exec(compile(source, path, "exec", dont_inherit=True), vars(module))
+        exec(compile(Path(path).read_bytes(), path, "exec", dont_inherit=True), vars(module))
     finally:
         sys.path.pop()
+    version = sources.checksum(repr(sources.code_of([name])).encode())  # of all files in one
+    if other := sources.mistaken(name):
+        del sources.SEEN[name]
+        raise ImportError(f"it imports {other}, not the file beside it; rename one of the two")
     for title, law in _laws(module).items():
-        name = f"{law.kind}.{Path(path).name}:{title}"
-        IN_FILES[law] = PluginInfo(name, FILE, f"{crc32(source):08x}", path, False)
+        own = f"{law.kind}.{Path(path).name}:{title}"
+        IN_FILES[law] = PluginInfo(own, FILE, version, path, False)
         copyreg.pickle(law, _reduced)
     return module
 

@@ -3,6 +3,7 @@
 import json
 import pickle
 import re
+import sys
 
 import pytest
 
@@ -219,7 +220,8 @@ def files(tmp_path, monkeypatch):
         "beside": f"import attrs\n{beside}",
     }.items():
         (tmp_path / f"{name}.py").write_text(text)
-    return tmp_path
+    yield tmp_path
+    sys.modules.pop("one", None)  # that of the next test is another file
 
 
 @pytest.mark.parametrize(("name", "word"), REFUSED.items())
