@@ -11,22 +11,23 @@ from __future__ import annotations
 import argparse
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.compare import simulations
+from contactlab.cli.compare import own_law, simulations
+from contactlab.cli.scene import add_file, read
 from contactlab.compose.citations import bibtex, references, software
-from contactlab.scene_file import LawChoice, read_scene
+from contactlab.scene_file import LawChoice
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the scene, whose data are cited, and the laws."""
-    parser.add_argument("scene", nargs="?", metavar="SCENE.toml", help="a scene or a sweep")
+    add_file(parser)
     shared.add_laws(parser, many=True)
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Print the entries: data first, then laws, contactlab last."""
-    file = read_scene(arguments.scene) if arguments.scene else None
+    file = read(arguments)
     laws = file.laws if file else LawChoice()
-    arguments.tangential = arguments.tangential or [laws.resolved().tangential]
+    arguments.tangential = arguments.tangential or [own_law(arguments, laws, None)]
     texts = []
     if file is not None:
         texts += [file.citation] if file.citation else []

@@ -26,8 +26,8 @@ from pathlib import Path
 import numpy as np
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.scene import add_ranges, check_alone
-from contactlab.compose.names import KINDS, full_name, kind_of, short_name
+from contactlab.cli.scene import add_file, add_ranges, check_alone, read
+from contactlab.compose.names import KINDS, full_name, kind_of
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
@@ -52,12 +52,7 @@ DEFAULT_LAWS = ["annulus", "coulomb"]
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the scene, the laws, the quantities and the outputs."""
-    parser.add_argument(
-        "scene",
-        metavar="SCENE.toml",
-        nargs="?",
-        help="a scene or a sweep (default: psi2 over psi1 of a solid sphere, chi = 49/34)",
-    )
+    add_file(parser, "a scene or a sweep (default: psi2 over psi1 of a solid sphere, chi = 49/34)")
     add_ranges(parser)
     shared.add_measured(parser)
     words = "every installed tangential law that fits, one row a law"
@@ -92,13 +87,14 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.all:
         compared = _all(arguments, file)
     else:
-        law = file.laws.suited_to(file.scene).tangential
         others = DEFAULT_LAWS[1:] if coupled else DEFAULT_LAWS
-        arguments.tangential = arguments.tangential or list(dict.fromkeys([law, *others]))
+        arguments.tangential = arguments.tangential or list(
+            dict.fromkeys([own_law(arguments, file.laws, file.scene), *others])
+        )
         compared = simulations(arguments, file.laws)
     refused: list[str] = []
     if coupled:
-        first = file.laws.suited_to(file.scene).tangential
+        first = own_law(arguments, file.laws, file.scene)
         names = sorted(compared, key=lambda name: name != first)
         compared = _answering(file.scene, {name: compared[name] for name in names}, refused)
     with shared.progress(arguments.progress, "runs") as progress:
@@ -160,7 +156,7 @@ def _file(arguments: argparse.Namespace) -> SceneFile:
     varied = {name: value for name, value in parameters.items() if np.ndim(value)}
     missing = [f"--{name}" for name, value in parameters.items() if value is None]
     if len(missing) == len(parameters):
-        return read_scene(arguments.scene or DEFAULT_SCENE)
+        return read(arguments) or read_scene(DEFAULT_SCENE)
     check_alone(arguments)
     if missing:
         raise ValueError(f"{missing[0]}: must be given too (chi is 1.4412 for a solid sphere)")
@@ -216,17 +212,20 @@ def _all(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation
     return fitting.simulations
 
 
+def own_law(arguments: argparse.Namespace, laws: LawChoice, scene: Scene) -> str:
+    """Return the friction law of a file, beside the first of the other laws requested."""
+    others = {kind: getattr(arguments, kind) for kind in ("normal", "integrator")}
+    first = {kind: names[0] for kind, names in others.items() if names}
+    return str(laws.choose(**first).suited_to(scene).tangential)
+
+
 def simulations(arguments: argparse.Namespace, laws: LawChoice) -> dict[str, Simulation]:
     """Return all combinations of the requested laws, named by the kinds that differ.
 
     ``laws`` holds the laws of kinds without a request. Its integrator is replaced
     by the preferred one for tangential laws that it does not run.
     """
-    requested = {kind: getattr(arguments, kind) or [getattr(laws, kind)] for kind in KINDS}
-    requested = {
-        kind: [name and short_name(full_name(kind, name)) for name in names]
-        for kind, names in requested.items()
-    }
+    requested = {kind: getattr(arguments, kind) or [None] for kind in KINDS}
     several = [kind for kind in KINDS if len(requested[kind]) > 1] or ["tangential"]
     combinations = {}
     used: set[str] = set()

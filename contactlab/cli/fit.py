@@ -16,6 +16,7 @@ from typing import Any
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.fit_report import describe, ranking, write_residuals
+from contactlab.cli.scene import add_allow_code
 from contactlab.compose.composition import DEFAULT_NORMAL
 from contactlab.compose.simulation import Simulation
 from contactlab.fitting import Fit, Ranked, fit, in_order, rank, read_measurements
@@ -49,6 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     shared.add_names(parser, "--laws", words, default=[EXACT])
     shared.add_laws(parser, kinds=("normal", "integrator"))
+    add_allow_code(parser)
     shared.add_names(parser, "--quantity", "measured quantities to fit (default: all)")
     parser.add_argument(
         "--bootstrap",
@@ -72,7 +74,8 @@ def execute(arguments: argparse.Namespace) -> int:
     data, path = _files(arguments.files)
     impacts = read_measurements(data, columns=dict(arguments.column))
     defaults = {"friction_coefficient": SOME_FRICTION}
-    file = read_scene(path, entries=impacts.given, defaults=defaults)
+    allow = arguments.allow_code
+    file = read_scene(path, entries=impacts.given, defaults=defaults, allow_code=allow)
     simulations = _simulations(arguments, file)
     selection: dict[str, Any] = {"parameters": arguments.fit, "quantities": arguments.quantity}
     first, *others = simulations

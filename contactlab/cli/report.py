@@ -13,6 +13,7 @@ import argparse
 from pathlib import Path
 
 from contactlab.cli import arguments as shared
+from contactlab.cli.scene import add_file
 from contactlab.compose.names import full_name, short_name
 from contactlab.outcome.files import written
 from contactlab.scene_file import read_scene
@@ -24,7 +25,7 @@ DEFAULT_LAWS = ("fronts", "coulomb")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the scene, the laws and the file."""
-    parser.add_argument("scene", metavar="SCENE.toml", help="a scene or a sweep")
+    add_file(parser, needed=True)
     words = (
         "tangential laws to compare with the file's own (default: fronts and coulomb, if they fit "
         "its normal law)"
@@ -41,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the scene under the laws, write the page and print its path."""
-    file = shared.measured(arguments, read_scene(arguments.scene))
+    file = shared.measured(arguments, read_scene(arguments.scene, allow_code=arguments.allow_code))
     laws = file.laws.choose(normal=arguments.normal, integrator=arguments.integrator)
     own = laws.resolved()
     simulations = {str(own.tangential): own.simulation()}

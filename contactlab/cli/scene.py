@@ -24,9 +24,31 @@ class Inputs(NamedTuple):
     simulation: Simulation
 
 
+def add_allow_code(parser: argparse.ArgumentParser) -> None:
+    """Add ``--allow-code``, which every command that reads a scene has."""
+    words = "run the Python files that the scene names as laws: they may do anything"
+    parser.add_argument("--allow-code", action="store_true", help=words)
+
+
+def add_file(
+    parser: argparse.ArgumentParser, words: str = "a scene or a sweep", *, needed: bool = False
+) -> None:
+    """Add the scene file with ``words`` as its help, and ``--allow-code``."""
+    many = None if needed else "?"
+    parser.add_argument("scene", nargs=many, metavar="SCENE.toml", help=words)
+    add_allow_code(parser)
+
+
+def read(arguments: argparse.Namespace) -> SceneFile | None:
+    """Return the scene file of the arguments; None if they name none."""
+    if not arguments.scene:
+        return None
+    return read_scene(arguments.scene, allow_code=arguments.allow_code)
+
+
 def add_scene(parser: argparse.ArgumentParser) -> None:
     """Add the scene file, ``--psi1``, ``--chi`` and the laws."""
-    parser.add_argument("scene", nargs="?", metavar="SCENE.toml", help="a scene or a sweep")
+    add_file(parser)
     parser.add_argument(
         "--psi1", type=shared.finite, help="non-dimensional angle of incidence psi1, without a file"
     )
@@ -76,7 +98,7 @@ def check_alone(arguments: argparse.Namespace) -> None:
 
 def inputs(arguments: argparse.Namespace) -> Inputs:
     """Return the scene and the simulation of the arguments."""
-    file = read_scene(arguments.scene) if arguments.scene else None
+    file = read(arguments)
     scene = _scene(arguments, file)
     return Inputs(file, scene, composed(arguments, file.laws if file else LawChoice()))
 

@@ -22,7 +22,14 @@ import numpy as np
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.run import draw, report
-from contactlab.cli.scene import MOST_IMPACTS, add_ranges, check_alone, composed
+from contactlab.cli.scene import (
+    MOST_IMPACTS,
+    add_file,
+    add_ranges,
+    check_alone,
+    composed,
+    read,
+)
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.columns import COLUMNS, csv_heading
@@ -30,7 +37,7 @@ from contactlab.outcome.export import WRITERS
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import evenly, sweep_section
 from contactlab.outcome.text_table import table
-from contactlab.scene_file import LawChoice, read_scene
+from contactlab.scene_file import LawChoice
 from contactlab.study.interrupts import was_interrupted
 
 if TYPE_CHECKING:
@@ -44,7 +51,7 @@ MOST_ROWS = 25
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the scenes, the laws and the outputs."""
-    parser.add_argument("scene", nargs="?", metavar="SCENE.toml", help="a sweep, instead of ranges")
+    add_file(parser, "a sweep, instead of ranges")
     add_ranges(parser)
     shared.add_laws(parser)
     form = parser.add_mutually_exclusive_group()
@@ -60,7 +67,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the sweep and report; the status is 1 if an impact failed."""
-    file = read_scene(arguments.scene) if arguments.scene else None
+    file = read(arguments)
     check_alone(arguments)
     scene = file.scene if file else _ranges(arguments.psi1, arguments.chi)
     if not scene.shape:

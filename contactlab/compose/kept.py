@@ -10,15 +10,19 @@ import pickle
 import zipfile
 from collections.abc import Mapping
 from enum import Enum
+from importlib import metadata
 from pathlib import Path
 from typing import Any
 
 import attrs
 import numpy as np
 
+from contactlab.compose import sources
 from contactlab.compose.composition import Laws
+from contactlab.compose.names import PROJECT
 from contactlab.compose.pieces import Chunk, Piece
 from contactlab.compose.registry import REGISTRY
+from contactlab.contracts.law import Law
 from contactlab.contracts.status import Status
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.files import written
@@ -26,6 +30,8 @@ from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import PlanColumns
 
 ABOUT, PIECES = "sweep.json", "impacts-*.npz"
+#: Distributions that every number comes from.
+NUMBERS_FROM = (PROJECT, "numpy", "scipy")
 #: Statuses of impacts that were not computed: a resumed sweep computes them.
 TRIED_AGAIN = (Status.INTERRUPTED, Status.WORKER_DIED)
 
@@ -41,12 +47,21 @@ class Kept:
             raise refuse("keep", str(folder), what, "name a folder")
         self.folder, self.impacts = Path(folder), scene.shape[0]
         by_kind = laws.by_kind()
+        modules = _modules(by_kind)
+        if nameless := sources.without_file(modules):
+            rule = f"cannot tell the code of {nameless[0]} from an earlier one: it is in no file"
+            raise refuse("keep", str(folder), rule, "write the classes of the laws into a file")
+        code = sources.code_of(modules)
+        if own := sources.own_code():
+            code[PROJECT] = own
         about = {
+            **{f"code of {name}": checksum for name, checksum in code.items()},
             **{kind: f"{REGISTRY.describe(law)}: {law!r}" for kind, law in by_kind.items()},
             "impacts": self.impacts,
             "scene": fingerprint(scene),
             "options": fingerprint(by_kind),
             "block": block,
+            **{name: metadata.version(name) for name in NUMBERS_FROM},
         }
         #: Written into every piece, so that a piece of another sweep is refused.
         self.sweep = fingerprint(about)
@@ -65,14 +80,16 @@ class Kept:
                 stream.write(json.dumps(about, indent=2) + "\n")
             return
         try:
-            before = json.loads(path.read_text(encoding="utf-8"))
-            changed = next((name for name in about if before[name] != about[name]), None)
-        except (ValueError, KeyError, TypeError) as error:
+            before = dict(json.loads(path.read_text(encoding="utf-8")))
+        except (ValueError, TypeError) as error:
             rule = f"{ABOUT} in it cannot be read: {error}"
             raise refuse("keep", str(self.folder), rule, remedy) from error
-        if changed is not None:
-            rule = f"holds another sweep: {changed} was {before[changed]}, is {about[changed]}"
-            raise refuse("keep", str(self.folder), rule, remedy)
+        # What both have comes first: another law has other code.
+        for name in (*(name for name in about if name in before), *about, *before):
+            was, now = before.get(name, "none"), about.get(name, "none")
+            if was != now:
+                rule = f"holds another sweep: {name} was {was}, is {now}"
+                raise refuse("keep", str(self.folder), rule, remedy)
 
     def keep(self, piece: Piece) -> None:
         """Write a piece, unless it is there or has impacts that were not computed."""
@@ -147,6 +164,21 @@ def fingerprint(tree: Any) -> str:
     digest = hashlib.sha256()
     _feed(tree, digest.update)
     return digest.hexdigest()[:16]
+
+
+def _modules(tree: Any) -> set[str]:
+    """Return the names of the modules with the classes in a tree of laws."""
+    if isinstance(tree, Mapping | list | tuple):
+        values = tree.values() if isinstance(tree, Mapping) else tree
+        return set[str]().union(*map(_modules, values))
+    names = {each.__module__ for each in type(tree).__mro__}
+    if isinstance(tree, type):
+        names.add(tree.__module__)
+    if attrs.has(type(tree)):
+        names |= _modules([getattr(tree, field.name) for field in attrs.fields(type(tree))])
+    elif isinstance(tree, Law):
+        names |= _modules(getattr(tree, "__dict__", {}))
+    return names
 
 
 def _feed(tree: Any, update: Any) -> None:

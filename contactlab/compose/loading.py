@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import contextlib
 import copyreg
+import os
 import sys
 import traceback
 from collections.abc import Iterator
-from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeGuard
-from zlib import crc32
 
 import numpy as np
 import pluggy
 
-from contactlab.compose.names import FILE, PROJECT, PluginInfo
+from contactlab.compose import sources
+from contactlab.compose.names import FILE, PROJECT, PluginInfo, Untrusted
 from contactlab.contracts.law import API_VERSION, Law
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
@@ -92,21 +92,28 @@ def law_at(place: str) -> type[Law]:
     ------
     ValueError
         If there is no such file, or no such law in the file; the message names the laws there.
+        If a scene names the place without the user's word.
     PluginError
         If the file or module raises an exception, or the law breaks the contract.
     """
     from importlib import import_module
 
     where, _, title = place.rpartition(":") if not place.endswith(".py") else (place, "", "")
+    if "\0" in place:
+        raise refuse("name", place, "must not hold a null character")
+    if isinstance(place, Untrusted):
+        code = os.path.realpath(where) if where.endswith(".py") else where
+        remedy = "if you trust it, add --allow-code, or in Python read_scene(path, allow_code=True)"
+        raise refuse("name", place, f"the scene names code, which would run: {code!r}", remedy)
     if where.endswith(".py"):
-        path = Path(where).expanduser()
+        path = Path(os.path.expanduser(where))
         try:
-            stat = path.stat()
+            path.stat()
         except OSError as error:
             remedy = f"the path begins in {Path.cwd()}" if not path.is_absolute() else ""
             raise refuse("name", place, f"{where}: {error.strerror}", remedy) from None
         with _guarded(repr(place), "could not be loaded"):
-            module = _module(str(path.resolve()), (stat.st_mtime_ns, stat.st_size))
+            module = _module(str(path.resolve()))
     else:
         with _guarded(repr(place), "could not be imported (a file is named by its path, x.py)"):
             module = import_module(where)
@@ -119,21 +126,27 @@ def law_at(place: str) -> type[Law]:
     return _checked(law, law.kind, repr(place))
 
 
-@lru_cache(maxsize=64)
-def _module(path: str, _: tuple[int, int]) -> ModuleType:
-    """Return a file as a module; a file that has changed is loaded again."""
-    module = ModuleType(path.removesuffix(".py").replace(".", "_"))
-    source = Path(path).read_bytes()
+def _module(path: str) -> ModuleType:
+    """Return a file as a module, loaded again if it or a file beside it that it needs changed."""
+    name, folder = path.removesuffix(".py").replace(".", "_"), os.path.dirname(path)
+    sources.forget_changed(folder)
+    if name in sources.SEEN and name in sys.modules:
+        return sys.modules[name]
+    module = ModuleType(name)
     module.__file__ = path
-    sys.modules[module.__name__] = module
-    sys.path.append(str(Path(path).parent))  # for other files beside this one
+    sys.modules[name] = module
+    sys.path.append(folder)  # for other files beside this one
     try:
-        exec(compile(source, path, "exec", dont_inherit=True), vars(module))
+        exec(compile(Path(path).read_bytes(), path, "exec", dont_inherit=True), vars(module))
     finally:
         sys.path.pop()
+    version = sources.checksum(repr(sources.code_of([name])).encode())  # of all files in one
+    if other := sources.mistaken(name):
+        del sources.SEEN[name]
+        raise ImportError(f"it imports {other}, not the file beside it; rename one of the two")
     for title, law in _laws(module).items():
-        name = f"{law.kind}.{Path(path).name}:{title}"
-        IN_FILES[law] = PluginInfo(name, FILE, f"{crc32(source):08x}", path, False)
+        own = f"{law.kind}.{Path(path).name}:{title}"
+        IN_FILES[law] = PluginInfo(own, FILE, version, path, False)
         copyreg.pickle(law, _reduced)
     return module
 

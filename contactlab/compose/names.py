@@ -22,14 +22,23 @@ PLACE = re.compile(r"\.py(:|$)|:[A-Z]\w*$")
 FILE = "file"
 
 
+class Untrusted(str):
+    """Place of a law that a scene names without the user's word: ``law_at`` refuses it."""
+
+    __slots__ = ()
+
+
 def is_place(name: str) -> bool:
     """Return True if a name is the place of a law: ``my_law.py:Stribeck``."""
     return PLACE.search(name) is not None
 
 
-def seen_from(folder: Path, name: str) -> str:
+def seen_from(folder: Path, name: str, *, trusted: bool) -> str:
     """Return a name in a file of ``folder``: the path of a law in a file begins there."""
-    return str(folder / name) if re.search(r"\.py(:|$)", name) else name
+    if re.search(r"\.py(:|$)", name):
+        name = str(folder / os.path.expanduser(name))
+    # The mark stands on the text itself, so that no door that takes names can forget it.
+    return Untrusted(name) if is_place(name) and not trusted else name
 
 
 def parted(name: str) -> tuple[str, str]:
@@ -130,7 +139,8 @@ class PluginInfo:
     @property
     def malformed(self) -> bool:
         """True if the name is not a kind, a dot and a name; such a law cannot be made."""
-        return self.kind not in KINDS or not self.name.partition(".")[2]
+        # the name of a place would mean a file or a module of that name
+        return self.kind not in KINDS or not self.name.partition(".")[2] or is_place(self.name)
 
     @property
     def usable(self) -> bool:

@@ -185,7 +185,9 @@ class Simulation:
             chunk that the executor loses has the status ``WORKER_DIED``.
         keep : str or Path, optional
             A folder where each chunk is written as soon as it is finished. The same sweep with the
-            same folder resumes where it stopped; another scene or law is refused.
+            same folder resumes where it stopped; another scene or law is refused, and so is
+            other code: contactlab, numpy and scipy by version, and every Python file of yours
+            that a law imports by its text. Files of data that a law reads are not compared.
 
         Returns
         -------
@@ -198,7 +200,7 @@ class Simulation:
         ValueError
             If there are no scenes, an entry is not a Scene, or scenes with bodies stand beside
             scenes of psi1 and chi; if a law cannot be sent to ``executor``; if ``keep`` holds
-            another sweep.
+            another sweep, or a law's class is in no file, as in a notebook.
         OSError
             If a chunk cannot be written into ``keep``. Those before stay there, and the same sweep
             resumes from them.

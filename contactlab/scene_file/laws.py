@@ -10,7 +10,15 @@ from typing import Any
 import attrs
 
 from contactlab.compose import composition
-from contactlab.compose.names import KINDS, full_name, kind_of, parted, seen_from, short_name
+from contactlab.compose.names import (
+    KINDS,
+    full_name,
+    is_place,
+    kind_of,
+    parted,
+    seen_from,
+    short_name,
+)
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
@@ -58,11 +66,9 @@ class LawChoice:
         options = {key: dict(value) for key, value in self.options.items()}
         for path, value in settings.items():
             owner, _, option = path.rpartition(".")
-            if kind_of(owner) not in KINDS or not option:
-                kind = kind_of(owner)
-                hint = nearest_of(kind, KINDS) if owner else nearest(path, self._offered())
-                told = f"{path}: is not an option of a law; {OPTION_REMEDY}; {hint}"
-                raise ValueError(told.rstrip("; "))
+            if complaint := _complaint(path):
+                hint = "" if owner else nearest(path, self._offered())
+                raise ValueError(f"{complaint}; {hint}".rstrip("; "))
             options.setdefault(owner, {})[option] = value
         return attrs.evolve(self, options=options)
 
@@ -73,7 +79,8 @@ class LawChoice:
         ------
         ValueError
             If a law is not installed, the laws do not fit, or an option is unknown or out of
-            range; options of laws that are not chosen are checked too.
+            range; options of laws that are not chosen are checked too. If a scene that was read
+            without ``allow_code`` names a law in a file or in a module.
         """
         choice = self.resolved()
         for name, options in self.options.items():
@@ -142,17 +149,33 @@ def same_law(one: str, other: str) -> bool:
     return REGISTRY.info(one) == REGISTRY.info(other)
 
 
-def read_laws(content: object, folder: Path) -> LawChoice:
-    """Return the laws of the ``[simulation]`` table of a file in ``folder``."""
+def _complaint(path: str) -> str | None:
+    """Return why a dotted path is no option of a law, or None; nothing is imported."""
+    owner, _, option = path.rpartition(".")
+    kind = kind_of(owner)
+    # A law in a file has no full name: its options are those of its kind.
+    if kind in KINDS and option and not is_place(owner):
+        return None
+    told = f"{path}: is not an option of a law; {OPTION_REMEDY}"
+    return f"{told}; {nearest_of(kind, KINDS)}" if owner else told
+
+
+def read_laws(content: object, folder: Path, *, allow_code: bool) -> LawChoice:
+    """Return the laws of the ``[simulation]`` table of a file in ``folder``; none is imported."""
     table = Table(content, "simulation", known=(*KINDS, "options"))
-    names = {kind: seen_from(folder, table.text(kind)) for kind in KINDS if table.has(kind)}
+    names = {
+        kind: seen_from(folder, table.text(kind), trusted=allow_code)
+        for kind in KINDS
+        if table.has(kind)
+    }
     choice = LawChoice().choose(**names)
     if not table.has("options"):
         return choice
     raw = table.content["options"]
     if not isinstance(raw, Mapping):
         raise ValueError(f"simulation.options: must be a table; {OPTION_REMEDY}")
-    try:
-        return choice.set(flattened(raw))
-    except ValueError as error:
-        raise ValueError(f"simulation.options.{error}") from error
+    options = flattened(raw)
+    for path in options:
+        if complaint := _complaint(path):
+            raise ValueError(f"simulation.options.{complaint}")
+    return choice.set(options)

@@ -97,8 +97,9 @@ def read_scene(
     *,
     entries: Mapping[str, Any] | None = None,
     defaults: Mapping[str, Any] | None = None,
+    allow_code: bool = False,
 ) -> SceneFile:
-    """Return scene, sweep, laws and measured values of a TOML file.
+    """Return scene, sweep, laws and measured values of a TOML file; nothing is imported.
 
     Parameters
     ----------
@@ -107,6 +108,10 @@ def read_scene(
         Values that replace the file's own, and its sweep: ``{"angle_deg": [5, 10]}``.
     defaults : mapping of str to float, optional
         Values of entries that the file leaves out.
+    allow_code : bool
+        Let ``laws`` run a law in a Python file or in a module that the scene names,
+        ``my_law.py:Stribeck``. Without it such a law is refused when it is made, and may be
+        replaced before: ``file.laws.choose(tangential="springs")``.
 
     Raises
     ------
@@ -137,7 +142,7 @@ def read_scene(
             scene=scene.over(sweep.axes) if sweep.axes else scene.varying(sweep.varied),
             encounter=encounter,
             varied=sweep.varied,
-            laws=read_laws(document.get("simulation", {}), file.parent),
+            laws=read_laws(document.get("simulation", {}), file.parent, allow_code=allow_code),
             measured=read_measured(document.get("measured", [])),
             tables=tables,
         )

@@ -74,7 +74,7 @@ def candidates(laws: LawChoice) -> Candidates:
     The first is the preferred law: the exact solution under elastic Hertz contact. A simulation
     has the integrator chosen if that runs the law, else the preferred one.
     """
-    normal = laws.resolved().made("normal")
+    normal = attrs.evolve(laws, normal=laws.normal or composition.DEFAULT_NORMAL).made("normal")
     first = composition.preferred("tangential", normal)
     names = [short_name(name) for name in REGISTRY.names("tangential")]
     simulations: dict[str, Simulation] = {}

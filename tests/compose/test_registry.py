@@ -344,6 +344,15 @@ def test_a_malformed_name_stops_nothing(registry, install, law_source, name):
             registry.create(name)
 
 
+@pytest.mark.parametrize("name", ["tangential.mine.py", "tangential.mine:Mine"])
+def test_a_name_like_a_place_is_malformed(registry, install, law_source, name):
+    """It would mean the file ``mine.py`` of the folder that one happens to be in."""
+    install("odd", "odd_law", law_source, name)
+    (found,) = (info for info in registry.installed() if info.distribution == "odd")
+    assert found.malformed
+    assert name not in registry.names()
+
+
 def test_wrong_interface_version_wrong_kind_and_abstract_laws(registry, install, law_source):
     install("old", "old_law", law_source.replace("int] = 2", "int] = 99"), "tangential.old")
     install("odd", "odd_law", law_source, "normal.odd")
