@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose import composition, eccentric
+from contactlab.compose.collision_plan import with_normal_spin
 from contactlab.compose.rebound import damped
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.body_contact import arms, frame, turned
@@ -38,7 +39,7 @@ class BodyCollision(TwoBodies):
     velocity, target_velocity : array
         Velocities of the centres of mass, in m/s.
     spin, target_spin : array
-        In rad/s.
+        In rad/s. Friction of spin about the normal is left out; the plan tells what it would do.
     impulse : array
         Impulse on the first body, in N s; the target receives the opposite impulse.
     collided : bool or array of bool
@@ -140,7 +141,7 @@ def _plan(encounter: Encounter, result: EccentricResult | ImpactResult, restitut
     if doubts := contact_vectors(encounter):
         clauses = (Clause(text, everywhere) for text in doubts)
         plan = plan.changed(cautions=(*plan.cautions, *clauses))
-    return plan
+    return with_normal_spin(plan, encounter)
 
 
 def _impulse(encounter: Encounter, result: EccentricResult | ImpactResult) -> Array:
