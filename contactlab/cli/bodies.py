@@ -146,6 +146,7 @@ def compare(
         shared.print_json({"title": file.title, "varied": json_value(file.varied), "laws": told})
     else:
         print("\n\n".join(filter(None, [file.title, table(_headings(file.scene), rows)])))
+    shared.tell_normal_spin(file.encounter)
     for sentence in failures:
         print(f"contactlab compare: failed: {sentence}", file=sys.stderr)
     return shared.FAILED if failures or not found else shared.OK

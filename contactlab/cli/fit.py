@@ -73,6 +73,7 @@ def execute(arguments: argparse.Namespace) -> int:
     impacts = read_measurements(data, columns=dict(arguments.column))
     defaults = {"friction_coefficient": SOME_FRICTION}
     file = read_scene(path, entries=impacts.given, defaults=defaults)
+    shared.tell_normal_spin(file.encounter)
     simulations = _simulations(arguments, file)
     selection: dict[str, Any] = {"parameters": arguments.fit, "quantities": arguments.quantity}
     first, *others = simulations

@@ -18,6 +18,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import attrs
+
 from contactlab.cli import arguments as shared
 from contactlab.cli import bodies
 from contactlab.cli.describe import describe
@@ -78,6 +80,12 @@ def execute(arguments: argparse.Namespace) -> int:
                 estimate_error=arguments.estimate,
             )
     varied: Mapping[str, Any] = file.varied if file else {}
+    encounter = file.encounter if file else None
+    of_bodies = encounter is not None and not encounter.of_spheres
+    kind: Any = BodyCollision if of_bodies else Collision
+    collision = None if encounter is None else kind.of(encounter, result)
+    if collision is not None:  # it knows more than the scene: vectors, and spin about the normal
+        result = attrs.evolve(result, plan=collision.plan)
     saved = shared.save(
         (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
         (arguments.history, lambda path: export.write_history_csv(result, path)),
@@ -86,10 +94,6 @@ def execute(arguments: argparse.Namespace) -> int:
         progress_wanted=arguments.progress,
         interrupted=was_interrupted(result),
     )
-    encounter = file.encounter if file else None
-    of_bodies = encounter is not None and not encounter.of_spheres
-    kind: Any = BodyCollision if of_bodies else Collision
-    collision = None if encounter is None else kind.of(encounter, result)
     if not arguments.json:
         title = file.title if file else ""
         words = bodies.describe if eccentric else describe

@@ -18,12 +18,14 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import attrs
 import numpy as np
 
 from contactlab.cli import arguments as shared
 from contactlab.cli import bodies
 from contactlab.cli.run import draw, report
 from contactlab.cli.scene import MOST_IMPACTS, add_ranges, check_alone, composed
+from contactlab.compose.collision_plan import with_normal_spin
 from contactlab.impact.eccentric import EccentricScene
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
@@ -82,6 +84,10 @@ def execute(arguments: argparse.Namespace) -> int:
     if before:
         print(f"contactlab sweep: {before} impacts were done before", file=sys.stderr)
     varied = file.varied if file else {}
+    encounter = file.encounter if file else None
+    if encounter is not None:
+        result = attrs.evolve(result, plan=with_normal_spin(result.plan, encounter))
+        shared.tell_normal_spin(encounter)
     saved = shared.save(
         (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
         (arguments.figure, lambda path: draw(path, result, varied, **shared.look(arguments))),

@@ -9,10 +9,12 @@ from importlib import metadata, resources
 from string import Template
 from typing import Any
 
+import attrs
 import numpy as np
 
 import contactlab
 from contactlab.compose.citations import references
+from contactlab.compose.collision_plan import with_normal_spin
 from contactlab.compose.simulation import Simulation
 from contactlab.figures.comparison import differences, forces_over_contact, laws_over_sweep
 from contactlab.figures.files import as_svg
@@ -42,6 +44,9 @@ def report_page(
     first = next(iter(simulations.values()))
     if not result.scene.shape:
         result = first.run(result.scene, history=True, estimate_error=True)
+        if file.encounter is not None:
+            plan = with_normal_spin(result.plan, file.encounter)
+            result = attrs.evolve(result, plan=plan)
     title = file.title or file.path.name
     parts = [
         html.paragraph(" ".join(file.notes.split())) if file.notes else "",

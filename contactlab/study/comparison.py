@@ -9,6 +9,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.compose.collision_plan import with_normal_spin
 from contactlab.compose.error_estimate import estimated
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.status import Status
@@ -228,6 +229,7 @@ def compare(
                 if job is None:
                     run = _timed(name, simulation, single, history=history and not single.shape)
                     run = _estimated(run, simulation) if estimate_error else run
+                    run = _of_encounter(run, file)
                 else:
                     assert file is not None
                     answers.append(_run(simulation, file.scene_at(**{job.against: job.x})))
@@ -288,6 +290,14 @@ def _shifted(result: ImpactResult, change: Array) -> ImpactResult:
 def _estimated(run: LawRun, simulation: Simulation) -> LawRun:
     result = attrs.evolve(run.result, psi2_error_estimate=estimated(simulation.laws, run.result))
     return attrs.evolve(run, result=result)
+
+
+def _of_encounter(run: LawRun, file: SceneFile | None) -> LawRun:
+    """Return a run whose plan knows the spin about the normal of a file with vectors."""
+    if file is None or file.encounter is None:
+        return run
+    plan = with_normal_spin(run.result.plan, file.encounter)
+    return attrs.evolve(run, result=attrs.evolve(run.result, plan=plan))
 
 
 def _failure(name: str, result: ImpactResult) -> str:
