@@ -54,7 +54,8 @@ class Collision(TwoBodies):
     velocity, target_velocity : ndarray
         Velocities of the centres, in m/s. A half-space keeps its velocity.
     spin, target_spin : ndarray
-        In rad/s. Spin about the normal does not change.
+        In rad/s. Friction of spin about the normal is left out: that spin does not change, and the
+        plan tells how far it would, and how far it would move slip and the other spin.
     normal_velocity : float or array
         Rate of approach after the impact, in m/s; negative: the bodies separate.
     slip_velocity_change : float or array
@@ -258,6 +259,9 @@ def collide(
 
     Notes
     -----
+    The laws leave out the friction of spin about the normal, which moves psi2 by 0.3 at psi1 = 1
+    where the rim of the contact turns half as fast as it slips; ``plan`` tells the size.
+
     An empty batch gives an empty collision. Arrays are float64. Threads may call this function at
     the same time: it keeps no state but tables that never change.
 
