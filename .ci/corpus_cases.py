@@ -159,7 +159,7 @@ def doors():
                                        axis=(0, 0, 1)),
         "body": lambda v: cl.RigidBody(mass=v, principal=(1, 1, v), material=STEEL,
                                        curvature_radius=1.0),
-        "lam": lambda v: cl.EccentricScene.nondimensional(psi1=1.0, chi=1.0, lam=v, eta=0.1),
+        "lam": lambda v: cl.Scene.nondimensional(psi1=1.0, chi=1.0, lam=v, eta=0.1),
         "approach": lambda v: cl.load_path(met["unlike"], v, [0.0, 1.0]), "fit": cl.fit,
         "measured": lambda v: cl.fit({"angle_deg": [5, 10, 60, 70], "tangential_restitution": v},
                                      met["angles"].take(0)),

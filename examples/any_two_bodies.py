@@ -16,10 +16,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from contactlab import (
-    EccentricScene,
     Encounter,
     HalfSpace,
     Material,
+    Scene,
     Simulation,
     collide,
     shapes,
@@ -59,7 +59,7 @@ for name, simulation in (("elastic", None), ("rigid", Simulation(tangential="cou
 
 # %%
 # **Painlevé's rod**: lam < -1, scaled so that the approach begins at 1.
-jam = EccentricScene.nondimensional(psi1=1.647059, chi=0.875, lam=-1.5, eta=-0.308824)
+jam = Scene.nondimensional(psi1=1.647059, chi=0.875, lam=-1.5, eta=-0.308824)
 result = Simulation().run(jam, history=True).check()
 past = result.history
 print(f"Painlevé's rod leaves at {-result.normal_velocity:.3f} times the speed of approach")

@@ -38,6 +38,7 @@ def execute(arguments: argparse.Namespace) -> int:
     file, scene, simulation = inputs(arguments)
     if scene.shape:
         raise ValueError("scene: must be a single impact, not a sweep; leave out [sweep]")
+    shared.tell_normal_spin(None if file is None else file.encounter)
     if scene.inverse_mass is not None:
         return _bodies(arguments, None if file is None else file.encounter, simulation)
     with shared.working(arguments.progress, "frames") as progress:

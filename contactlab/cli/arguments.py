@@ -15,7 +15,9 @@ from typing import Any
 import attrs
 
 from contactlab.cli.progress import progress as progress  # exported to the subcommands
+from contactlab.compose.normal_spin_words import with_normal_spin
 from contactlab.compose.registry import KINDS
+from contactlab.impact.encounter import Encounter
 from contactlab.outcome.files import distinct, unwritable, write_table
 from contactlab.scene_file import SceneFile
 
@@ -207,6 +209,15 @@ def working(wanted: bool | None, what: str) -> Iterator[Callable[[int, int], obj
     """Yield the progress line, or None; what laws print meanwhile goes to stderr."""
     with progress(wanted, what) as counted, contextlib.redirect_stdout(sys.stderr):
         yield counted
+
+
+def tell_normal_spin(encounter: Encounter | None) -> None:
+    """Say on stderr what spin about the normal would change, where no plan is shown."""
+    if encounter is None:
+        return
+    _, _, cautions = with_normal_spin(((), (), ()), encounter)
+    for sentence in cautions:
+        print(f"contactlab: caution: {sentence}", file=sys.stderr)
 
 
 def print_json(content: object) -> None:

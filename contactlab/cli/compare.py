@@ -112,6 +112,8 @@ def execute(arguments: argparse.Namespace) -> int:
         progress_wanted=arguments.progress,
         interrupted=comparison.interrupted,
     )
+    if arguments.json or arguments.csv or arguments.all:  # these show no plan
+        shared.tell_normal_spin(file.encounter)
     if arguments.json:
         content = to_dict(comparison, quantities) | {"title": file.title}
         content["complete"] = not comparison.interrupted

@@ -22,7 +22,6 @@ def describe(
     collision: Collision | None,
 ) -> str:
     """Return the report of one impact or a sweep, with vectors if ``collision`` is given."""
-    plan = result.plan
     cautions = "\n".join(f"caution:  {text}" for text in error_cautions(result))
     if result.scene.shape:
         shown = {name: (entry_unit(name), values) for name, values in varied.items()}
@@ -32,8 +31,7 @@ def describe(
         body = [lines, *(table(*section) for section in sections(result))]
         if collision is not None:
             body.insert(1, in_space(collision))
-            plan = collision.plan
-    planned = str(plan)
+    planned = str(result.plan)
     if result.psi2_error_estimate is not None:
         planned = planned.replace(ADVICE, "")  # it was followed
     ending = "\n".join(f"{name + ':':9} {words}" for name, words in closing(result))

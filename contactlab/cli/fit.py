@@ -76,6 +76,7 @@ def execute(arguments: argparse.Namespace) -> int:
     defaults = {"friction_coefficient": SOME_FRICTION}
     allow = arguments.allow_code
     file = read_scene(path, entries=impacts.given, defaults=defaults, allow_code=allow)
+    shared.tell_normal_spin(file.encounter)
     simulations = _simulations(arguments, file)
     selection: dict[str, Any] = {"parameters": arguments.fit, "quantities": arguments.quantity}
     first, *others = simulations

@@ -18,6 +18,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import attrs
+
 from contactlab.cli import arguments as shared
 from contactlab.cli.describe import describe
 from contactlab.cli.scene import add_scene, inputs
@@ -70,6 +72,10 @@ def execute(arguments: argparse.Namespace) -> int:
                 estimate_error=arguments.estimate,
             )
     varied: Mapping[str, Any] = file.varied if file else {}
+    encounter = file.encounter if file else None
+    collision = None if encounter is None else Collision.of(encounter, result)
+    if collision is not None:  # it knows more than the scene: contact vectors
+        result = attrs.evolve(result, plan=collision.plan)
     saved = shared.save(
         (arguments.out, lambda path: WRITERS[path.suffix.lower()](result, path)),
         (arguments.history, lambda path: export.write_history_csv(result, path)),
@@ -78,8 +84,6 @@ def execute(arguments: argparse.Namespace) -> int:
         progress_wanted=arguments.progress,
         interrupted=was_interrupted(result),
     )
-    encounter = file.encounter if file else None
-    collision = None if encounter is None else Collision.of(encounter, result)
     if not arguments.json:
         title = file.title if file else ""
         print(describe(result, title=title, varied=varied, collision=collision))

@@ -88,6 +88,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if before:
         print(f"contactlab sweep: {before} impacts were done before", file=sys.stderr)
     varied = file.varied if file else {}
+    shared.tell_normal_spin(file.encounter if file else None)
     written: list[Path] = []
 
     def write(path: Path) -> None:
@@ -164,7 +165,7 @@ def _clear(folder: Path) -> None:
     remove(folder)
 
 
-def _finished(result: ImpactResult | EccentricResult) -> int:
+def _finished(result: ImpactResult) -> int:
     """Return the number of impacts that a resumed sweep does not try again."""
     from contactlab.compose.kept import TRIED_AGAIN
 

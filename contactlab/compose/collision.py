@@ -46,7 +46,8 @@ class Collision(Answer):
     velocity, target_velocity : ndarray
         Velocities of the centres of mass, in m/s. A half-space keeps its velocity.
     spin, target_spin : ndarray
-        In rad/s. The friction of a spin about the normal is left out.
+        In rad/s. Friction of spin about the normal is left out: that spin does not change, and the
+        plan tells how far it would, and how far it would move slip and the other spin.
     normal_velocity : float or array
         Rate of approach of the contact points after the impact, in m/s; negative: they part.
     slip_velocity_change : float or array
@@ -136,11 +137,9 @@ class Collision(Answer):
         if passed.all():
             return collision_plan(Plan(PlanColumns.nothing(passed.shape)), None, passed)
         met = self._met
-        if self.known is None:
-            plan = planned(met.scene, self._restitutions)
-        else:
-            plan = self.known.plan
-        return collision_plan(plan, met, passed, self._restitutions)
+        known, e = self.known, self._restitutions
+        plan = planned(met.scene, e) if known is None else known.plan
+        return collision_plan(plan, met, passed, e)
 
     @property
     def _restitutions(self) -> Real:

@@ -1,4 +1,4 @@
-"""Plan entries specific to collisions: bodies that separate, spin about the normal."""
+"""Plan entries specific to collisions: bodies that separate, and a restitution."""
 
 from __future__ import annotations
 
@@ -11,21 +11,17 @@ from contactlab.impact.cautions import contact_vectors
 from contactlab.impact.encounter import Encounter
 from contactlab.numeric.arrays import some
 from contactlab.numeric.checks import Real
-from contactlab.numeric.vectors import components
 from contactlab.outcome.plan import PSI2_ERROR, TANGENTIAL_MOTION, Clause, Plan
 
 PARTED = "collision: the bodies separate, they pass through untouched"
-TURNS = "spin about the normal: friction makes no moment about it, it passes through unchanged"
 STANDS_FOR = (
     "restitution {:g}: of a frictionless impact on the mass 1/W_nn, Tsuji's law; a body's own V2 "
     "follows from it"
 )
-#: Spin about the normal over the whole spin below which it is rounding.
-TURNING = 1e-12
 
 
 def collision_plan(plan: Plan, met: Encounter | None, passed: Any, restitution: Any = 1.0) -> Plan:
-    """Return the plan with clauses on separating bodies and on spin about the normal.
+    """Return the plan with clauses on separating bodies, contacts of bodies and a restitution.
 
     ``plan`` is that of the encounters that ``met``, None if no bodies did; ``passed`` marks the
     encounters of the whole batch whose bodies separate.
@@ -37,10 +33,6 @@ def collision_plan(plan: Plan, met: Encounter | None, passed: Any, restitution: 
         if damped.any():
             computed.append(Clause(STANDS_FOR, damped, (np.broadcast_to(restitution, met.shape),)))
         cautions += [Clause(text, everywhere) for text in contact_vectors(met)]
-    if met is not None:
-        turning = np.array(np.broadcast_to(_turns(met), met.shape))
-        if turning.any():
-            left_out.append(Clause(TURNS, turning))
     if passed.any():
         left_out.append(Clause(PARTED, passed))
     kinds = {"computed": computed, "left_out": left_out, "cautions": cautions}
@@ -74,15 +66,3 @@ def by_rebound(plan: Plan, chi: Any, restitution: Real) -> Plan:
         computed.append(clause)
     error = np.where(unknown, bound, plan.psi2_error)
     return plan.changed(computed=tuple(computed), psi2_error=error if error.ndim else float(error))
-
-
-def _turns(encounter: Encounter) -> Any:
-    """Return whether either body spins about the normal."""
-    turning: Any = False
-    normal = encounter.meeting().normal
-    for spin in (encounter.spin, encounter.target_spin):
-        parts = components(spin)
-        about = sum(one * n for one, n in zip(parts, normal, strict=True))
-        whole = np.sqrt(sum(one * one for one in parts))
-        turning = turning | (np.abs(about) > TURNING * whole)
-    return turning

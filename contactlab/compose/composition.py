@@ -108,7 +108,8 @@ class Laws:
 
 def _no_answer(laws: Laws, planar: bool) -> str | None:
     """Return why laws have no answer where friction changes the approach; None if they have one."""
-    tangential, integrator = laws.tangential, laws.integrator
+    tangential: Any = laws.tangential
+    integrator = laws.integrator
     name, reason = _name(tangential), None
     stepped = isinstance(tangential, SteppedTangentialLaw)
     if not (planar or tangential.vectors):

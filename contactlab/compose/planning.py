@@ -14,6 +14,7 @@ from contactlab.compose import together
 from contactlab.compose.answers import Answer, Mask, separated
 from contactlab.compose.composition import Laws
 from contactlab.compose.normal_motion import normal_motion, normal_or_failed
+from contactlab.compose.normal_spin_words import with_normal_spin
 from contactlab.contracts import faults
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.law import Law
@@ -77,7 +78,7 @@ def columns_of(normal: NormalMotion, laws: Laws, known: Sequence[Answer]) -> Pla
         Reason(each.reason, each.balanced, each.fields is not None) for _, each in known
     )
     # the load impulse of a frictionless impact is M_n v1 (1 + e), at most twice M_n v1
-    restitution = CLOSED_FORM + 2.0 * normal.accuracy
+    restitution: Any = CLOSED_FORM + 2.0 * normal.accuracy
     if any(answer.normal is not None for _, answer in known):
         restitution = math.nan  # the law changed the normal motion, and declares no error of it
     if shape:
@@ -98,6 +99,10 @@ def plan_of(
     """
 
     def words() -> Words:
+        said = of_impacts()
+        return said if scene.encounter is None else with_normal_spin(said, scene.encounter)
+
+    def of_impacts() -> Words:
         parts = scene.parts()
         if len(parts) == 1:
             return _words(laws, parts[0][1], scene, columns, motion, history)

@@ -148,8 +148,9 @@ class Simulation:
         if not estimate_error:
             return result
         psi2, restitution = estimated(laws, result)
-        estimates = {"psi2_error_estimate": psi2, "restitution_error_estimate": restitution}
-        return attrs.evolve(result, **estimates)
+        return attrs.evolve(
+            result, psi2_error_estimate=psi2, restitution_error_estimate=restitution
+        )
 
     def sweep(
         self,
@@ -164,10 +165,10 @@ class Simulation:
 
         The laws choose the size of a block, counted from the first impact: 16384 if nothing is
         marched, as in the exact solution up to chi = 2.5, 20 if impacts are followed one by one,
-        1000 for most other laws and where friction changes the approach. Neither ``chunk`` nor ``executor``
-        changes the blocks, so neither changes a bit of an answer, within one installation, one kind
-        of processor and one number of BLAS threads (with NumPy 2 that number matters only to laws
-        that multiply large matrices).
+        1000 for most other laws and where friction changes the approach. Neither ``chunk`` nor
+        ``executor`` changes the blocks, so neither changes a bit of an answer, within one
+        installation, one kind of processor and one number of BLAS threads (with NumPy 2 that number
+        matters only to laws that multiply large matrices).
 
         Parameters
         ----------

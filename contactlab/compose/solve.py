@@ -145,9 +145,9 @@ def _together(
 
 def _halved_if_failed(normal: NormalMotion, recorder: Recorder | None) -> None:
     """Let a batch whose normal law failed be solved in parts."""
-    if isinstance(normal, FailedMotion) and math.prod(normal.scene.shape) > 1:
-        if recorder is None:
-            raise _Scattered(Status.LAW_RAISED, "")
+    many = recorder is None and math.prod(normal.scene.shape) > 1
+    if many and isinstance(normal, FailedMotion):
+        raise _Scattered(Status.LAW_RAISED, "")
 
 
 def _apart(laws: Laws, scene: Scene, motion: Motion) -> Motion:

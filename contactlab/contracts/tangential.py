@@ -289,10 +289,10 @@ class SteppedTangentialLaw(TangentialLaw):
        computes its largest stable step; 0 for a law whose force does not depend on
        displacement. A law that offers ``partial_slip`` damps the oscillation by microslip. For
        other laws integrators take more steps, as phase errors add up over all periods.
-    7. A law whose ``needs_future`` is False takes nothing of the motion to come: ``advance`` depends
-       on its arguments only. Such a law runs where friction changes the approach. ``begin`` returns
-       its state there; ``normal`` is the approach without friction, from which a law may take
-       scales; the motion that follows may be another, with a larger contact, or with several
+    7. A law whose ``needs_future`` is False takes nothing of the motion to come: ``advance``
+       depends on its arguments only. Such a law runs where friction changes the approach. ``begin``
+       returns its state there; ``normal`` is the approach without friction, from which a law may
+       take scales; the motion that follows may be another, with a larger contact, or with several
        compressions. ``stiffness`` is an upper bound for the contacts of the approach alone.
     8. With the word ``vectors`` such a law takes displacements and slip velocities of shape
        (..., 2) from the state of ``begin(..., vectors=True)``, and returns a force of this shape;

@@ -64,7 +64,7 @@ def path_cautions(scene: Scene, deepest: float, *, plastic: bool) -> tuple[str, 
 
 def rigid_bodies(scene: Scene) -> tuple[str, ...]:
     """Return the cautions of bodies that are no spheres: elliptic contacts, and ringing."""
-    if scene.encounter is None:
+    if scene.encounter is None or scene.encounter.of_spheres:
         return ()
     shortest = _least(hertz_scales(scene).duration)
     bodies = (body for body in named(scene).values() if isinstance(body, RigidBody))
@@ -161,11 +161,11 @@ def tabor_caution(
 
 def named(scene: Scene) -> dict[str, Any]:
     """Return the bodies of a scene by the name of their argument; none of a scene of numbers."""
-    if scene.encounter is not None:
-        return {name: getattr(scene.encounter, name) for name in ("body", "target")}
-    if scene.sphere is None:
+    if scene.sphere is not None:
+        return {"sphere": scene.sphere, "target": scene.target}
+    if scene.encounter is None:
         return {}
-    return {"sphere": scene.sphere, "target": scene.target}
+    return {name: getattr(scene.encounter, name) for name in ("body", "target")}
 
 
 def unit_slips(scene: Scene) -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -11,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.impact.scene import Scene
+from contactlab.impact.table import between_nodes, read_rows
 
 Array = NDArray[np.float64]
 
@@ -33,10 +33,8 @@ class Nodes(NamedTuple):
 @cache
 def nodes() -> Nodes:
     """Return the table; the shift vanishes at psi1 = 0 and at Lambda = 0."""
-    text = FILE.read_text(encoding="utf-8")
-    lines = [line for line in text.splitlines() if not line.startswith("#")]
-    numbers = np.array([float(name.partition("=")[2]) for name in lines[0].split(",")[3:]])
-    rows = np.array([[float(word) for word in line.split(",")] for line in lines[1:]])
+    headings, rows = read_rows(FILE)
+    numbers = np.array([float(name.partition("=")[2]) for name in headings[3:]])
     psi1, chi, poisson = (np.unique(column) for column in rows[:, :3].T)
     size = np.zeros((len(psi1) + 1, len(chi), len(poisson), len(numbers) + 1))
     at = [np.searchsorted(*pair) for pair in zip((psi1, chi, poisson), rows.T, strict=False)]
@@ -72,22 +70,10 @@ def coupling_shift(scene: Scene) -> Any:
     (axes, size), kappa = nodes(), np.asarray(scene.pair.stiffness_ratio)
     psi1, last = np.abs(scene.psi1), axes[0][-1]
     nu = (2.0 - 2.0 * kappa) / (2.0 - kappa)
-    entries = np.broadcast_arrays(psi1, scene.chi, nu, coupling_number(scene))
-    shift: Any = np.zeros(entries[0].shape)
-    lower, shares = zip(*(_place(*pair) for pair in zip(entries, axes, strict=True)), strict=True)
-    for corner in itertools.product((0, 1), repeat=len(axes)):
-        places = tuple(low + up for low, up in zip(lower, corner, strict=True))
-        weights = [share if up else 1.0 - share for share, up in zip(shares, corner, strict=True)]
-        shift = shift + np.prod(weights, axis=0) * size[places]
+    entries = (psi1, scene.chi, nu, coupling_number(scene))
+    shift = between_nodes(entries, axes, size)
     shift = shift * np.minimum(1.0, last / np.maximum(psi1, last)) ** 2
     return np.where(np.asarray(scene.friction_coefficient) == 0.0, 0.0, shift)
-
-
-def _place(values: Any, axis: Array) -> tuple[Any, Any]:
-    """Return the node below each value, clipped, and the share of the way on."""
-    values = np.clip(values, axis[0], axis[-1])
-    low = np.clip(np.searchsorted(axis, values, side="right") - 1, 0, len(axis) - 2)
-    return low, (values - axis[low]) / (axis[low + 1] - axis[low])
 
 
 def coupling(scene: Scene) -> tuple[str, ...]:

@@ -267,7 +267,7 @@ class Encounter:
         numbers: list[Any] = [contact.approach, along, spin]
         if not self.shape:
             numbers = [float(number) for number in numbers]
-        return Scene(*bodies, self.friction_coefficient, *numbers)
+        return Scene(*bodies, self.friction_coefficient, *numbers, encounter=self)
 
     def separate(self) -> ValueError:
         """Return the ValueError for bodies that do not approach each other."""

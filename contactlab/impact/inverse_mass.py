@@ -59,9 +59,9 @@ def ways(inverse: Array, speed: Any, slip: Array) -> Any:
     return np.where(pressed | turns, coupled, CENTRAL)
 
 
-def _way_of_one(W: list[list[float]], speed: float, slip: list[float]) -> int:
+def _way_of_one(inverse: list[list[float]], speed: float, slip: list[float]) -> int:
     """Return the way of one impact: ``ways`` in plain numbers, many times as fast."""
-    x, y = slip
+    W, (x, y) = inverse, slip
     size = math.sqrt(W[0][0] * 0.5 * (W[1][1] + W[2][2]))
     pressed = math.hypot(W[0][1], W[0][2]) > ROUNDING * size
     turned = abs((W[1][1] * x + W[1][2] * y) * y - (W[2][1] * x + W[2][2] * y) * x)

@@ -80,7 +80,7 @@ class Scene:
         True if the friction coefficient is 1 by choice of units, as in ``nondimensional`` without a
         friction coefficient. A law that needs mu itself refuses such a scene.
     encounter : Encounter, optional
-        Encounter of bodies that are no spheres, which cautions and velocities in space look at.
+        The encounter in space, which cautions and velocities in space look at.
     inverse_mass : array, shape (..., 3, 3), optional
         W in 1/kg, of a scene without sphere and target: the acceleration of the relative motion at
         the contact for unit forces along n, t1 and t2.
@@ -163,7 +163,7 @@ class Scene:
         if self.sphere is not None:
             rule = "follows from sphere and target"
             raise refuse("inverse_mass", self.inverse_mass, rule, "leave one of them out")
-        vectors = {"inverse_mass": (3, 3)}
+        vectors: dict[str, tuple[int, ...]] = {"inverse_mass": (3, 3)}
         if not self.planar:
             vectors["tangential_velocity"] = (2,)
         for name, ends in vectors.items():
@@ -456,7 +456,7 @@ class Scene:
         """Return this scene of one impact with its inverse mass, and slip as a vector in space."""
         slip = self.tangential_velocity
         if self.planar and not planar:
-            slip = np.array([slip, 0.0])  # type: ignore[assignment]
+            slip = np.array([slip, 0.0])
         W, pair = self.inverse_mass, self.pair
         if W is None:
             W = np.diag([1.0 / pair.normal_mass, *2 * [1.0 / pair.tangential_mass]])

@@ -1,6 +1,8 @@
 /* How two elastic spheres, or a sphere and a wall, leave each other: velocities and spins in and out.
  *
- * Hertz's contact with Coulomb friction and partial slip, exact to 1e-6 from a table of the rebound.
+ * Hertz's contact with Coulomb friction and partial slip, exact to 1e-6 from a table of the rebound, without spin
+ * about the normal. Its friction is left out, and moves psi2 by 0.3 at psi1 = 1 where the rim of the contact turns
+ * half as fast as it slips: `contactlab guide units-and-signs`.
  * Theory: sections 1, 2 and 10 of `contactlab guide theory`.
  *
  *     const contactlab_body ball = {0.025, 0.065, 0, 1e7, 0.49}, wall = {0, 0, 0, 1e7, 0.49};
@@ -150,7 +152,7 @@ static inline double contactlab_bounce_change(double psi1, double chi)
  * one, other       a sphere; a sphere or a wall
  * friction         coefficient, at least 0
  * normal           from the centre of the first body towards the other; any length
- * velocity, spin   of the first body's centre in m/s, and in rad/s
+ * velocity, spin   of the first body's centre in m/s, and in rad/s; spin about the normal passes through
  * other_velocity   of the other's centre, or of the wall's surface
  * other_spin       a wall has none: zeros
  *

@@ -1,7 +1,9 @@
 /**
  * How two elastic spheres, or a sphere and a wall, leave each other: velocities and spins in and out.
  *
- * Hertz's contact with Coulomb friction and partial slip, exact to 1e-6 from a table of the rebound.
+ * Hertz's contact with Coulomb friction and partial slip, exact to 1e-6 from a table of the rebound, without spin
+ * about the normal. Its friction is left out, and moves psi2 by 0.3 at psi1 = 1 where the rim of the contact turns
+ * half as fast as it slips: `contactlab guide units-and-signs`.
  * Theory: sections 1, 2 and 10 of `contactlab guide theory`.
  *
  *     const ball = {radius: 0.025, mass: 0.065, young: 1e7, poisson: 0.49};
@@ -23,7 +25,7 @@
  * @param {number} friction         coefficient, at least 0
  * @param {number[]} normal         from the centre of the first body towards the other; any length
  * @param {number[]} velocity       of the first body's centre, m/s
- * @param {number[]} spin           of the first body, rad/s
+ * @param {number[]} spin           of the first body, rad/s; spin about the normal passes through
  * @param {number[]} otherVelocity  of the other's centre, or of the wall's surface
  * @param {number[]} otherSpin      a wall has none
  * @returns {{bounced: boolean, velocity: number[], spin: number[], otherVelocity: number[], otherSpin: number[]}}

@@ -69,8 +69,8 @@ class Column(NamedTuple):
         return unit_in(self.unit, scene)
 
 
-#: The columns of every file, in order: name, unit, attribute of the result. A vector or a matrix has
-#: one column for each of its components.
+#: The columns of every file, in order: name, unit, attribute of the result. A vector or a matrix
+#: has one column for each of its components.
 COLUMNS = (
     Column("psi1", "1", "psi1"),
     Column("chi", "1", "scene.chi"),
@@ -161,7 +161,8 @@ def quantity_named(name: str, *, where: str = "quantity") -> Column:
 
 def columns_of(scene: Scene) -> tuple[Column, ...]:
     """Return the columns that a file of a scene has."""
-    of_bodies = scene.inverse_mass is not None or scene.encounter is not None
+    coupled = scene.inverse_mass is not None
+    of_bodies = scene.sphere is None and (coupled or scene.encounter is not None)
     other = "spheres" if of_bodies else "bodies"
     return tuple(column for column in COLUMNS if column.of_scenes != other)
 

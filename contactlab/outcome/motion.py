@@ -125,8 +125,9 @@ _numbers = attrgetter(*CHECKED)
 def sound(motion: Motion, *, together: bool = False) -> Motion:
     """Return ``motion`` with status ``NON_FINITE`` where a success holds a number not finite.
 
-    Laws that answer both motions ``together`` need not know a duration or the maxima. Integrators check the quantities that they use; this check adds overflows in the conversion
-    to SI, and quantities that an integrator does not check.
+    Laws that answer both motions ``together`` need not know a duration or the maxima. Integrators
+    check the quantities that they use; this check adds overflows in the conversion to SI, and
+    quantities that an integrator does not check.
     """
     # The sum is not finite if a number is not; if finite numbers overflow, each is looked at.
     if together:

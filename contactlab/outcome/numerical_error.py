@@ -8,6 +8,7 @@ import numpy as np
 
 from contactlab.contracts.error_model import COARSE, range_of
 from contactlab.numeric.arrays import for_share
+from contactlab.outcome.plan import NORMAL_SPIN, WITHOUT_SPIN
 
 #: Ratio of estimated to declared error above which the declaration is false. Estimates are mostly
 #: within a factor of three of the true error.
@@ -28,6 +29,8 @@ def error_words(result: Any) -> str:
         parts.append(f"{_largest(declared, 'at most')}, declared{_missing(declared)}")
     else:
         parts.append("not declared")
+    if any(clause.code == NORMAL_SPIN for clause in result.plan.left_out):
+        parts.append(WITHOUT_SPIN)
     return "; ".join(parts)
 
 

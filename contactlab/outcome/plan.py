@@ -21,9 +21,12 @@ T = TypeVar("T")
 #: Parts of a batch: masks or slices, each with what belongs to its impacts.
 Parts: TypeAlias = Sequence[tuple[Any, T]]
 
-#: Codes of clauses that programs look for: the march of the tangential motion, and the declared or
-#: undeclared numerical error of psi2.
+#: Codes of clauses that programs look for: the march of the tangential motion, the declared or
+#: undeclared numerical error of psi2, and spin about the normal.
 TANGENTIAL_MOTION, PSI2_ERROR = "tangential_motion", "psi2_error"
+NORMAL_SPIN = "normal_spin"
+#: What is said beside an error of psi2 where there is spin about the normal.
+WITHOUT_SPIN = "without spin about the normal"
 #: Codes of impacts that no whole-impact answer is for: marched, without an end of the normal
 #: motion, and unknown. Other codes are places in the reasons.
 MARCHED, ENDLESS, UNKNOWN = -1, -2, -3

@@ -177,7 +177,9 @@ class ImpactResult(Answer):
     def _in_space(self, name: str) -> Any:
         """Return a vector after the impact of bodies that are no spheres; None without them."""
         encounter = self.scene.encounter
-        return None if encounter is None else pushed(encounter, self.impulse)[name]
+        if encounter is None or self.scene.sphere is not None:
+            return None
+        return pushed(encounter, self.impulse)[name]
 
     @property
     def rebound_spin(self) -> Any:
@@ -208,7 +210,7 @@ class ImpactResult(Answer):
     @property
     def target_rebound_spin(self) -> Any:
         """Spin of the target in rad/s, positive where it adds to the slip, as the sphere's."""
-        if self.scene.encounter is not None:
+        if self.scene.sphere is None:
             return self._in_space("target_spin")
         turn = self.scene.pair.tangential_mass * self.motion.slip_velocity_change
         target = self.scene.target
@@ -229,7 +231,7 @@ class ImpactResult(Answer):
         return -self.motion.normal_velocity / self.scene.normal_speed
 
     @property
-    def tangential_restitution(self) -> Real | None:
+    def tangential_restitution(self) -> Any:
         """e_t = centre's tangential velocity after over before; NaN where zero before."""
         after = self.rebound_tangential_velocity
         return None if after is None else _ratio(after, self.scene.tangential_velocity)

@@ -141,7 +141,7 @@ def _shown(scene: Scene, names: Sequence[str]) -> Iterator[Column]:
     known = {column.name for column in columns_of(scene)}
     for name in names:
         column = QUANTITIES[name]
-        if name.removesuffix("_deg") in known and not (scene.encounter and name in IN_SPACE):
+        if name.removesuffix("_deg") in known and not (scene.sphere is None and name in IN_SPACE):
             yield column
 
 

@@ -288,8 +288,10 @@ def _shifted(result: ImpactResult, change: Array) -> ImpactResult:
 
 def _estimated(run: LawRun, simulation: Simulation) -> LawRun:
     psi2, restitution = estimated(simulation.laws, run.result)
-    estimates = {"psi2_error_estimate": psi2, "restitution_error_estimate": restitution}
-    return attrs.evolve(run, result=attrs.evolve(run.result, **estimates))
+    result = attrs.evolve(
+        run.result, psi2_error_estimate=psi2, restitution_error_estimate=restitution
+    )
+    return attrs.evolve(run, result=result)
 
 
 def _failure(name: str, result: ImpactResult) -> str:

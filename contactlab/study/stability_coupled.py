@@ -66,7 +66,7 @@ def rod(angle: float, friction: float, slip: float, *, kappa: float) -> Scene:
 
 
 def tried_coupled(method: Method) -> bool:
-    """Return whether the method answers impacts with coupling, by partial slip or as rigid bodies."""
+    """Return whether the method answers coupled impacts, by partial slip or as rigid bodies."""
     simulation = method.simulation({"tangential": {}, "integrator": {}})
     law = simulation.tangential
     if law.together:

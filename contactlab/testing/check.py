@@ -51,6 +51,8 @@ class Check:
         or that expect to fail the check.
     nature : str
         Why a law may fail the check by its nature; empty if no model does.
+    word : tuple of str and bool, or None
+        Word of the law's class and its value, if the check applies only to such laws.
     """
 
     name: str
@@ -58,6 +60,18 @@ class Check:
     contracts: tuple[type[Law], ...]
     claim: str | None = None
     nature: str = ""
+    word: tuple[str, bool] | None = None
+
+    def applies_to(self, law: Law) -> bool:
+        """Return whether ``law`` has the contract of the check, and its word.
+
+        Parameters
+        ----------
+        law : Law
+        """
+        if not isinstance(law, self.contracts):
+            return False
+        return self.word is None or getattr(law, self.word[0]) == self.word[1]
 
     @property
     def holds(self) -> str:
@@ -99,12 +113,15 @@ CHECKS: list[Check] = []
 
 
 def check(
-    *contracts: type[Law], claim: str | None = None, nature: str = ""
+    *contracts: type[Law],
+    claim: str | None = None,
+    nature: str = "",
+    word: tuple[str, bool] | None = None,
 ) -> Callable[[Function], Function]:
     """Return a decorator that enters a function in ``CHECKS``, under the function's name."""
 
     def enter(function: Function) -> Function:
-        CHECKS.append(Check(function.__name__, function, contracts, claim, nature))
+        CHECKS.append(Check(function.__name__, function, contracts, claim, nature, word))
         return function
 
     return enter

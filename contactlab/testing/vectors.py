@@ -1,4 +1,4 @@
-"""Checks of laws for eccentric impacts: no need of the future, and vectors (theory §14)."""
+"""Checks of words of stepped laws: no need of the future, and vectors (theory §14)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.contracts import IncrementalTangentialLaw, VectorTangentialLaw
+from contactlab.contracts import SteppedTangentialLaw
 from contactlab.numeric.arrays import locked
 from contactlab.testing import limits
 from contactlab.testing.check import check, hold, within, worst
@@ -24,6 +24,8 @@ from contactlab.testing.load_paths import (
 
 Array = NDArray[np.float64]
 
+#: Words of the laws that the checks apply to, with their values.
+PRESENT, VECTORS = ("needs_future", False), ("vectors", True)
 SEEDS = (41, 42, 43)
 #: Rounding of forces over mu P_max, and of work.
 ROUNDING = 1e-9
@@ -34,7 +36,7 @@ DRAGGED = 40.0
 SHAPES: tuple[tuple[int, ...], ...] = ((), (3,))
 
 
-@check(IncrementalTangentialLaw)
+@check(SteppedTangentialLaw, word=PRESENT)
 def begin_is_start(law: Any) -> None:
     """In a contact that grows no larger than expected `begin` and `start` give the same forces."""
     for shape in SHAPES:
@@ -51,7 +53,7 @@ def begin_is_start(law: Any) -> None:
             )
 
 
-@check(IncrementalTangentialLaw)
+@check(SteppedTangentialLaw, word=PRESENT)
 def deeper_contact(law: Any) -> None:
     """A contact may grow and last beyond the approach without friction, and be made again."""
     bench = Bench.of()
@@ -78,7 +80,7 @@ def deeper_contact(law: Any) -> None:
     )
 
 
-@check(VectorTangentialLaw)
+@check(SteppedTangentialLaw, word=VECTORS)
 def vectors_rotate(law: Any) -> None:
     """A rotation of all vectors in the tangent plane rotates the forces (vector, 2)."""
     for shape in SHAPES:
@@ -96,7 +98,7 @@ def vectors_rotate(law: Any) -> None:
             )
 
 
-@check(VectorTangentialLaw)
+@check(SteppedTangentialLaw, word=VECTORS)
 def vectors_turn(law: Any) -> None:
     """Under a steady drag the force comes to lie along the slip, at Coulomb's limit."""
     bench, level = Bench.of(), 0.8
@@ -116,7 +118,7 @@ def vectors_turn(law: Any) -> None:
         )
 
 
-@check(VectorTangentialLaw)
+@check(SteppedTangentialLaw, word=VECTORS)
 def vector_limit(law: Any) -> None:
     """No force is longer than mu times the friction load, whichever way the slip turns."""
     bench = Bench.of((3,))
@@ -132,7 +134,7 @@ def vector_limit(law: Any) -> None:
         )
 
 
-@check(VectorTangentialLaw)
+@check(SteppedTangentialLaw, word=VECTORS)
 def vectors_on_a_line(law: Any) -> None:
     """Vectors along t1 give the forces and the work of numbers, and no force along t2."""
     for shape in SHAPES:
@@ -155,10 +157,10 @@ def vectors_on_a_line(law: Any) -> None:
             )
 
 
-def drive_vectors(law: VectorTangentialLaw, bench: Bench, path: Path) -> Answers:
+def drive_vectors(law: SteppedTangentialLaw, bench: Bench, path: Path) -> Answers:
     """Return the answers of ``law`` to slips of shape (K, 2); forces have the shape (K, ..., 2)."""
     limits.begin(f"a path of {len(path.slip)} vectors")
-    state = law.begin_vectors(bench.scene, bench.normal)
+    state = law.begin(bench.scene, bench.normal, vectors=True)
     unit, duration = np.asarray(bench.slip)[..., None], locked(bench.time / len(path.slip))
     before, here = bench.contact(0.0), np.zeros(2)
     forces, works = [], []

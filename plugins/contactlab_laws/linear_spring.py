@@ -12,8 +12,8 @@ from contactlab.contracts import (
     Increment,
     NormalContact,
     NormalMotion,
+    SteppedTangentialLaw,
     TangentialResponse,
-    VectorTangentialLaw,
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, Real, quantity
@@ -52,7 +52,7 @@ class State(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class LinearSpring(VectorTangentialLaw):
+class LinearSpring(SteppedTangentialLaw):
     """F = k_t u + c v_x within mu L: spring and dashpot, in series with a slider.
 
     The stiffness is the same from first touch to separation, k_t = ``stiffness_ratio`` times
@@ -73,6 +73,8 @@ class LinearSpring(VectorTangentialLaw):
     """
 
     api_version: ClassVar[int] = 2
+    needs_future: ClassVar[bool] = False
+    vectors: ClassVar[bool] = True
 
     stiffness_ratio: float | None = quantity("1", rule=POSITIVE, default=None)
     damping: float = quantity("1", rule=NON_NEGATIVE, default=0.0)
@@ -114,9 +116,9 @@ class LinearSpring(VectorTangentialLaw):
             zero,
         )
 
-    def begin_vectors(self, scene: Scene, normal: NormalMotion) -> Any:
-        """Return a spring at rest whose displacement is a vector."""
-        return in_plane(self, scene, normal)
+    def begin(self, scene: Scene, normal: NormalMotion, *, vectors: bool = False) -> Any:
+        """Return a spring at rest, whose displacement is a vector if ``vectors``."""
+        return in_plane(self, scene, normal) if vectors else self.start(scene, normal)
 
     def advance(
         self, state: Any, increment: Increment, before: NormalContact, after: NormalContact

@@ -12,8 +12,8 @@ from contactlab.contracts import (
     Increment,
     NormalContact,
     NormalMotion,
+    SteppedTangentialLaw,
     TangentialResponse,
-    VectorTangentialLaw,
     WholeImpact,
     sliding,
 )
@@ -159,7 +159,7 @@ class State(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class MindlinCap(VectorTangentialLaw):
+class MindlinCap(SteppedTangentialLaw):
     """The stiffness of a contact that sticks all over, k = 2 G* b, under Coulomb's cap mu P.
 
     No part of the contact slips before the whole does. The energy that the changing
@@ -190,6 +190,8 @@ class MindlinCap(VectorTangentialLaw):
     """
 
     api_version: ClassVar[int] = 2
+    needs_future: ClassVar[bool] = False
+    vectors: ClassVar[bool] = True
     needs: ClassVar[frozenset[str]] = frozenset({"radius"})
 
     form: str = choice(*FORMS, default="displacement")
@@ -260,9 +262,9 @@ class MindlinCap(VectorTangentialLaw):
         modulus = self._modulus(scene)
         return State(modulus, *masses, scene.friction_coefficient, zero, zero, zero)
 
-    def begin_vectors(self, scene: Scene, normal: NormalMotion) -> Any:
-        """Return a spring at rest whose displacement is a vector."""
-        return in_plane(self, scene, normal)
+    def begin(self, scene: Scene, normal: NormalMotion, *, vectors: bool = False) -> Any:
+        """Return a spring at rest, whose displacement is a vector if ``vectors``."""
+        return in_plane(self, scene, normal) if vectors else self.start(scene, normal)
 
     def advance(
         self, state: Any, increment: Increment, before: NormalContact, after: NormalContact

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 import contactlab
-from contactlab import EccentricScene, Simulation, read_scene
+from contactlab import Scene, Simulation, read_scene
 from contactlab.figures import animation, body_animation
 from tests.longer import longer
 
@@ -96,7 +96,7 @@ def test_a_law_that_has_no_answer_is_refused_with_one_that_has(run, file):
     assert "springs" in ran.err
     damped = run("run", file(PLANE.format(psi1=0.0)), "--normal", "tsuji", "--json")
     expected = Simulation(normal="tsuji", tangential="springs", integrator="symplectic").run(
-        EccentricScene.nondimensional(psi1=0.0, chi=0.764706, lam=0.222692, eta=2.037707)
+        Scene.nondimensional(psi1=0.0, chi=0.764706, lam=0.222692, eta=2.037707)
     )
     assert json.loads(damped.out)["psi2"] == pytest.approx(expected.psi2)
 

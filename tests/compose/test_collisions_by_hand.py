@@ -97,7 +97,7 @@ def test_a_batch_of_which_some_pass_and_some_have_another_restitution():
     assert repr(made) == "Collision(3 of 4 encounters collided; SUCCESS)"
     assert made.status.tolist() == [Status.SUCCESS] * 4
     assert [str(clause) for clause in made.plan.left_out][-2:] == [
-        "spin about the normal: friction makes no moment about it, it passes through unchanged",
+        "spin about the normal: its friction is left out",
         "collision (1 of 4 impacts): the bodies separate, they pass through untouched",
     ]
     assert made.result.normal_restitution == pytest.approx([1.0, 0.5, 1.0])

@@ -16,7 +16,7 @@ from contactlab import Scene, Status, contracts
 from contactlab.cli.guide import PAGES, PARTS, SECTION, TOPICS, sections, summary, text, whole
 from contactlab.compose import normal_motion
 from contactlab.contracts import error_model
-from contactlab.impact import bodies, coupling, hertz
+from contactlab.impact import bodies, coupling, hertz, normal_spin
 from contactlab.outcome import energy, history, motion, plan, result
 from contactlab.study.validation import REFERENCE_PSI2
 from contactlab.testing import Verdict, check_law
@@ -37,7 +37,9 @@ NAMESPACES = (
     contactlab, contracts, bodies, plan, history, motion, energy, normal_motion, result,
 )  # fmt: skip
 #: Modules that the glossary names functions of, by the name that stands there.
-MODULES = {"coupling": coupling, "error_model": error_model, "hertz": hertz}
+MODULES = {
+    "coupling": coupling, "error_model": error_model, "hertz": hertz, "normal_spin": normal_spin,
+}  # fmt: skip
 
 
 def sources():

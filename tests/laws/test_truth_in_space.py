@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import EccentricScene, Simulation, create
+from contactlab import Scene, Simulation, create
 from tests.laws.rings_in_space import extrapolated, impact
 
 NONE = (0.0, 0.0)
@@ -50,7 +50,7 @@ def test_springs_are_off_by_no_more_than_their_caution_says():
     """Slip turns by a half circle: another law for the surface, and not a matter of steps."""
     psi1, chi = (-3.113, 2.56), np.diag([1.2, 2.58])
     _, truth = extrapolated(psi1, chi, NONE, 0.313, rings=32, steps=200)
-    scene = EccentricScene.nondimensional(psi1=psi1, chi=chi, lam=NONE, rho=0.313)
+    scene = Scene.nondimensional(psi1=psi1, chi=chi, lam=NONE, rho=0.313)
     off = np.abs(SPRINGS.run(scene).psi2 - truth).max()
     assert 0.04 < off < 0.1
     assert any("up to 0.1" in str(each) for each in SPRINGS.plan(scene).cautions)

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from contactlab import (
-    EccentricScene,
     Encounter,
     HalfSpace,
     Material,
     RigidBody,
+    Scene,
     Sphere,
     read_scene,
     shapes,
@@ -133,7 +133,7 @@ def test_numbers_in_the_plane_and_in_space(read):
         "[nondimensional]\npsi1 = [0.8, 1.6]\nchi = [[0.6, 0], [0, 0.8]]\nlam = [-0.2, 0]\n"
         "rho = 0.1\n"
     )
-    expected = EccentricScene.nondimensional(
+    expected = Scene.nondimensional(
         psi1=(0.8, 1.6), chi=np.diag((0.6, 0.8)), lam=(-0.2, 0.0), rho=0.1
     )
     same(space.scene, expected)

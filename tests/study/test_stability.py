@@ -26,7 +26,7 @@ from contactlab.study.stability_cases import (
     extreme_scenes,
     normal_scenes,
 )  # fmt: skip
-from contactlab.study.stability_eccentric import rod
+from contactlab.study.stability_coupled import rod
 from contactlab.study.stability_judge import (
     ANSWERED,
     REFUSED,

@@ -9,7 +9,7 @@ from contactlab.scene_file import read_scene
 from contactlab.study import evidence, validation
 from contactlab.study.comparison import Agreement, Comparison
 from contactlab.study.evidence import Evidence, Source, simulations_over
-from contactlab.study.stability_eccentric import rod
+from contactlab.study.stability_coupled import rod
 from contactlab.study.validation import Finding
 from tests.study.made_up import ERRORS, SERIES, SWEEP
 

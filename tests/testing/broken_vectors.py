@@ -7,7 +7,7 @@ from typing import Any, ClassVar, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.contracts import TangentialResponse, VectorTangentialLaw
+from contactlab.contracts import TangentialResponse
 from tests.testing.broken_laws import Sound
 
 
@@ -18,13 +18,16 @@ class Held(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class SoundVector(Sound, VectorTangentialLaw):
+class SoundVector(Sound):
     """A spring and a slider, of numbers or of vectors, which are cut to their limit."""
 
     api_version: ClassVar[int] = 2
+    needs_future: ClassVar[bool] = False
+    vectors: ClassVar[bool] = True
 
-    def begin_vectors(self, scene, normal):
-        return Held(*self.begin(scene, normal)._replace(force=np.zeros((*scene.shape, 2))))
+    def begin(self, scene, normal, *, vectors=False):
+        begun = self.start(scene, normal)
+        return Held(*begun._replace(force=np.zeros((*scene.shape, 2)))) if vectors else begun
 
     def trial(self, state, increment):
         return state.force + np.asarray(state.stiffness)[..., None] * increment.displacement
@@ -85,16 +88,20 @@ class LongWhereItTurns(SoundVector):
 class SofterAsVectors(SoundVector):
     """Other springs for vectors than for numbers."""
 
-    def begin_vectors(self, scene, normal):
-        state = super().begin_vectors(scene, normal)
+    def begin(self, scene, normal, *, vectors=False):
+        state = super().begin(scene, normal, vectors=vectors)
+        if not vectors:
+            return state
         return state._replace(stiffness=0.8 * state.stiffness)
 
 
 class SofterToBeginWith(SoundVector):
     """Another law from begin than from start."""
 
-    def begin(self, scene, normal):
-        state = super().begin(scene, normal)
+    def begin(self, scene, normal, *, vectors=False):
+        state = super().begin(scene, normal, vectors=vectors)
+        if vectors:
+            return state
         return state._replace(stiffness=0.8 * state.stiffness)
 
 
@@ -107,11 +114,9 @@ class Awaited(NamedTuple):
 class Expecting(SoundVector):
     """Begins with something of the motion that it expects."""
 
-    def begin(self, scene, normal):
-        return Awaited(super().begin(scene, normal), normal.maximum_force)
-
-    def begin_vectors(self, scene, normal):
-        return Held(*super().begin(scene, normal)._replace(force=np.zeros((*scene.shape, 2))))
+    def begin(self, scene, normal, *, vectors=False):
+        begun = super().begin(scene, normal, vectors=vectors)
+        return begun if vectors else Awaited(begun, normal.maximum_force)
 
     def seen(self, state, before, after):
         return after

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from contactlab.contracts import (
     Increment,
-    IncrementalTangentialLaw,
     NormalContact,
     NormalMotion,
+    SteppedTangentialLaw,
     TangentialResponse,
 )
 from contactlab.impact.scene import Scene
@@ -40,7 +40,7 @@ class State(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class MindlinDeresiewicz(IncrementalTangentialLaw):
+class MindlinDeresiewicz(SteppedTangentialLaw):
     """Partial slip by increments: dT = 2 G* b theta dD +- (1 - theta) mu dP.
 
     theta, the stick radius over b, follows from the force and from two turning points, which move
@@ -62,6 +62,7 @@ class MindlinDeresiewicz(IncrementalTangentialLaw):
     """
 
     api_version: ClassVar[int] = 2
+    needs_future: ClassVar[bool] = False
     needs: ClassVar[frozenset[str]] = frozenset({"radius"})
     expected_failures: ClassVar[Mapping[str, str]] = {
         "impact_books": "the traction of a contact that stuck as it grew is proportional to p",

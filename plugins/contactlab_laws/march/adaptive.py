@@ -118,6 +118,7 @@ class Adaptive(Integrator):
 
         The tolerance is that of the velocities over the greatest of them at first touch.
         """
+        assert isinstance(tangential, SteppedTangentialLaw)
         needed = together.needed_steps(scene, normal, tangential)
         count = np.where(needed <= MOST_STEPS, np.maximum(needed, FIRST), np.inf)
         refused = Status.TOO_FEW_STEPS, refusals(FIRST, needed)
@@ -139,7 +140,7 @@ class Adaptive(Integrator):
         self,
         scene: Scene,
         normal: NormalMotion,
-        law: TangentialLaw,
+        law: SteppedTangentialLaw,
         count: Any,
         before: TangentialMotion,
     ) -> tuple[TangentialMotion, Any]:

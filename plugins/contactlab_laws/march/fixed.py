@@ -190,6 +190,7 @@ class FixedSteps(Integrator):
         observer: Observer | None = None,
     ) -> TangentialMotion:
         """Return the motion, ``steps`` counted on the approach without friction."""
+        assert isinstance(tangential, SteppedTangentialLaw)
         needed = together.needed_steps(scene, normal, tangential)
         most = MOST_STEPS if self.refine else self.steps
         taken = np.where(needed <= most, np.maximum(self.steps, needed), np.inf)

@@ -238,11 +238,12 @@ class _March:
         lost = np.where(self.status != Status.SUCCESS, math.nan, 0.0)
         change = self._joined([each + lost for each in self.change[1:]])
         number: Any = (lambda v: v + lost) if self.shape else (lambda v: float(v + lost))
-        ends = (self.duration, self.before[0] + self.change[0], *self.greatest, self.loss)
+        rate = self.before[0] + self.change[0]
+        ends = (self.duration, rate, *self.greatest, self.loss, self.compressions)
         return TangentialMotion(
             slip_velocity_change=change if self.axes == 2 else number(self.change[1]),
             friction_work=number(self.work),
-            normal=Ends(*map(number, ends), number(self.compressions)),
+            normal=Ends._make(map(number, ends)),
             status=self.status,
             detail=self.detail,
             counters={"steps": self.steps},

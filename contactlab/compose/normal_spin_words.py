@@ -1,0 +1,71 @@
+"""What a plan says of spin about the normal, whose friction is left out (theory §17)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from contactlab.impact.encounter import Encounter
+from contactlab.impact.normal_spin import NormalSpin, normal_spin
+from contactlab.numeric.arrays import some
+from contactlab.outcome.plan import NORMAL_SPIN, PSI2_ERROR, WITHOUT_SPIN, Clause, Clauses, Words
+
+TURNS = "spin about the normal: its friction is left out"
+#: Smallest shift of psi2, and smallest loss of spin, with a caution.
+LEAST_SHIFT, LEAST_LOSS = 1e-3, 1e-2
+#: What the sizes of a caution are measured for.
+MEASURED = (
+    "model, not numerical error; by a table of elastic impacts, psi1 to 7, w to 5, chi from 1 to "
+    "1.75, beyond a rough guide"
+)
+
+
+def with_normal_spin(words: Words, encounter: Encounter) -> Words:
+    """Return the words of a plan with what spin about the normal would change.
+
+    ``encounter`` has the bodies of the plan's impacts, which approach each other.
+    """
+    spin = normal_spin(encounter)
+    if spin is None:
+        return words
+    computed, left_out, cautions = words
+    acts = np.array(spin.acts)
+    computed = tuple(part for clause in computed for part in _without_spin(clause, acts))
+    left_out = (*left_out, Clause(TURNS, acts, code=NORMAL_SPIN))
+    return computed, left_out, (*cautions, *_sizes(spin, batch=bool(encounter.shape)))
+
+
+def _without_spin(clause: Clause, acts: Any) -> Clauses:
+    """Return a clause; a bound of the error of psi2 is said apart where spin ``acts``."""
+    if clause.code != PSI2_ERROR or clause.values is None or not some(clause.where & acts):
+        return (clause,)
+    said = clause._replace(text=f"{clause.text}, {WITHOUT_SPIN}", where=clause.where & acts)
+    rest = clause._replace(where=clause.where & ~acts)
+    return (said, rest) if some(rest.where) else (said,)
+
+
+def _sizes(spin: NormalSpin, *, batch: bool) -> Clauses:
+    """Return the cautions of the shift of psi2, and of a loss of spin where psi2 hardly moves."""
+    about = "up to about" if batch else "about"
+    size, percent, w = (np.asarray(each) for each in (abs(spin.shift), 100.0 * spin.loss, spin.w))
+    number = "w = kappa omega a/(mu v1) = {:.2g}"
+    shifts = size >= LEAST_SHIFT
+    slows = ~shifts & (percent >= 100.0 * LEAST_LOSS)
+    clauses = (
+        Clause(
+            f"spin about the normal: its friction, left out, shifts psi2 by {about} {{:.2g}} "
+            f"({number}), and the spin would lose {about} {{:.2g}} % ({MEASURED})",
+            shifts,
+            (size, w, percent),
+            NORMAL_SPIN,
+        ),
+        Clause(
+            f"spin about the normal: the spin would lose {about} {{:.2g}} % by its friction, left "
+            f"out ({number}), which shifts psi2 by less than {LEAST_SHIFT:g} ({MEASURED})",
+            slows,
+            (percent, w),
+            NORMAL_SPIN,
+        ),
+    )
+    return tuple(clause for clause in clauses if some(clause.where))
