@@ -27,7 +27,9 @@ def execute(arguments: argparse.Namespace) -> int:
     """Print the entries: data first, then laws, contactlab last."""
     file = read(arguments)
     laws = file.laws if file else LawChoice()
-    arguments.tangential = arguments.tangential or [own_law(arguments, laws, None)]
+    arguments.tangential = arguments.tangential or [
+        own_law(arguments, laws, file.scene if file else None)
+    ]
     texts = []
     if file is not None:
         texts += [file.citation] if file.citation else []

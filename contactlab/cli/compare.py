@@ -92,11 +92,10 @@ def execute(arguments: argparse.Namespace) -> int:
             dict.fromkeys([own_law(arguments, file.laws, file.scene), *others])
         )
         compared = simulations(arguments, file.laws)
-    refused: list[str] = []
     if coupled:
         first = own_law(arguments, file.laws, file.scene)
         names = sorted(compared, key=lambda name: name != first)
-        compared = _answering(file.scene, {name: compared[name] for name in names}, refused)
+        compared = _answering(file.scene, {name: compared[name] for name in names})
     with shared.progress(arguments.progress, "runs") as progress:
         comparison = compare(
             file,
@@ -126,7 +125,7 @@ def execute(arguments: argparse.Namespace) -> int:
         print(side_by_side.describe_scores(scores(comparison, compared), comparison, file))
     else:
         print(side_by_side.describe(comparison, quantities, file))
-    failures = [*refused, *comparison.failures()]
+    failures = comparison.failures()
     for sentence in failures:
         print(f"contactlab compare: failed: {sentence}", file=sys.stderr)
     if comparison.interrupted:
@@ -136,19 +135,18 @@ def execute(arguments: argparse.Namespace) -> int:
     return shared.FAILED if failures else saved
 
 
-def _answering(
-    scene: Scene, compared: dict[str, Simulation], refused: list[str]
-) -> dict[str, Simulation]:
-    """Return the simulations that have an answer; add why the others have none to ``refused``."""
-    answering = {}
+def _answering(scene: Scene, compared: dict[str, Simulation]) -> dict[str, Simulation]:
+    """Return the simulations that have an answer; report the others on stderr."""
+    answering, refused = {}, None
     for name, simulation in compared.items():
         try:
             simulation.laws.accept(scene)
             answering[name] = simulation
         except ValueError as error:
-            refused.append(f"{name}: {error}")
-    if not answering:
-        raise ValueError(refused[0])
+            refused = error
+            print(f"contactlab compare: {name} is left out: {error}", file=sys.stderr)
+    if not answering and refused is not None:
+        raise refused
     return answering
 
 
@@ -214,11 +212,12 @@ def _all(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation
     return fitting.simulations
 
 
-def own_law(arguments: argparse.Namespace, laws: LawChoice, scene: Scene) -> str:
+def own_law(arguments: argparse.Namespace, laws: LawChoice, scene: Scene | None) -> str:
     """Return the friction law of a file, beside the first of the other laws requested."""
     others = {kind: getattr(arguments, kind) for kind in ("normal", "integrator")}
     first = {kind: names[0] for kind, names in others.items() if names}
-    return str(laws.choose(**first).suited_to(scene).tangential)
+    choice = laws.choose(**first)
+    return str((choice.resolved() if scene is None else choice.suited_to(scene)).tangential)
 
 
 def simulations(arguments: argparse.Namespace, laws: LawChoice) -> dict[str, Simulation]:

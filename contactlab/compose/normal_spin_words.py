@@ -1,4 +1,4 @@
-"""What a plan says of spin about the normal, whose friction is left out (theory §17)."""
+"""What a plan says of spin about the normal, whose friction is left out."""
 
 from __future__ import annotations
 

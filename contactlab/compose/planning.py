@@ -19,7 +19,7 @@ from contactlab.contracts import faults
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
-from contactlab.contracts.normal import ClosedFormNormalLaw
+from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.cautions import rigid_bodies, three_numbers, unit_slips, unlikely
 from contactlab.impact.scene import Scene
@@ -198,13 +198,16 @@ def _cautions(
         ends = _ends(laws.normal, central, None if coupled else motion, known)
         for law in (laws.normal, laws.tangential):
             asked += _asked(law, law.cautions, whole, ends)
+        if coupled:  # that of yield and of a large contact hold for any bodies
+            said += NormalLaw.cautions(laws.normal, whole, ends)
     if some(masks.marched):
         marched = part if every(masks.marched) else part.take(masks.marched)
         ends = _ends(laws.normal, central, None if coupled else motion, masks.marched)
         asked += _asked(laws.integrator, laws.integrator.remarks, ends, laws.tangential, marched)
-    said += asked
+    own = [text for text in asked if text not in said]
+    said += own
     if coupled:
-        said += [OF_SPHERES] if asked else []
+        said += [OF_SPHERES] if own else []
         said += together.cautions(laws, part)
     said += _by_default(laws.normal)
     clauses = [Clause(text, known) for text in said]

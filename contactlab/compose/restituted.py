@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+import attrs
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose.collision_plan import by_rebound
+from contactlab.compose.normal_spin_words import with_normal_spin
 from contactlab.compose.rebound import damped
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
@@ -47,6 +49,15 @@ def run_by_restitution(scene: Scene, restitution: Real) -> ImpactResult:
 
 def planned(scene: Scene, restitution: Real) -> Plan:
     """Return the plan of impacts that ``contactlab.rebound`` answers."""
+    encounter, scene = scene.encounter, attrs.evolve(scene, encounter=None)
+    plan = _of_groups(scene, restitution)
+    if encounter is None:
+        return plan
+    return Plan(plan.columns, lambda: with_normal_spin(plan.words, encounter))
+
+
+def _of_groups(scene: Scene, restitution: Any) -> Plan:
+    """Return the plan of impacts, with the words of each restitution."""
     if isinstance(restitution, float):
         return _planned(scene, restitution, restitution)
     groups = _alike(restitution)

@@ -61,7 +61,7 @@ class Simulation:
     tangential: TangentialLaw
     integrator: Integrator
     #: The three laws, and the kinds of those that were given.
-    laws: Laws = attrs.field(eq=False, repr=False)
+    laws: Laws = attrs.field(init=False, eq=False, repr=False)
 
     def __init__(
         self,
@@ -70,8 +70,7 @@ class Simulation:
         tangential: str | TangentialLaw | None = None,
         integrator: str | Integrator | None = None,
     ) -> None:
-        laws = composition.compose(normal, tangential, integrator)
-        self.__attrs_init__(**laws.by_kind(), laws=laws)
+        self._set(composition.compose(normal, tangential, integrator))
 
     @classmethod
     def of(cls, laws: Laws) -> Simulation:
@@ -82,8 +81,12 @@ class Simulation:
         laws : Laws
         """
         simulation = cls.__new__(cls)
-        simulation.__attrs_init__(**laws.by_kind(), laws=laws)
+        simulation._set(laws)
         return simulation
+
+    def _set(self, laws: Laws) -> None:
+        self.__attrs_init__(**laws.by_kind())
+        object.__setattr__(self, "laws", laws)
 
     def plan(self, scene: Scene, *, history: bool | str = False) -> Plan:
         """Return what ``run`` would compute for ``scene``, what it would leave out and why.

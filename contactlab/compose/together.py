@@ -43,7 +43,9 @@ def moved(laws: Laws, scene: Scene, normal: NormalMotion, observer: Observer | N
             answer = law.impacts_together(scene, normal, integrator.accuracy, observer)
         else:
             answer = integrator.integrate_together(normal, law, scene, observer)
-        if not (isinstance(answer, TangentialMotion) and answer.normal is not None):
+        if not isinstance(answer, TangentialMotion) or (
+            answer.normal is None and np.any(np.asarray(answer.status) == Status.SUCCESS)
+        ):
             told = f"the answer {shown(answer)}, no TangentialMotion with the ends of its normal"
             sentence = faults.sentence(blamed, f"{told} motion", 1)
             raise faults.LawFaultError(Status.MALFORMED, sentence)

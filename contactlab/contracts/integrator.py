@@ -140,5 +140,7 @@ class Integrator(Law):
             A law that needs no future; one that takes vectors if the scene has vectors.
         scene : Scene
             One impact or a batch, with its inverse mass.
+        observer : callable, optional
+            Called with every sample.
         """
         raise NotImplementedError(f"{type(self).__name__} has not the word 'together'")

@@ -133,20 +133,31 @@ class Ends(NamedTuple):
 
     @classmethod
     def of(cls, normal: NormalMotion | Ends | None) -> Ends:
-        """Return the ends of a motion; None is one that friction does not change."""
+        """Return the ends of a motion; None is one that friction does not change.
+
+        Parameters
+        ----------
+        normal : NormalMotion, Ends or None
+        """
         if isinstance(normal, Ends):
             return normal
         if normal is None:
             return cls._make([math.nan] * len(cls._fields))
         law: Any = normal.law
-        ends = (getattr(normal, name) for name in cls._fields[:5])
-        return cls._make((*ends, law.dissipation(normal)))
+        ends = [getattr(normal, name) for name in cls._fields[:5]]
+        return cls._make((*ends, law.dissipation(normal), 1.0))
 
     @classmethod
     def merged(
         cls, parts: Sequence[tuple[Any, NormalMotion | Ends | None]], shape: tuple[int, ...]
     ) -> Ends:
-        """Return the ends of a batch of ``shape`` from places and the motions of parts."""
+        """Return the ends of a batch of ``shape`` from places and the motions of parts.
+
+        Parameters
+        ----------
+        parts, shape
+            As of ``BatchMotion.merged``.
+        """
         ends = [(where, cls.of(normal)) for where, normal in parts]
         columns = ([(where, getattr(each, name)) for where, each in ends] for name in cls._fields)
         return cls._make(merged(column, shape) for column in columns)

@@ -33,7 +33,8 @@ def draw_stick_slip(axes: Axes, result: ImpactResult) -> Axes:
             result,
             "must have the fields radius, stuck and slipping of a single impact",
             "run(scene, history='fields') with a law that follows partial slip, as the default "
-            "does; an impact without slip velocity may have none",
+            "does between spheres, and springs do step by step between any bodies; an impact "
+            "without slip velocity may have none",
         )
     fields = history.fields
     time = history.time / result.motion.duration

@@ -63,7 +63,7 @@ def entries(
         "effective_modulus": MODULUS,
         "effective_shear_modulus": kappa * MODULUS,
         "normal_mass": 1.0,
-        "dundurs_beta": coupled * mu / kappa,
+        "dundurs_beta": 0.0 if coupling_number is None else coupled * mu / kappa,
     }
     scene = {"friction_coefficient": mu, "normal_speed": 1.0}
     scene |= {"unit_friction": friction is None and (squared is None or given is None)}

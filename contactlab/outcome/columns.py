@@ -87,7 +87,7 @@ COLUMNS = (
     Column(
         "rebound_tangential_velocity", "m/s", "rebound_tangential_velocity", of_scenes="spheres"
     ),
-    Column("rebound_velocity", "m/s", "rebound_velocity", of_scenes="bodies"),
+    Column("velocity_in_space", "m/s", "velocity_in_space", of_scenes="bodies"),
     Column("rebound_spin", "rad/s", "rebound_spin"),
     Column(
         "target_rebound_normal_velocity", "m/s", "target_rebound_normal_velocity",
@@ -97,7 +97,7 @@ COLUMNS = (
         "target_rebound_tangential_velocity", "m/s", "target_rebound_tangential_velocity",
         of_scenes="spheres",
     ),
-    Column("target_rebound_velocity", "m/s", "target_rebound_velocity", of_scenes="bodies"),
+    Column("target_velocity_in_space", "m/s", "target_velocity_in_space", of_scenes="bodies"),
     Column("target_rebound_spin", "rad/s", "target_rebound_spin"),
     Column("rebound_slip_velocity", "m/s", "rebound_slip_velocity"),
     Column("impulse", "N s", "impulse", of_scenes="bodies"),

@@ -161,6 +161,6 @@ def without_failures(motion: Motion) -> Motion:
     for name in Motion.numbers():
         value = np.asarray(getattr(motion, name))
         ends = value.shape[len(shape) :]
-        kept = np.where(good.reshape(*shape, *(1 for _ in ends)), value, math.nan)
+        kept = np.where(good.reshape((*shape, *(1 for _ in ends))), value, math.nan)
         numbers[name] = locked(spread(kept, (*shape, *ends)))
     return attrs.evolve(motion, **numbers)

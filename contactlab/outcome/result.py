@@ -77,7 +77,7 @@ class ImpactResult(Answer):
             finite = finite[np.isfinite(finite)]
             ends = f" from {finite.min():.6g} to {finite.max():.6g}" if finite.size else " unknown"
             what = "abs(psi2)" if scene.slip_axes else "psi2"
-            return f"{scene.slip_speed.size} impacts, {what}{ends}"
+            return f"{np.size(self.motion.status)} impacts, {what}{ends}"
         told = {"psi1": scene.psi1, "chi": scene.chi}
         if scene.inverse_mass is not None:
             told |= {"lam": scene.lam, "normal_restitution": self.normal_restitution}
@@ -147,7 +147,7 @@ class ImpactResult(Answer):
         return speed - share * (speed - self.motion.normal_velocity)
 
     @property
-    def rebound_tangential_velocity(self) -> Real | None:
+    def rebound_tangential_velocity(self) -> Any:
         """Tangential velocity of the sphere's centre in m/s; None for a non-dimensional scene."""
         sphere = self.scene.sphere
         if sphere is None:
@@ -162,7 +162,7 @@ class ImpactResult(Answer):
         return None if tangential is None else np.hypot(self.rebound_normal_velocity, tangential)
 
     @property
-    def rebound_velocity(self) -> Any:
+    def velocity_in_space(self) -> Any:
         """Velocity in space of the first body of an encounter, shape (..., 3), in m/s; else None.
 
         Bodies that are no spheres have it; of spheres see ``Collision.velocity``.
@@ -170,8 +170,8 @@ class ImpactResult(Answer):
         return self._in_space("velocity")
 
     @property
-    def target_rebound_velocity(self) -> Any:
-        """Velocity in space of the target of an encounter, as ``rebound_velocity``."""
+    def target_velocity_in_space(self) -> Any:
+        """Velocity in space of the target of an encounter, as ``velocity_in_space``."""
         return self._in_space("target_velocity")
 
     def _in_space(self, name: str) -> Any:

@@ -44,8 +44,12 @@ def build_scene(
             table.require(
                 "lam", "eta and rho belong to lam, by which friction changes the approach"
             )
-        groups = _numbers(table, NONDIMENSIONAL_KEYS) | _present(table, GROUP_KEYS)
-        groups |= {key: table.content[key] for key in COUPLING_KEYS if table.has(key)}
+        groups = _present(table, (*GROUP_KEYS, "eta", "rho"))
+        for key in (*NONDIMENSIONAL_KEYS, "lam"):
+            if table.has("rho") and isinstance(table.content.get(key), list):
+                groups[key] = table.content[key]  # a vector or tensor of the tangent plane
+            elif key != "lam" or table.has(key):
+                groups |= _numbers(table, (key,))
         return table.make(Scene.nondimensional, **groups), None
     root = Table({name: document[name] for name in sections}, "", known=BODY_SECTIONS)
     if "body" in sections or _is_rigid(document.get("target")):

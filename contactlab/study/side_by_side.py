@@ -10,7 +10,7 @@ import numpy as np
 
 from contactlab.impact.scene import entry_unit
 from contactlab.outcome.columns import COMPARISON_TABLE, columns_of, quantity_named
-from contactlab.outcome.tables import heading, number, time
+from contactlab.outcome.tables import IN_SPACE, heading, number, time
 from contactlab.outcome.text_table import table
 from contactlab.scene_file import SceneFile
 
@@ -33,6 +33,7 @@ def default_quantities(comparison: Any) -> list[str]:
         name
         for name in others
         if name.removesuffix("_deg") in known
+        and not (scene.sphere is None and name in IN_SPACE)
         and not all(np.isnan(comparison.values(name, law)) for law in laws)
     ]
 

@@ -165,7 +165,7 @@ def _of_spheres(
     undeclared = np.isnan(bound)
     wrong = _wrong(simulation, result, excess, bound := UNDECLARED if undeclared else bound)
     if wrong and undeclared:
-        estimate = float(np.asarray(estimated(simulation.laws, result))) * unit / width
+        estimate = float(np.asarray(estimated(simulation.laws, result)[0])) * unit / width
         bound = min(max(bound, ESTIMATED * estimate), LARGEST_SHARE)
         wrong = _wrong(simulation, result, excess, bound)
     return float(error), bound, wrong

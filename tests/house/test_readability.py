@@ -26,7 +26,6 @@ PUBLIC_MODULES = (
 ROOMS = re.findall(r"^``(\w+)`` ", contactlab.__doc__, flags=re.MULTILINE)
 #: Imports that still point upward, from a file to a room. The list may only become shorter.
 UPWARD = {
-    ("outcome/eccentric.py", "figures"),
     ("outcome/history.py", "figures"),
     ("outcome/result.py", "figures"),
 }

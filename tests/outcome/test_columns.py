@@ -127,6 +127,7 @@ def test_a_result_as_json(tmp_path):
         "status": "SUCCESS",
         "detail": "",
         "psi2_error_estimate": 0.02,
+        "restitution_error_estimate": None,
         "run_time_s": 0.0125,
         "energy": made.energy.to_dict(),
         "counters": {"steps": 7},
@@ -136,6 +137,7 @@ def test_a_result_as_json(tmp_path):
             "left_out": [],
             "cautions": ["doubt: one"],
             "psi2_error": 0.01,
+            "restitution_error": None,
         },
         "history": HISTORY | {"traction": [1.0, None]},
     }

@@ -351,8 +351,13 @@ def test_an_eccentric_answer_that_is_wrong_is_found():
     assert outcome.outcome == ANSWERED
     assert outcome.error < 6e-3
     for share, words in ((0.9, "from rigid bodies"), (1.5, "of the energy from nothing")):
-        change = share * sound.motion.velocity_change
-        spoiled = attrs.evolve(sound, motion=attrs.evolve(sound.motion, velocity_change=change))
+        speed, motion = scene.normal_speed, sound.motion
+        moved = attrs.evolve(
+            motion,
+            normal_velocity=speed + share * (motion.normal_velocity - speed),
+            slip_velocity_change=share * motion.slip_velocity_change,
+        )
+        spoiled = attrs.evolve(sound, motion=moved)
         laws = SimpleNamespace(run=lambda _, spoiled=spoiled: spoiled, tangential=exact.tangential)
         outcome = judge_run(case, laws, scene)
         assert outcome.outcome == WRONG

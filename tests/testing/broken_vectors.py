@@ -100,8 +100,6 @@ class SofterToBeginWith(SoundVector):
 
     def begin(self, scene, normal, *, vectors=False):
         state = super().begin(scene, normal, vectors=vectors)
-        if vectors:
-            return state
         return state._replace(stiffness=0.8 * state.stiffness)
 
 
