@@ -96,7 +96,7 @@ class Ball:
             outline = Circle((0.0, 1.0), 1.0, facecolor="none", visible=False, zorder=2, **look)
             self.axes.add_patch(outline)
             velocity = np.array(
-                [float(result.rebound_tangential_velocity), -float(result.rebound_normal_velocity)]  # type: ignore[arg-type]
+                [float(result.rebound_tangential_velocity), -float(result.rebound_normal_velocity)]
             )
             # The mean of the velocities before and after, over the time of contact.
             along = (
