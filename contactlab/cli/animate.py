@@ -16,7 +16,6 @@ from contactlab.cli import arguments as shared
 from contactlab.cli.scene import add_scene, inputs
 from contactlab.compose.collision import Collision
 from contactlab.compose.simulation import Simulation
-from contactlab.impact.body_contact import frame
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.rigid_body import RigidBody
 
@@ -73,7 +72,8 @@ def _bodies(
         from contactlab.figures.body_animation import animate_bodies  # matplotlib only here
 
         whole = Collision.of(encounter, result)
-        axes = frame(encounter).axes
-        animate_bodies(arguments.out, whole, axes, ghosts=collisions, progress=progress)
+        animate_bodies(
+            arguments.out, whole, encounter.scene.frame, ghosts=collisions, progress=progress
+        )
     print(arguments.out)
     return shared.OK

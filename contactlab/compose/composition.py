@@ -74,9 +74,15 @@ class Laws:
 
     def accept(self, scene: Scene) -> None:
         """Refuse a scene that a law cannot run."""
+        if scene.inverse_mass is None:
+            self.normal.accept(scene)
+            self.tangential.accept(scene)
+            self.integrator.accept(scene)
+            return
         for _, part in scene.parts():
+            central = part.central
             for each in self.of(part):
-                each.accept(part.central)
+                each.accept(central)
 
     def of(self, part: Scene) -> Laws:
         """Return the laws of impacts that are solved alike.

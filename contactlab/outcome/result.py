@@ -176,10 +176,8 @@ class ImpactResult(Answer):
 
     def _in_space(self, name: str) -> Any:
         """Return a vector after the impact of bodies that are no spheres; None without them."""
-        encounter = self.scene.encounter
-        if encounter is None or self.scene.sphere is not None:
-            return None
-        return pushed(encounter, self.impulse)[name]
+        encounter, axes = self.scene.encounter, self.scene.frame
+        return None if axes is None else pushed(encounter, axes, self.impulse)[name]
 
     @property
     def rebound_spin(self) -> Any:
