@@ -105,6 +105,7 @@ def execute(arguments: argparse.Namespace) -> int:
             progress=progress,
         )
     quantities = arguments.quantity or side_by_side.default_quantities(comparison)
+    scored = arguments.all and bool(file.scene.shape)
     saved = shared.save(
         (arguments.figure, lambda path: _draw(path, arguments, comparison)),
         (arguments.loops, lambda path: _draw_loops(path, arguments, file.scene, compared)),
@@ -116,12 +117,12 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.json:
         content = to_dict(comparison, quantities) | {"title": file.title}
         content["complete"] = not comparison.interrupted
-        if arguments.all:
+        if scored:
             content["scores"] = json_value(scores(comparison, compared))
         shared.print_json(content)
     elif arguments.csv:
         write_csv(comparison, quantities, sys.stdout)
-    elif arguments.all:
+    elif scored:
         print(side_by_side.describe_scores(scores(comparison, compared), comparison, file))
     else:
         print(side_by_side.describe(comparison, quantities, file))
@@ -171,7 +172,7 @@ def _draw(path: Path, arguments: argparse.Namespace, comparison: Comparison) -> 
     from contactlab.cli.drawing import draw_all, draw_comparison  # matplotlib only when drawing
 
     quantities = arguments.quantity or side_by_side.default_quantities(comparison)
-    if arguments.all:
+    if arguments.all and comparison.scene.shape:
         draw_all(path, comparison, quantities[0], **shared.look(arguments))
     else:
         draw_comparison(path, comparison, quantities, **shared.look(arguments))

@@ -560,11 +560,13 @@ class Scene:
     @property
     def chi(self) -> Any:
         """Inertia ratio, eq. (38); in space (kappa/2) W_tt/W_nn, shape (..., 2, 2)."""
-        if self.planar:
+        if self.inverse_mass is None:
             return self.pair.inertia_ratio
-        W: Any = self.inverse_mass
-        half = 0.5 * np.asarray(self.pair.stiffness_ratio)
-        return half[..., None, None] * W[..., 1:, 1:] / W[..., :1, :1]
+        W, half = self.inverse_mass, 0.5 * np.asarray(self.pair.stiffness_ratio)
+        if not self.planar:
+            return half[..., None, None] * W[..., 1:, 1:] / W[..., :1, :1]
+        chi = half * W[..., 1, 1] / W[..., 0, 0]
+        return chi if self.shape else float(chi)
 
     @property
     def lam(self) -> Any:
