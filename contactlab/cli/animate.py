@@ -11,6 +11,7 @@ Examples
 from __future__ import annotations
 
 import argparse
+from typing import Any
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import add_scene, inputs
@@ -72,8 +73,7 @@ def _bodies(
         from contactlab.figures.body_animation import animate_bodies  # matplotlib only here
 
         whole = Collision.of(encounter, result)
-        animate_bodies(
-            arguments.out, whole, encounter.scene.frame, ghosts=collisions, progress=progress
-        )
+        axes: Any = result.scene.frame
+        animate_bodies(arguments.out, whole, axes, ghosts=collisions, progress=progress)
     print(arguments.out)
     return shared.OK

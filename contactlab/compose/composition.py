@@ -107,6 +107,13 @@ class Laws:
                 return other
         raise ValueError(f"{refused}; {_remedy(self, part.planar)}")
 
+    def versions(self, scene: Scene) -> dict[str, str]:
+        """Return name and version of each law by kind, of several in one scene with "and"."""
+        if scene.inverse_mass is None:
+            return versions(*self)
+        used = [versions(*self.of(part)) for _, part in scene.parts()]
+        return {kind: " and ".join(dict.fromkeys(each[kind] for each in used)) for kind in KINDS}
+
     def changed(self, **laws: Any) -> Laws:
         """Return the laws with others of some kinds."""
         return attrs.evolve(self, **laws)

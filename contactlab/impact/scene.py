@@ -34,6 +34,8 @@ from contactlab.numeric.names import arguments_told
 LEAST_ENERGY = LEAST_VELOCITY = 1e-290
 #: Least mu times momentum of the normal motion, in N s.
 LEAST_IMPULSE = 1e-285
+#: Groups of theory §14, where friction changes the approach.
+COUPLED = ("lam", "eta", "rho")
 OBLIQUE = Rule(
     lambda degrees: np.abs(degrees) < 90.0, "must lie between -90 and 90, measured from the normal"
 )
@@ -593,9 +595,38 @@ class Scene:
         with np.errstate(all="ignore"):
             W = self.inverse_mass
             vectors = np.asarray(factor)[..., None] * W[..., 0, 1:] / W[..., :1, 0]
+        return self.tangent(vectors)
+
+    def tangent(self, vectors: Any) -> Any:
+        """Return vectors of the tangent plane, (..., 2), as this scene has its slip.
+
+        Parameters
+        ----------
+        vectors : array, shape (..., 2)
+            Along t1 and t2.
+        """
         if not self.planar:
             return vectors
         return vectors[..., 0] if self.shape else float(vectors[0])
+
+    @property
+    def groups(self) -> dict[str, Any]:
+        """The dimensionless groups that determine the impact, by name."""
+        names = ("psi1", "chi") if self.inverse_mass is None else ("psi1", "chi", *COUPLED)
+        return {name: getattr(self, name) for name in names}
+
+    @property
+    def most_slip_change(self) -> Any:
+        """The largest change of slip velocity in m/s, of an elastic impact of gross slip.
+
+        It is infinite where friction changes the approach: no such bound is known there.
+        """
+        if self.inverse_mass is not None:
+            return math.inf + 0.0 * self.slip_speed
+        pair = self.pair
+        friction: Any = self.friction_coefficient * self.normal_speed
+        # This is 4 chi in psi; psi itself would be infinite without friction.
+        return 2.0 * (friction * (pair.normal_mass / pair.tangential_mass))
 
     @property
     def central(self) -> Scene:
