@@ -145,7 +145,7 @@ class Simulation:
         if flat is not scene:
             place = np.arange(flat.shape[0]).reshape(scene.shape)
             columns, motion = columns.take(place), taken(motion, flat.shape, place)
-        plan = plan_of(laws, scene, columns, motion, history)
+        plan = plan_of(laws, scene, columns, motion, history, estimated=estimate_error)
         kept = NO_HISTORY if recorder is None else recorder.history()
         result = _result(laws, scene, plan, motion, started, kept)
         if not estimate_error:
