@@ -74,9 +74,15 @@ class Laws:
 
     def accept(self, scene: Scene) -> None:
         """Refuse a scene that a law cannot run."""
+        if scene.inverse_mass is None:
+            self.normal.accept(scene)
+            self.tangential.accept(scene)
+            self.integrator.accept(scene)
+            return
         for _, part in scene.parts():
+            central = part.central
             for each in self.of(part):
-                each.accept(part.central)
+                each.accept(central)
 
     def of(self, part: Scene) -> Laws:
         """Return the laws of impacts that are solved alike.
@@ -100,6 +106,13 @@ class Laws:
             if misfit(*other) is None and _no_answer(other, part.planar) is None:
                 return other
         raise ValueError(f"{refused}; {_remedy(self, part.planar)}")
+
+    def versions(self, scene: Scene) -> dict[str, str]:
+        """Return name and version of each law by kind, of several in one scene with "and"."""
+        if scene.inverse_mass is None:
+            return versions(*self)
+        used = [versions(*self.of(part)) for _, part in scene.parts()]
+        return {kind: " and ".join(dict.fromkeys(each[kind] for each in used)) for kind in KINDS}
 
     def changed(self, **laws: Any) -> Laws:
         """Return the laws with others of some kinds."""

@@ -79,8 +79,9 @@ def columns_of(normal: NormalMotion, laws: Laws, known: Sequence[Answer]) -> Pla
     )
     # the load impulse of a frictionless impact is M_n v1 (1 + e), at most twice M_n v1
     restitution: Any = CLOSED_FORM + 2.0 * normal.accuracy
-    if any(answer.normal is not None for _, answer in known):
-        restitution = math.nan  # the law changed the normal motion, and declares no error of it
+    for each in known:
+        if each.known.normal is not None:
+            restitution = math.nan  # the law changed the normal motion, and declares no error of it
     if shape:
         restitution = np.full(shape, restitution)
     return PlanColumns(code, _error(normal, laws, known, marched), reasons, restitution)

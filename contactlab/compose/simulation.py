@@ -242,20 +242,10 @@ def _result(
         scene=scene,
         plan=plan,
         motion=motion if succeeded(motion.status) else without_failures(motion),
-        laws=_versions(laws, scene),
+        laws=laws.versions(scene),
         history=history,
         run_time=time.perf_counter() - started,
     )
-
-
-def _versions(laws: Laws, scene: Scene) -> dict[str, str]:
-    """Return name and version of each law by kind, of several in one scene with "and" between."""
-    if scene.inverse_mass is None:
-        return composition.versions(*laws)
-    used = [composition.versions(*laws.of(part)) for _, part in scene.parts()]
-    return {
-        kind: " and ".join(dict.fromkeys(each[kind] for each in used)) for kind in laws.by_kind()
-    }
 
 
 def _scene(scene: object) -> Scene:

@@ -34,6 +34,8 @@ from contactlab.numeric.names import arguments_told
 LEAST_ENERGY = LEAST_VELOCITY = 1e-290
 #: Least mu times momentum of the normal motion, in N s.
 LEAST_IMPULSE = 1e-285
+#: Groups of theory §14, where friction changes the approach.
+COUPLED = ("lam", "eta", "rho")
 OBLIQUE = Rule(
     lambda degrees: np.abs(degrees) < 90.0, "must lie between -90 and 90, measured from the normal"
 )
@@ -81,6 +83,8 @@ class Scene:
         friction coefficient. A law that needs mu itself refuses such a scene.
     encounter : Encounter, optional
         The encounter in space, which cautions and velocities in space look at.
+    frame : array, shape (..., 3, 3), optional
+        n, t1 and t2 as rows, in the frame of an encounter of bodies that are no spheres.
     inverse_mass : array, shape (..., 3, 3), optional
         W in 1/kg, of a scene without sphere and target: the acceleration of the relative motion at
         the contact for unit forces along n, t1 and t2.
@@ -106,6 +110,7 @@ class Scene:
     )
     unit_friction: bool = instance(bool, default=False, kw_only=True, repr=False)
     encounter: Any = attrs.field(default=None, eq=False, repr=False, kw_only=True)
+    frame: Array | None = attrs.field(default=None, eq=False, repr=False, kw_only=True)
     inverse_mass: Array | None = attrs.field(
         default=None, converter=_tensors, eq=key, repr=False, kw_only=True
     )
@@ -180,10 +185,10 @@ class Scene:
 
     def numbers(self) -> dict[str, Real]:
         """Return every number of the scene and of its pair, by name."""
-        numbers = {field.name: getattr(self.pair, field.name) for field in attrs.fields(Pair)}
-        for field in attrs.fields(Scene):
-            if "unit" in field.metadata:
-                numbers[field.name] = getattr(self, field.name)
+        pair = self.pair
+        numbers = {name: getattr(pair, name) for name in OF_PAIR}
+        for name in OF_SCENE:
+            numbers[name] = getattr(self, name)
         for name in ("sphere", "target"):
             body = getattr(self, name)
             if body is not None and body.material.yield_stress is not None:
@@ -557,11 +562,13 @@ class Scene:
     @property
     def chi(self) -> Any:
         """Inertia ratio, eq. (38); in space (kappa/2) W_tt/W_nn, shape (..., 2, 2)."""
-        if self.planar:
+        if self.inverse_mass is None:
             return self.pair.inertia_ratio
-        W: Any = self.inverse_mass
-        half = 0.5 * np.asarray(self.pair.stiffness_ratio)
-        return half[..., None, None] * W[..., 1:, 1:] / W[..., :1, :1]
+        W, half = self.inverse_mass, 0.5 * np.asarray(self.pair.stiffness_ratio)
+        if not self.planar:
+            return half[..., None, None] * W[..., 1:, 1:] / W[..., :1, :1]
+        chi = half * W[..., 1, 1] / W[..., 0, 0]
+        return chi if self.shape else float(chi)
 
     @property
     def lam(self) -> Any:
@@ -588,9 +595,38 @@ class Scene:
         with np.errstate(all="ignore"):
             W = self.inverse_mass
             vectors = np.asarray(factor)[..., None] * W[..., 0, 1:] / W[..., :1, 0]
+        return self.tangent(vectors)
+
+    def tangent(self, vectors: Any) -> Any:
+        """Return vectors of the tangent plane, (..., 2), as this scene has its slip.
+
+        Parameters
+        ----------
+        vectors : array, shape (..., 2)
+            Along t1 and t2.
+        """
         if not self.planar:
             return vectors
         return vectors[..., 0] if self.shape else float(vectors[0])
+
+    @property
+    def groups(self) -> dict[str, Any]:
+        """The dimensionless groups that determine the impact, by name."""
+        names = ("psi1", "chi") if self.inverse_mass is None else ("psi1", "chi", *COUPLED)
+        return {name: getattr(self, name) for name in names}
+
+    @property
+    def most_slip_change(self) -> Any:
+        """The largest change of slip velocity in m/s, of an elastic impact of gross slip.
+
+        It is infinite where friction changes the approach: no such bound is known there.
+        """
+        if self.inverse_mass is not None:
+            return math.inf + 0.0 * self.slip_speed
+        pair = self.pair
+        friction: Any = self.friction_coefficient * self.normal_speed
+        # This is 4 chi in psi; psi itself would be infinite without friction.
+        return 2.0 * (friction * (pair.normal_mass / pair.tangential_mass))
 
     @property
     def central(self) -> Scene:
@@ -600,21 +636,20 @@ class Scene:
         """
         if self.inverse_mass is None:
             return self
-        slip, mass = self.tangential_velocity, self.pair.tangential_mass
+        pair = self.pair
         if not self.planar:
-            slip = self.slip_speed
-            slip = slip if self.shape else float(slip)
             along = inverse_mass.along(self.slip_velocity)
             mass = inverse_mass.mass_along(self.inverse_mass, along)
-            mass = mass if self.shape else float(mass)
-        scene = attrs.evolve(
-            self,
-            tangential_velocity=batch.spread(slip, self.shape),
-            pair=attrs.evolve(self.pair, tangential_mass=mass),
-            inverse_mass=None,
-            planar=True,
-        )
-        return scene.numbered(self.index)
+            pair = attrs.evolve(pair, tangential_mass=mass if self.shape else float(mass))
+        slip = batch.spread(self.slip_speed if not self.planar else self.slip_velocity, self.shape)
+        return self._with(tangential_velocity=slip, pair=pair, inverse_mass=None, planar=True)
+
+    def _with(self, **entries: Any) -> Scene:
+        """Return this scene with other entries, of numbers that were checked before."""
+        scene = copy.copy(self)
+        for name, value in entries.items():
+            object.__setattr__(scene, name, batch.locked(value))
+        return scene
 
     def parts(self) -> list[tuple[Any, Scene]]:
         """Return places and scenes of the impacts that are solved alike, at most three.
@@ -635,12 +670,12 @@ class Scene:
 
     def _ways(self) -> Any:
         """Return the way in which each impact is solved."""
-        slip = np.asarray(self.tangential_velocity)
-        if self.planar:
-            slip = np.stack((slip, 0.0 * slip), axis=-1)
-        if self.shape:
-            slip = np.broadcast_to(slip, (*self.shape, 2))
         W: Any = self.inverse_mass
+        slip = np.zeros((*self.shape, 2))
+        if self.planar:
+            slip[..., 0] = self.tangential_velocity
+        else:
+            slip[...] = self.tangential_velocity
         return inverse_mass.ways(W, self.normal_speed, slip)
 
     def _going(self, way: int) -> Scene:
@@ -649,8 +684,11 @@ class Scene:
             return self.central
         if way == inverse_mass.SPATIAL or self.planar:
             return self
+        W: Any = self.inverse_mass
+        mass = 1.0 / W[..., 1, 1]
+        pair = attrs.evolve(self.pair, tangential_mass=mass if self.shape else float(mass))
         slip = batch.spread(self.slip_velocity[..., 0], self.shape)
-        return attrs.evolve(self, tangential_velocity=slip, planar=True).numbered(self.index)
+        return self._with(tangential_velocity=slip, pair=pair, planar=True)
 
     def impulse(self, rate: Any, change: Any) -> Array:
         """Return the impulse on the target along n, t1 and t2, shape (..., 3), in N s.
@@ -736,6 +774,9 @@ class Scene:
         return self.psi(self.slip_velocity)
 
 
+#: Numbers of a pair and of a scene.
+OF_PAIR = tuple(field.name for field in attrs.fields(Pair))
+OF_SCENE = tuple(field.name for field in attrs.fields(Scene) if "unit" in field.metadata)
 #: Units of the entries from which scenes are made.
 UNITS: dict[str, str] = {
     field.name: field.metadata["unit"]
