@@ -120,8 +120,8 @@ class Simulation:
             Keep the course of the impact; ``"fields"`` keeps traction and stick/slip too.
         estimate_error : bool
             Estimate the numerical errors of psi2 and of the normal restitution by running the scene
-            again at two finer resolutions: ``result.psi2_error_estimate``. About twenty times the
-            work.
+            again at two finer resolutions: ``result.psi2_error_estimate`` and
+            ``.restitution_error_estimate``. About twenty times the work.
 
         Returns
         -------

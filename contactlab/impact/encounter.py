@@ -242,8 +242,8 @@ class Encounter:
     def scene(self) -> Scene:
         """The scene in the plane of friction, relative to a target at rest without spin.
 
-        Of bodies that are no spheres: a scene with an inverse mass where friction changes the
-        approach or the slip turns; else a scene of numbers without sphere and target.
+        Bodies that are no spheres have a scene with an inverse mass where friction changes the
+        approach or the slip turns, else a scene of numbers without sphere and target.
 
         The tangential velocity is the relative velocity of the centres along the slip. The spin
         is the part of (R1 omega1 + R2 omega2)/R1 that makes slip in this plane. Velocities and
