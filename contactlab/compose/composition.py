@@ -74,11 +74,6 @@ class Laws:
 
     def accept(self, scene: Scene) -> None:
         """Refuse a scene that a law cannot run."""
-        if scene.inverse_mass is None:
-            self.normal.accept(scene)
-            self.tangential.accept(scene)
-            self.integrator.accept(scene)
-            return
         for _, part in scene.parts():
             central = part.central
             for each in self.of(part):
@@ -109,8 +104,6 @@ class Laws:
 
     def versions(self, scene: Scene) -> dict[str, str]:
         """Return name and version of each law by kind, of several in one scene with "and"."""
-        if scene.inverse_mass is None:
-            return versions(*self)
         used = [versions(*self.of(part)) for _, part in scene.parts()]
         return {kind: " and ".join(dict.fromkeys(each[kind] for each in used)) for kind in KINDS}
 

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from contactlab.compose.composition import Laws
 from contactlab.compose.pieces import Chunk, Piece, unsolved
 from contactlab.compose.solve import solved
-from contactlab.compose.together import AT_A_TIME
 from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import WholeImpactTangentialLaw
@@ -49,9 +48,7 @@ def swept(
 ) -> tuple[PlanColumns, Motion]:
     """Return columns of the plan and motion of a batch of one axis; see ``Simulation.sweep``."""
     size, block = scene.shape[0], block_of(laws)
-    if scene.inverse_mass is not None:
-        block = AT_A_TIME
-    elif laws.tangential.needs_no_march(scene, laws.integrator.accuracy):
+    if laws.tangential.needs_no_march(scene, laws.integrator.accuracy):
         block = WHOLE_IMPACTS
     step = math.ceil(whole("chunk", block if chunk is None else chunk) / block) * block
     kept = None

@@ -73,9 +73,10 @@ def draw_result(
 
 def _abscissa(result: Any) -> str:
     """Return psi1, or the first entry that varies where psi1 does not tell the impacts apart."""
-    scene = result.scene
-    first = next(iter(scene.varied), "psi1")
-    return "psi1" if scene.inverse_mass is None else first
+    psi1: Any = result.psi1
+    if np.shape(psi1) == result.scene.shape and np.ptp(psi1) > 0.0:
+        return "psi1"
+    return next(iter(result.scene.varied), "psi1")
 
 
 def draw_history(axes: Axes | None, history: Any, *, width: Width | None = None) -> Axes:

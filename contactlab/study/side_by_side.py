@@ -27,9 +27,9 @@ def default_quantities(comparison: Any) -> list[str]:
         return list(dict.fromkeys(measured))
     scene = comparison.scene
     psi2 = [name for name, _ in components("psi2", comparison.runs[0].result.psi2, scene.shape)]
-    if scene.shape:
-        return [*psi2, "normal_restitution"] if "lam" in scene.groups else psi2
     known = {column.name for column in columns_of(scene)}
+    if scene.shape:
+        return [*psi2, "normal_restitution"] if "compressions" in known else psi2
     laws, others = comparison.names, [*COMPARISON_TABLE[1:], "compressions"]
     return psi2 + [
         name

@@ -20,6 +20,7 @@ from contactlab import (
     collide,
     create,
 )
+from contactlab.compose import sweep as sweeping
 from tests.longer import longer
 
 STEEL = Material.named("steel")
@@ -604,7 +605,8 @@ def test_a_sweep_takes_a_sequence_or_a_batch():
     assert listed.psi2 == pytest.approx(batch.psi2, rel=1e-12)
 
 
-def test_a_stopped_sweep_keeps_what_is_done_and_resumes_on_other_workers(tmp_path):
+def test_a_stopped_sweep_keeps_what_is_done_and_resumes_on_other_workers(tmp_path, monkeypatch):
+    monkeypatch.setattr(sweeping, "block_of", lambda _: 1000)
     scene, folder = random_planar(2500, 15), tmp_path / "kept"
 
     def stop(done, total):
