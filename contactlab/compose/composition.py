@@ -72,9 +72,10 @@ class Laws:
         """Return the laws by kind."""
         return dict(zip(KINDS, self, strict=True))
 
-    def accept(self, scene: Scene) -> None:
-        """Refuse a scene that a law cannot run."""
-        for _, part in scene.parts():
+    def accept(self, scene: Scene, *, as_one: bool = False) -> None:
+        """Refuse a scene that a law cannot run; ``as_one`` as in ``Scene.parts``."""
+        # what answers where slip turns answers on a line too: its remedy holds for the whole batch
+        for _, part in reversed(scene.parts(as_one=as_one)):
             for each in self.of(part):
                 each.accept(part.central)
 
