@@ -93,14 +93,19 @@ class Laws:
         if part.inverse_mass is None:
             return self
         refused = _no_answer(self, part.planar)
-        if refused is None:
+        if refused is None and not _rigid_in_silence(self):
             return self
         for names in TOGETHER:
             free = {kind: name for kind, name in names.items() if kind not in self.named}
             other = self.changed(**{kind: law(kind, name) for kind, name in free.items()})
             if misfit(*other) is None and _no_answer(other, part.planar) is None:
                 return other
-        raise ValueError(f"{refused}; {_remedy(self, part.planar)}")
+        remedy = _remedy(self, part.planar)
+        if refused is None:
+            name = RIGID["tangential"]
+            refused = f"{_name(self.tangential)}: rigid theory is not taken unless it is named"
+            remedy += f"; or name it: tangential={name!r}"
+        raise ValueError(f"{refused}; {remedy}")
 
     def changed(self, **laws: Any) -> Laws:
         """Return the laws with others of some kinds."""
@@ -125,6 +130,17 @@ def _no_answer(laws: Laws, planar: bool) -> str | None:
         return None
     where = "and slip keeps to a line" if planar else "and slip turns"
     return f"{name}: has no answer where friction changes the approach {where}: {reason}"
+
+
+def _rigid_in_silence(laws: Laws) -> bool:
+    """Return whether nobody named rigid theory, and an elastic law runs beside the normal law."""
+    if "tangential" in laws.named or laws.tangential != law("tangential", RIGID["tangential"]):
+        return False
+    elastic = (
+        laws.changed(**{kind: law(kind, name) for kind, name in names.items()})
+        for names in TOGETHER
+    )
+    return any(misfit(*other) is None for other in elastic)
 
 
 def _remedy(laws: Laws, planar: bool) -> str:
