@@ -443,6 +443,12 @@ class Scene:
                     "must have a friction coefficient if, and only if, scenes[0] has",
                     "give friction_coefficient to every Scene.nondimensional, or to none",
                 )
+        kinds = {
+            tuple(type(getattr(scene.encounter, name, None)) for name in ("body", "target"))
+            for scene in scenes
+        }
+        if len(kinds) > 1:  # no one encounter has bodies of several kinds
+            scenes = [attrs.evolve(scene, encounter=None) for scene in scenes]
         if any(scene.inverse_mass is not None for scene in scenes):
             planar = all(scene.planar for scene in scenes)
             scenes = [scene._of_any_shape(planar) for scene in scenes]
