@@ -134,7 +134,9 @@ def _no_answer(laws: Laws, planar: bool) -> str | None:
 
 def _rigid_in_silence(laws: Laws) -> bool:
     """Return whether nobody named rigid theory, and an elastic law runs beside the normal law."""
-    if "tangential" in laws.named or laws.tangential != law("tangential", RIGID["tangential"]):
+    if "tangential" in laws.named:
+        return False
+    if versions(*laws)["tangential"].partition(" ")[0] != RIGID["tangential"]:
         return False
     elastic = (
         laws.changed(**{kind: law(kind, name) for kind, name in names.items()})
