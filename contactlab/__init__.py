@@ -1,9 +1,9 @@
 """contactlab computes oblique impacts of elastic bodies, with contact laws as plug-ins.
 
-A ``Scene`` describes an impact: bodies, friction, velocities. A ``Simulation`` combines a normal
-law, a tangential law and an integrator. ``Simulation.run`` returns an ``ImpactResult``: velocities
-after the impact, energies, the numerical error, and the plan, which states what was computed and
-which effects were left out::
+A ``Scene`` describes an impact: bodies of any shape, friction, velocities. A ``Simulation``
+combines a normal law, a tangential law and an integrator. ``Simulation.run`` returns an
+``ImpactResult``, which has velocities after the impact, energies, the numerical error, and the
+plan, which states what was computed and which effects were left out::
 
     from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
 

@@ -58,11 +58,11 @@ for name, simulation in (("elastic", None), ("rigid", Simulation(tangential="cou
     print(f"{name:8s} 30°: rebound {ends[name][30, 2]:.3f}, slip {ends[name][30, 0]:.3f} m/s")
 
 # %%
-# **Painlevé's rod**: lam < -1, scaled so that the approach begins at 1.
+# **Painlevé's rod**: lam < -1, in units in which the approach begins at 1.
 jam = Scene.nondimensional(psi1=1.647059, chi=0.875, lam=-1.5, eta=-0.308824)
 result = Simulation().run(jam, history=True).check()
 past = result.history
-print(f"Painlevé's rod leaves at {-result.normal_velocity:.3f} times the speed of approach")
+print(f"Painlevé's rod leaves at {result.normal_restitution:.3f} times the speed of approach")
 
 with styled():
     figure = Figure(figsize=(9.5, 3.8), layout="constrained")
@@ -75,10 +75,9 @@ with styled():
     left.set(xlabel="tilt of the rod (°)", ylabel="velocity of the end (m/s)")
     left.set_title("A steel rod dropped at 1 m/s")
     left.legend(loc="upper right", bbox_to_anchor=(1.0, 0.9), ncols=2, columnspacing=1.0)
-    slip = np.reshape(past.slip_velocity, (len(past.time), -1))[:, 0]
-    approach = np.reshape(past.normal_velocity, len(past.time))
-    right.plot(past.time, approach, color="C0", label="approach (below 0: leaves)")
-    right.plot(past.time, slip / slip[0], color="C1", label="slip, over that at touch")
+    slip = past.slip_velocity / jam.slip_velocity
+    right.plot(past.time, past.normal_velocity, color="C0", label="approach (below 0: leaves)")
+    right.plot(past.time, slip, color="C1", label="slip, over that at touch")
     right.axhline(0.0, color="0.6", linewidth=0.8)
     right.set(xlabel="time (scaled)", ylabel="velocity (scaled)")
     right.set_title("Painlevé's rod: friction drives it in first")

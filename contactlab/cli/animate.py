@@ -11,12 +11,12 @@ Examples
 from __future__ import annotations
 
 import argparse
+from typing import Any
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import add_scene, inputs
 from contactlab.compose.collision import Collision
 from contactlab.compose.simulation import Simulation
-from contactlab.impact.body_contact import frame
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.rigid_body import RigidBody
 
@@ -73,7 +73,7 @@ def _bodies(
         from contactlab.figures.body_animation import animate_bodies  # matplotlib only here
 
         whole = Collision.of(encounter, result)
-        axes = frame(encounter).axes
+        axes: Any = result.scene.frame
         animate_bodies(arguments.out, whole, axes, ghosts=collisions, progress=progress)
     print(arguments.out)
     return shared.OK

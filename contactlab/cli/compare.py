@@ -80,22 +80,15 @@ def execute(arguments: argparse.Namespace) -> int:
         quantity_named(quantity, where="--quantity")
     if arguments.measured and not arguments.scene:
         raise ValueError("--measured: needs a SCENE.toml with the bodies of the experiment")
-    file = _file(arguments)
-    coupled = file.scene.inverse_mass is not None
-    if not coupled:
-        file = shared.measured(arguments, file)
+    file = shared.measured(arguments, _file(arguments))
+    named = bool(arguments.tangential)
     if arguments.all:
         compared = _all(arguments, file)
     else:
-        others = DEFAULT_LAWS[1:] if coupled else DEFAULT_LAWS
-        arguments.tangential = arguments.tangential or list(
-            dict.fromkeys([own_law(arguments, file.laws, file.scene), *others])
-        )
+        own = own_law(arguments, file.laws, file.scene)
+        arguments.tangential = arguments.tangential or list(dict.fromkeys([own, *DEFAULT_LAWS]))
         compared = simulations(arguments, file.laws)
-    if coupled:
-        first = own_law(arguments, file.laws, file.scene)
-        names = sorted(compared, key=lambda name: name != first)
-        compared = _answering(file.scene, {name: compared[name] for name in names})
+    compared = _answering(file.scene, compared, told=named or arguments.all)
     with shared.progress(arguments.progress, "runs") as progress:
         comparison = compare(
             file,
@@ -105,6 +98,7 @@ def execute(arguments: argparse.Namespace) -> int:
             progress=progress,
         )
     quantities = arguments.quantity or side_by_side.default_quantities(comparison)
+    scored = arguments.all and bool(file.scene.shape)
     saved = shared.save(
         (arguments.figure, lambda path: _draw(path, arguments, comparison)),
         (arguments.loops, lambda path: _draw_loops(path, arguments, file.scene, compared)),
@@ -116,12 +110,12 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.json:
         content = to_dict(comparison, quantities) | {"title": file.title}
         content["complete"] = not comparison.interrupted
-        if arguments.all:
+        if scored:
             content["scores"] = json_value(scores(comparison, compared))
         shared.print_json(content)
     elif arguments.csv:
         write_csv(comparison, quantities, sys.stdout)
-    elif arguments.all:
+    elif scored:
         print(side_by_side.describe_scores(scores(comparison, compared), comparison, file))
     else:
         print(side_by_side.describe(comparison, quantities, file))
@@ -135,8 +129,10 @@ def execute(arguments: argparse.Namespace) -> int:
     return shared.FAILED if failures else saved
 
 
-def _answering(scene: Scene, compared: dict[str, Simulation]) -> dict[str, Simulation]:
-    """Return the simulations that have an answer; report the others on stderr."""
+def _answering(
+    scene: Scene, compared: dict[str, Simulation], *, told: bool
+) -> dict[str, Simulation]:
+    """Return the simulations that have an answer; report the others on stderr if ``told``."""
     answering, refused = {}, None
     for name, simulation in compared.items():
         try:
@@ -144,7 +140,8 @@ def _answering(scene: Scene, compared: dict[str, Simulation]) -> dict[str, Simul
             answering[name] = simulation
         except ValueError as error:
             refused = error
-            print(f"contactlab compare: {name} is left out: {error}", file=sys.stderr)
+            if told:
+                print(f"contactlab compare: {name} is left out: {error}", file=sys.stderr)
     if not answering and refused is not None:
         raise refused
     return answering
@@ -171,7 +168,7 @@ def _draw(path: Path, arguments: argparse.Namespace, comparison: Comparison) -> 
     from contactlab.cli.drawing import draw_all, draw_comparison  # matplotlib only when drawing
 
     quantities = arguments.quantity or side_by_side.default_quantities(comparison)
-    if arguments.all:
+    if arguments.all and comparison.scene.shape:
         draw_all(path, comparison, quantities[0], **shared.look(arguments))
     else:
         draw_comparison(path, comparison, quantities, **shared.look(arguments))
@@ -200,11 +197,6 @@ def _all(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation
         if path.count(".") < 2 and kind_of(path) != "normal":
             example = "--set integrator.symplectic.steps=400"
             raise ValueError(f"--set {path}: with --all name one law, such as {example}")
-    if not file.scene.shape and file.scene.inverse_mass is None:
-        raise ValueError(
-            f"{file.path}: --all compares over a sweep; a file needs [sweep], and "
-            "--psi1 a range START:STOP:COUNT"
-        )
     chosen = file.laws.choose(normal=arguments.normal[0] if arguments.normal else None)
     fitting = candidates(chosen.set(dict(arguments.settings)))
     for name, reason in fitting.left_out.items():

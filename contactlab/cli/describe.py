@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Any
 
 from contactlab.compose.collision import VECTORS_AFTER, Collision
-from contactlab.compose.planning import ADVICE
 from contactlab.impact.scene import entry_unit
 from contactlab.outcome.numerical_error import error_cautions
 from contactlab.outcome.result import ImpactResult
@@ -31,11 +30,8 @@ def describe(
         body = [lines, *(table(*section) for section in sections(result))]
         if collision is not None:
             body.insert(1, in_space(collision))
-    planned = str(result.plan)
-    if result.psi2_error_estimate is not None:
-        planned = planned.replace(ADVICE, "")  # it was followed
     ending = "\n".join(f"{name + ':':9} {words}" for name, words in closing(result))
-    parts = [title, *body, cautions, planned, ending]
+    parts = [title, *body, cautions, str(result.plan), ending]
     return "\n\n".join(part for part in parts if part)
 
 

@@ -32,7 +32,7 @@ from contactlab.cli.scene import (
 )
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
-from contactlab.outcome.columns import COLUMNS, csv_heading
+from contactlab.outcome.columns import components, csv_heading
 from contactlab.outcome.export import WRITERS
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import evenly, sweep_section
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
 #: Printed columns.
-SHOWN = ("psi1", "chi", "psi2", "status")
+SHOWN = ("psi1", "chi", "psi2")
 #: Most rows printed of a sweep that a file holds.
 MOST_ROWS = 25
 
@@ -72,10 +72,6 @@ def execute(arguments: argparse.Namespace) -> int:
     scene = file.scene if file else _ranges(arguments.psi1, arguments.chi)
     if not scene.shape:
         raise ValueError(f"{arguments.scene}: holds a single impact; use contactlab run")
-    if arguments.csv and scene.slip_axes:
-        raise ValueError(
-            "--csv: is for slip along a line, here it is a vector; take --out FILE.csv"
-        )
     simulation = composed(arguments, file.laws if file else LawChoice())
     keep = _folder(arguments.out) if arguments.resume else None
     before = 0 if keep is None else _done(keep)
@@ -105,10 +101,11 @@ def execute(arguments: argparse.Namespace) -> int:
         _clear(keep)
         keep = None
     if arguments.csv:
-        units = {column.name: column.unit for column in COLUMNS}
-        print(",".join(csv_heading(name, units[name], result.scene) for name in SHOWN))
-        for psi1, chi, psi2, status in _rows(result):
-            print(f"{psi1!r},{chi!r},{psi2!r},{status}")
+        names, rows = _rows(result)
+        units = ["1"] * (len(names) - 1) + [""]
+        print(",".join(csv_heading(*each, result.scene) for each in zip(names, units, strict=True)))
+        for *numbers, status in rows:
+            print(",".join([*map(repr, numbers), status]))
     elif not arguments.json:
         _print_table(result, varied, *written)
         if arguments.out and not written:
@@ -127,8 +124,8 @@ def _print_table(result: ImpactResult, varied: Mapping[str, Any], out: Path | No
         shown = {name: (entry_unit(name), values) for name, values in varied.items()}
         print(table(*sweep_section(result, shown, most=most)))
     else:
-        rows = _rows(result)
-        print(table(SHOWN, [rows[index] for index in evenly(len(rows), most)]))
+        names, rows = _rows(result)
+        print(table(names, [rows[index] for index in evenly(len(rows), most)]))
     if most is not None and len(result) > most:
         done = _finished(result)
         which = "all of them" if done == len(result) else f"the {done} finished ones"
@@ -184,12 +181,11 @@ def _ranges(psi1: Any, chi: Any) -> Scene:
     return Scene.grid(chi=np.atleast_1d(chi), psi1=np.atleast_1d(psi1))
 
 
-def _rows(result: ImpactResult) -> list[tuple[float, float, float, str]]:
-    """Return the printed columns of each impact."""
-    shape = result.scene.shape
-    columns = [
-        np.broadcast_to(np.asarray(column), shape).tolist()
-        for column in (result.psi1, result.scene.chi, result.psi2)
-    ]
-    names = [status.name for status in result.status]
-    return list(zip(*columns, names, strict=True))
+def _rows(result: ImpactResult) -> tuple[list[str], list[tuple[Any, ...]]]:
+    """Return names and values of the printed columns, one row for each impact."""
+    shape, named = result.scene.shape, []
+    for name, values in zip(SHOWN, (result.psi1, result.scene.chi, result.psi2), strict=True):
+        named += components(name, values, shape)
+    columns = [np.broadcast_to(np.asarray(values), shape).tolist() for _, values in named]
+    statuses = [status.name for status in result.status]
+    return [*(name for name, _ in named), "status"], list(zip(*columns, statuses, strict=True))

@@ -13,6 +13,7 @@ from contactlab.compose.restituted import run_by_restitution, run_in_blocks
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.impact.encounter import Encounter
+from contactlab.numeric.arrays import every, some
 from contactlab.numeric.checks import Real, real, refuse
 from contactlab.numeric.vectors import LEAST
 
@@ -95,13 +96,13 @@ def collide(
         moved = impulses.moved(encounter, restitution=e, strict=strict)
         return Collision(encounter=encounter, **moved, restitution=e)
     met: Any = encounter.approaching
-    if separating == "refuse" and not np.all(met):
+    if separating == "refuse" and not every(met):
         raise encounter.separate()
     about: dict[str, Any] = {"simulation": simulation, "restitution": e}
-    if not np.any(met):
+    if not some(met):
         unmoved = impulses.unmoved(encounter)
         return Collision(encounter=encounter, **unmoved, **about)
-    if np.all(met):
+    if every(met):
         scene = encounter.scene
     else:  # the index of an impact is its place in the whole batch
         places = np.arange(np.size(met)).reshape(np.shape(met))[met]

@@ -15,7 +15,7 @@ from contactlab.compose.restituted import planned, run_by_restitution
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.status import Status
 from contactlab.impact.bodies import Sphere
-from contactlab.impact.body_contact import arms, frame, pushed
+from contactlab.impact.body_contact import arms, in_space, pushed
 from contactlab.impact.encounter import Encounter
 from contactlab.numeric.arrays import filled
 from contactlab.numeric.checks import Real, refuse
@@ -191,9 +191,8 @@ class Collision(Answer):
         if not self.encounter.of_spheres:
             impulse = np.zeros((*shape, 3))
             if self.known is not None:
-                part = self._met
-                whole = np.einsum("...ia,...i->...a", frame(part).axes, self.known.impulse)
-                impulse[self.collided] = -whole
+                axes: Any = self.known.scene.frame
+                impulse[self.collided] = -in_space(axes, self.known.impulse)
             return impulse
         contact, pair = self.encounter.meeting(), self.encounter.pair
         push: Any = pair.normal_mass * (self.normal_velocity - contact.approach)
@@ -275,7 +274,8 @@ def _columns(encounter: Encounter, result: ImpactResult, met: Any) -> Array:
 def _moved(encounter: Encounter, result: ImpactResult, met: Any) -> dict[str, Any]:
     """Return the attributes of a collision of bodies that are no spheres."""
     motion, part = result.motion, encounter if np.all(met) else encounter.take(met)
-    moved: dict[str, Any] = pushed(part, result.impulse) | {
+    axes: Any = result.scene.frame
+    moved: dict[str, Any] = pushed(part, axes, result.impulse) | {
         "normal_velocity": motion.normal_velocity,
         "slip_velocity_change": motion.slip_velocity_change,
         "friction_work": motion.friction_work,

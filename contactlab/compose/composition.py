@@ -74,10 +74,16 @@ class Laws:
 
     def accept(self, scene: Scene, *, as_one: bool = False) -> None:
         """Refuse a scene that a law cannot run; ``as_one`` as in ``Scene.parts``."""
+        if scene.inverse_mass is None:
+            self.normal.accept(scene)
+            self.tangential.accept(scene)
+            self.integrator.accept(scene)
+            return
         # what answers where slip turns answers on a line too: its remedy holds for the whole batch
         for _, part in reversed(scene.parts(as_one=as_one)):
+            central = part.central
             for each in self.of(part):
-                each.accept(part.central)
+                each.accept(central)
 
     def of(self, part: Scene) -> Laws:
         """Return the laws of impacts that are solved alike.
@@ -106,6 +112,17 @@ class Laws:
             refused = f"{_name(self.tangential)}: rigid theory is not taken unless it is named"
             remedy += f"; or name it: tangential={name!r}"
         raise ValueError(f"{refused}; {remedy}")
+
+    def versions(self, scene: Scene, *, as_one: bool = False) -> dict[str, str]:
+        """Return name and version of each law by kind, of several in one scene with "and".
+
+        ``as_one`` is that of ``Scene.parts``.
+        """
+        if scene.inverse_mass is None:
+            return versions(*self)
+        parts = scene.parts(as_one=as_one)
+        used = [versions(*self.of(part)) for _, part in parts]
+        return {kind: " and ".join(dict.fromkeys(each[kind] for each in used)) for kind in KINDS}
 
     def changed(self, **laws: Any) -> Laws:
         """Return the laws with others of some kinds."""

@@ -79,8 +79,9 @@ def columns_of(normal: NormalMotion, laws: Laws, known: Sequence[Answer]) -> Pla
     )
     # the load impulse of a frictionless impact is M_n v1 (1 + e), at most twice M_n v1
     restitution: Any = CLOSED_FORM + 2.0 * normal.accuracy
-    if any(answer.normal is not None for _, answer in known):
-        restitution = math.nan  # the law changed the normal motion, and declares no error of it
+    for each in known:
+        if each.known.normal is not None:
+            restitution = math.nan  # the law changed the normal motion, and declares no error of it
     if shape:
         restitution = np.full(shape, restitution)
     return PlanColumns(code, _error(normal, laws, known, marched), reasons, restitution)
@@ -92,11 +93,15 @@ def plan_of(
     columns: PlanColumns,
     motion: Motion | None = None,
     history: bool | str = False,
+    *,
+    estimated: bool = False,
 ) -> Plan:
     """Return the plan of a scene, with words that are made when they are first read.
 
-    ``motion`` is that of a run, with the numbers of impacts that failed; None before a run.
+    ``motion`` is that of a run, with the numbers of impacts that failed; None before a run. Errors
+    that are ``estimated`` need no advice.
     """
+    asked = _Asked(history, estimated)
 
     def words() -> Words:
         said = of_impacts()
@@ -105,12 +110,12 @@ def plan_of(
     def of_impacts() -> Words:
         parts = scene.parts(as_one=bool(history))
         if len(parts) == 1:
-            return _words(laws, parts[0][1], scene, columns, motion, history)
+            return _words(laws, parts[0][1], scene, columns, motion, asked)
         said = []
         for where, part in parts:
             some_columns = columns.take(where)
             moved = None if motion is None else taken(motion, scene.shape, where)
-            kinds = _words(laws, part, scene.take(where), some_columns, moved, history)
+            kinds = _words(laws, part, scene.take(where), some_columns, moved, asked)
             said.append((where, Plan(some_columns, kinds)))
         return Plan.merged(said, scene.shape).words
 
@@ -123,7 +128,7 @@ def _words(
     scene: Scene,
     columns: PlanColumns,
     motion: Motion | None,
-    history: bool | str,
+    asked: _Asked,
 ) -> Words:
     """Return the clauses on impacts of ``scene`` that are solved alike, as those of ``part``."""
     masks = _Masks.of(columns)
@@ -145,14 +150,15 @@ def _words(
         computed.append(Clause(text, masks.marched, code=TANGENTIAL_MOTION))
     if coupled:
         computed.append(Clause(TOGETHER, masks.known))
-    computed += _error_clauses("psi2", columns.psi2_error, masks.ended)
+    advice = "" if asked.estimate else ADVICE
+    computed += _error_clauses("psi2", columns.psi2_error, masks.ended, advice)
     if coupled:  # of spheres it is that of the normal motion, and far smaller
         error = columns.restitution_error
-        computed += _error_clauses("the normal restitution", error, masks.ended)
+        computed += _error_clauses("the normal restitution", error, masks.ended, advice)
     left_out = _not_marched(columns, masks)
     if coupled and part.planar:
         left_out.append(Clause(ONE_PLANE, masks.known))
-    if reason := _no_history(history, columns, masks.marched):
+    if reason := _no_history(asked.history, columns, masks.marched):
         left_out.append(Clause(reason, masks.known))
     with np.errstate(under="ignore"):
         cautions = _cautions(used, part, scene, motion, masks)
@@ -167,6 +173,13 @@ def _in_place(laws: Laws, used: Laws) -> str:
         if new is not old
     ]
     return f"laws: {', '.join(pairs)}, which has no answer where friction changes the approach"
+
+
+class _Asked(NamedTuple):
+    """What a run was asked for beside the answer: a history, and an estimate of the error."""
+
+    history: bool | str
+    estimate: bool
 
 
 class _Masks(NamedTuple):
@@ -346,7 +359,7 @@ def _error(normal: NormalMotion, laws: Laws, known: Sequence[Answer], marched: M
     return error if scene.shape else float(error)
 
 
-def _error_clauses(what: str, error: Any, ended: Mask) -> list[Clause]:
+def _error_clauses(what: str, error: Any, ended: Mask, advice: str) -> list[Clause]:
     """Return what a plan says of a numerical error."""
     undeclared = np.asarray(ended & np.isnan(error))
     declared = np.asarray(ended & ~undeclared)
@@ -356,6 +369,6 @@ def _error_clauses(what: str, error: Any, ended: Mask) -> list[Clause]:
         text = f"numerical error of {what}: at most {{:.2g}}, declared"
         clauses.append(Clause(text, declared, (error,), code))
     if some(undeclared):
-        text = f"numerical error of {what}: not declared{ADVICE}"
+        text = f"numerical error of {what}: not declared{advice}"
         clauses.append(Clause(text, undeclared, code=code))
     return clauses

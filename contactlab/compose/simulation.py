@@ -120,8 +120,8 @@ class Simulation:
             Keep the course of the impact; ``"fields"`` keeps traction and stick/slip too.
         estimate_error : bool
             Estimate the numerical errors of psi2 and of the normal restitution by running the scene
-            again at two finer resolutions: ``result.psi2_error_estimate``. About twenty times the
-            work.
+            again at two finer resolutions: ``result.psi2_error_estimate`` and
+            ``.restitution_error_estimate``. About twenty times the work.
 
         Returns
         -------
@@ -145,7 +145,7 @@ class Simulation:
         if flat is not scene:
             place = np.arange(flat.shape[0]).reshape(scene.shape)
             columns, motion = columns.take(place), taken(motion, flat.shape, place)
-        plan = plan_of(laws, scene, columns, motion, history)
+        plan = plan_of(laws, scene, columns, motion, history, estimated=estimate_error)
         kept = NO_HISTORY if recorder is None else recorder.history()
         result = _result(laws, scene, plan, motion, started, kept)
         if not estimate_error:
@@ -242,21 +242,10 @@ def _result(
         scene=scene,
         plan=plan,
         motion=motion if succeeded(motion.status) else without_failures(motion),
-        laws=_versions(laws, scene, as_one=bool(history)),
+        laws=laws.versions(scene, as_one=bool(history)),
         history=history,
         run_time=time.perf_counter() - started,
     )
-
-
-def _versions(laws: Laws, scene: Scene, *, as_one: bool) -> dict[str, str]:
-    """Return name and version of each law by kind, of several in one scene with "and" between."""
-    if scene.inverse_mass is None:
-        return composition.versions(*laws)
-    parts = scene.parts(as_one=as_one)
-    used = [composition.versions(*laws.of(part)) for _, part in parts]
-    return {
-        kind: " and ".join(dict.fromkeys(each[kind] for each in used)) for kind in laws.by_kind()
-    }
 
 
 def _scene(scene: object) -> Scene:

@@ -83,18 +83,17 @@ def _alike(
     laws: Laws, scene: Scene, history: bool | str, recorder: Recorder | None
 ) -> tuple[PlanColumns, Motion]:
     """Return columns and motion of impacts that are solved in one way."""
-    shape, size = scene.shape, math.prod(scene.shape)
     coupled = scene.inverse_mass is not None
-    if coupled and recorder is None and size > together.AT_A_TIME:
-        return _cut(laws, scene, _blocks(size, together.AT_A_TIME))
+    if coupled and recorder is None and scene.shape and scene.shape[0] > together.AT_A_TIME:
+        return _cut(laws, scene, _blocks(scene.shape[0], together.AT_A_TIME))
     solve = _together if coupled else _along
     try:
         columns, motion, bound = solve(laws, scene, history, recorder)
     except faults.LawFaultError as fault:
-        if recorder is None and size > 1:
-            return _cut(laws, scene, _parts(size, most=1))
-        nothing = Motion.nothing(shape, fault.status, fault.detail, axes=scene.slip_axes)
-        return PlanColumns.nothing(shape), _named(laws, nothing)
+        if recorder is None and math.prod(scene.shape) > 1:
+            return _cut(laws, scene, _parts(*scene.shape, most=1))
+        nothing = Motion.nothing(scene.shape, fault.status, fault.detail, axes=scene.slip_axes)
+        return PlanColumns.nothing(scene.shape), _named(laws, nothing)
     motion = sound(motion, together=coupled)
     # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
     bound = bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
@@ -135,8 +134,7 @@ def _together(
 
 def _halved_if_failed(normal: NormalMotion, recorder: Recorder | None) -> None:
     """Let a batch whose normal law failed be solved in parts."""
-    many = recorder is None and math.prod(normal.scene.shape) > 1
-    if many and isinstance(normal, FailedMotion):
+    if isinstance(normal, FailedMotion) and recorder is None and math.prod(normal.scene.shape) > 1:
         raise _Scattered(Status.LAW_RAISED, "")
 
 
@@ -206,8 +204,11 @@ def _named(laws: Laws, motion: Motion) -> Motion:
 def prepare(laws: Laws, scene: Scene, history: bool | str) -> Prepared:
     """Return what impacts of one way need before the march, or raise LawFaultError."""
     coupled = scene.inverse_mass is not None
-    shared = laws.integrator.common_instants and not (coupled and laws.tangential.together)
-    if history and scene.shape and not shared:
+    if (
+        history
+        and scene.shape
+        and (not laws.integrator.common_instants or (coupled and laws.tangential.together))
+    ):
         raise refuse(
             "history",
             history,
@@ -219,7 +220,7 @@ def prepare(laws: Laws, scene: Scene, history: bool | str) -> Prepared:
     with faults.blaming(laws.tangential):
         if coupled:
             columns = together.columns_of(laws, scene, normal)
-            return Prepared(normal, [], columns, together.books_bound(laws, scene))
+            return Prepared(normal, [], columns, together.books_bound(laws, normal.scene))
         known = answers(normal, laws.tangential, history=history, accuracy=accuracy)
         bound = laws.tangential.books_bound(scene)
         return Prepared(normal, known, columns_of(normal, laws, known), bound)

@@ -72,9 +72,9 @@ def columns_of(laws: Laws, scene: Scene, normal: NormalMotion) -> PlanColumns:
     return PlanColumns(code, psi2, (WHOLE,) if together else (), restitution)
 
 
-def books_bound(laws: Laws, scene: Scene) -> Any:
+def books_bound(laws: Laws, central: Scene) -> Any:
     """Return the bound of the imbalance of the energy books over the energy at the start."""
-    return np.maximum(laws.tangential.books_bound(scene.central), CANCELS)
+    return np.maximum(laws.tangential.books_bound(central), CANCELS)
 
 
 def cautions(laws: Laws, scene: Scene) -> list[str]:

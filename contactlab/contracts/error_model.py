@@ -30,20 +30,13 @@ class Range(NamedTuple):
 
 
 def range_of(scene: Scene) -> Range:
-    """Return the range of the change of slip velocity, in m/s, of the batch shape.
-
-    It is infinite where friction changes the approach: no such bound is known there.
-    """
-    pair = scene.pair
+    """Return the range of the change of slip velocity, in m/s, of the batch shape."""
     speed: Any = scene.slip_speed
     lesser: Any = np.minimum if scene.shape else min
     with np.errstate(over="ignore", under="ignore"):
         friction: Any = scene.friction_coefficient * scene.normal_speed
-        # This is 4 chi in psi; psi itself would be infinite without friction.
-        slipping = 2.0 * (friction * (pair.normal_mass / pair.tangential_mass))
-        if scene.inverse_mass is not None:
-            return Range(friction / pair.stiffness_ratio, math.inf + 0.0 * speed, speed)
-        return Range(friction / pair.stiffness_ratio, lesser(slipping, 2.0 * speed), speed)
+        width = lesser(scene.most_slip_change, 2.0 * speed)
+        return Range(friction / scene.pair.stiffness_ratio, width, speed)
 
 
 def psi_magnitude(scene: Scene) -> Any:

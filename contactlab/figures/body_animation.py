@@ -186,7 +186,7 @@ def _course(axes: Any, result: Any) -> Callable[[float], None]:
     ends = result.scene.slip_velocity, result.rebound_slip_velocity
     slip = np.vstack([np.atleast_1d(each) for each in (ends[0], *history.slip_velocity, ends[1])])
     approach = np.concatenate(([speed], history.normal_velocity, [result.normal_velocity]))
-    names = ["slip"] if result.scene.planar else ["slip along t1", "slip along t2"]
+    names = ["slip"] if slip.shape[1] == 1 else ["slip along t1", "slip along t2"]
     curves = [("approach", approach), *zip(names, slip.T, strict=True)]
     zero_line(axes)
     for number, (name, values) in enumerate(curves):

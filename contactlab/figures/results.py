@@ -124,7 +124,7 @@ def _path(axes: Axes, result: Any) -> Axes:
     slip = np.concatenate(([ends[0]], history.slip_velocity, [ends[1]]))
     unit = unit_in("m/s", scene)
     zero_line(axes)
-    if scene.planar:
+    if slip.ndim == 1:
         rates = [scene.normal_speed], history.normal_velocity, [result.normal_velocity]
         across, up = np.concatenate(rates), slip
         axes.set_xlabel(label("velocity of approach", unit))

@@ -62,7 +62,8 @@ class Sphere:
 
     # That of all numbers takes longer than a collision; equal spheres have equal masses.
     def __hash__(self) -> int:
-        return hash(key(self.mass))
+        mass = self.mass
+        return hash(mass if type(mass) is float else key(mass))
 
     def __attrs_post_init__(self) -> None:
         if self.mass is not None:
@@ -93,7 +94,8 @@ class HalfSpace:
     material: Material = _material()
 
     def __hash__(self) -> int:
-        return hash(key(self.material.shear_modulus))
+        modulus = self.material.shear_modulus
+        return hash(modulus if type(modulus) is float else key(modulus))
 
 
 @attrs.frozen(kw_only=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+import attrs
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,6 +21,7 @@ from contactlab.impact.bodies import (
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
+from contactlab.numeric.vectors import cross
 
 Array = NDArray[np.float64]
 
@@ -79,9 +81,21 @@ def turned(body: Any, moment: Array) -> Array:
     if isinstance(body, RigidBody):
         return np.asarray(np.linalg.solve(body.inertia, moment[..., None])[..., 0])
     if isinstance(body, Sphere):
-        inertia = body.mass * body.gyration_ratio**2 * body.radius * body.radius
-        return np.asarray(moment / np.asarray(inertia)[..., None])
+        return np.asarray(moment / _moment(body)[..., None])
     return np.zeros(3)
+
+
+def _moment(sphere: Sphere) -> Any:
+    """Return the moment of inertia of a sphere, in kg m²."""
+    return np.asarray(sphere.mass * sphere.gyration_ratio**2 * sphere.radius * sphere.radius)
+
+
+def _crossing(vectors: Array) -> Array:
+    """Return the matrices K, shape (..., 3, 3), with K v = vectors x v."""
+    x, y, z = (vectors[..., k] for k in range(3))
+    matrix = np.zeros((*vectors.shape, 3))
+    matrix[..., 0, 1], matrix[..., 0, 2], matrix[..., 1, 2] = -z, y, -x
+    return matrix - np.swapaxes(matrix, -1, -2)
 
 
 def inverse_mass_of(encounter: Any, normal: Array) -> Array:
@@ -90,11 +104,12 @@ def inverse_mass_of(encounter: Any, normal: Array) -> Array:
     for body, arm in zip((encounter.body, encounter.target), arms(encounter, normal), strict=True):
         if isinstance(body, HalfSpace):
             continue
-        # column j: the velocity at the contact that a unit impulse along j makes
-        columns = [
-            np.cross(turned(body, np.cross(arm, unit)), arm)[..., None] for unit in np.eye(3)
-        ]
-        spin = np.concatenate(columns, axis=-1)
+        # K v = arm x v: an impulse p turns the body by J⁻¹ K p, and moves the contact by -K of it
+        K = _crossing(np.asarray(arm))
+        if isinstance(body, Sphere):
+            spin = -(K @ K) / _moment(body)[..., None, None]
+        else:
+            spin = -K @ np.linalg.solve(body.inertia, K)
         total = total + spin + np.eye(3) / np.asarray(body.mass)[..., None, None]
     return np.asarray(0.5 * (total + np.swapaxes(total, -1, -2)))
 
@@ -102,10 +117,8 @@ def inverse_mass_of(encounter: Any, normal: Array) -> Array:
 def relative_velocity(encounter: Any, normal: Array) -> Array:
     """Return the velocity in m/s of the first body over the target at the contact."""
     first, second = arms(encounter, normal)
-    velocity = encounter.velocity + np.cross(encounter.spin, first)
-    return np.asarray(
-        velocity - encounter.target_velocity - np.cross(encounter.target_spin, second)
-    )
+    velocity = encounter.velocity + cross(encounter.spin, first)
+    return np.asarray(velocity - encounter.target_velocity - cross(encounter.target_spin, second))
 
 
 def meeting_of_bodies(encounter: Any, normal: tuple[Any, Any, Any]) -> Contact:
@@ -144,7 +157,7 @@ def frame(encounter: Any) -> Frame:
         size = np.sqrt(np.einsum("...i,...i->...", vector, vector))
         with np.errstate(all="ignore"):
             t1 = np.where((size > rounding)[..., None], vector / size[..., None], t1)
-    axes = np.stack((n, t1, np.cross(n, t1)), axis=-2)
+    axes = np.stack((n, t1, cross(n, t1)), axis=-2)
     return Frame(
         axes,
         np.einsum("...ia,...ab,...jb->...ij", axes, W, axes),
@@ -154,24 +167,22 @@ def frame(encounter: Any) -> Frame:
 
 def scene_of_bodies(encounter: Any) -> Scene:
     """Return the scene in numbers; it keeps the inverse mass if any impact needs it."""
-    _, W, velocity = frame(encounter)
+    axes, W, velocity = frame(encounter)
     speed, slip = velocity[..., 0], velocity[..., 1:]
     ways = np.asarray(inverse_mass.ways(W, speed, slip))
     across = np.abs(slip[..., 1]) > inverse_mass.ROUNDING * (np.abs(speed) + np.abs(slip[..., 0]))
     planar = not (across | (ways == inverse_mass.SPATIAL)).any()
     number: Any = np.asarray if encounter.shape else float
-    scene = Scene(
-        None,
-        None,
-        encounter.friction_coefficient,
-        number(speed),
-        number(slip[..., 0]) if planar else slip,
-        pair=pair_of_bodies(encounter, W),
-        encounter=encounter,
-        inverse_mass=W,
-        planar=planar,
-    )
-    return scene.central if (ways == inverse_mass.CENTRAL).all() else scene
+    along = number(slip[..., 0]) if planar else slip
+    entries: dict[str, Any] = {"inverse_mass": W, "planar": planar}
+    pair = pair_of_bodies(encounter, W)
+    if (ways == inverse_mass.CENTRAL).all():
+        mass = inverse_mass.mass_along(W, inverse_mass.along(slip))
+        pair = attrs.evolve(pair, tangential_mass=number(mass))
+        along, entries = number(np.hypot(slip[..., 0], slip[..., 1])), {}
+    friction = encounter.friction_coefficient
+    where = {"encounter": encounter, "frame": axes}
+    return Scene(None, None, friction, number(speed), along, pair=pair, **where, **entries)
 
 
 def pair_of_bodies(encounter: Any, inverse: Array) -> Pair:
@@ -201,13 +212,17 @@ def pair_of_bodies(encounter: Any, inverse: Array) -> Pair:
     )
 
 
-def pushed(encounter: Any, impulse: Array) -> dict[str, Array]:
+def in_space(axes: Array, vectors: Array) -> Array:
+    """Return vectors along n, t1 and t2, the rows of ``axes``, in the frame of the encounter."""
+    return np.asarray(np.einsum("...ia,...i->...a", axes, vectors))
+
+
+def pushed(encounter: Any, axes: Array, impulse: Array) -> dict[str, Array]:
     """Return velocities and spins after an impulse in N s on the target, and its opposite.
 
-    ``impulse`` has components along n, t1 and t2 of ``frame``, shape (..., 3).
+    ``impulse`` has components along n, t1 and t2, the rows of ``axes``, shape (..., 3).
     """
-    axes = frame(encounter).axes
-    whole = np.einsum("...ia,...i->...a", axes, impulse)
+    whole = in_space(axes, impulse)
     moved = {}
     sides = (
         ("", encounter.body, -1.0), ("target_", encounter.target, 1.0),
@@ -217,7 +232,7 @@ def pushed(encounter: Any, impulse: Array) -> dict[str, Array]:
         velocity = getattr(encounter, f"{name}velocity")
         if not isinstance(body, HalfSpace):
             velocity = velocity + push / np.asarray(body.mass)[..., None]
-        spin = getattr(encounter, f"{name}spin") + turned(body, np.cross(arm, push))
+        spin = getattr(encounter, f"{name}spin") + turned(body, cross(np.asarray(arm), push))
         moved[f"{name}velocity"] = np.broadcast_to(velocity, whole.shape)
         moved[f"{name}spin"] = np.broadcast_to(spin, whole.shape)
     return moved

@@ -64,10 +64,10 @@ def path_cautions(scene: Scene, deepest: float, *, plastic: bool) -> tuple[str, 
 
 def rigid_bodies(scene: Scene) -> tuple[str, ...]:
     """Return the cautions of bodies that are no spheres: elliptic contacts, and ringing."""
-    if scene.encounter is None or scene.encounter.of_spheres:
+    bodies = [body for body in named(scene).values() if isinstance(body, RigidBody)]
+    if not bodies:
         return ()
     shortest = _least(hertz_scales(scene).duration)
-    bodies = (body for body in named(scene).values() if isinstance(body, RigidBody))
     return tuple(text for body in bodies for text in body.cautions(shortest))
 
 

@@ -41,7 +41,7 @@ GIVEN = (
     "normal", "velocity", "spin", "target_velocity", "target_spin", "contact", "target_contact",
 )  # fmt: skip
 _DIMENSIONS = attrgetter(*(f"{name}.ndim" for name in GIVEN))
-#: Pairs of single encounters: many of the same two bodies follow one another.
+#: Pairs of bodies: many encounters of the same two follow one another.
 _pair_of = lru_cache(maxsize=16)(Pair.of)
 
 
@@ -185,7 +185,8 @@ class Encounter:
         body, target = self.body, self.target
         if isinstance(body, RigidBody) or isinstance(target, RigidBody):
             raise refuse("pair", type(body).__name__, "is that of spheres", "take scene.pair")
-        return Pair.of(body, target) if self.shape else _pair_of(body, target)
+        many = self.shape and not type(body.radius) is type(body.mass) is float
+        return Pair.of(body, target) if many else _pair_of(body, target)
 
     @property
     def approaching(self) -> Any:
@@ -241,8 +242,8 @@ class Encounter:
     def scene(self) -> Scene:
         """The scene in the plane of friction, relative to a target at rest without spin.
 
-        Of bodies that are no spheres: a scene with an inverse mass where friction changes the
-        approach or the slip turns; else a scene of numbers without sphere and target.
+        Bodies that are no spheres have a scene with an inverse mass where friction changes the
+        approach or the slip turns, else a scene of numbers without sphere and target.
 
         The tangential velocity is the relative velocity of the centres along the slip. The spin
         is the part of (R1 omega1 + R2 omega2)/R1 that makes slip in this plane. Velocities and

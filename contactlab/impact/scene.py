@@ -15,6 +15,7 @@ from contactlab.impact import groups, inverse_mass
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
 from contactlab.impact.grid import Array, axes_of, product
 from contactlab.impact.material import Material
+from contactlab.impact.motions import Motions
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import (
     NON_NEGATIVE,
@@ -46,7 +47,7 @@ def _tensors(value: Any) -> Array | None:
 
 @arguments_told
 @attrs.frozen
-class Scene:
+class Scene(Motions):
     """One oblique impact, or a batch of them, in SI units.
 
     The sphere moves towards the target, which is at rest and does not spin. Every
@@ -81,6 +82,8 @@ class Scene:
         friction coefficient. A law that needs mu itself refuses such a scene.
     encounter : Encounter, optional
         The encounter in space, which cautions and velocities in space look at.
+    frame : array, shape (..., 3, 3), optional
+        n, t1 and t2 as rows, in the frame of an encounter of bodies that are no spheres.
     inverse_mass : array, shape (..., 3, 3), optional
         W in 1/kg, of a scene without sphere and target: the acceleration of the relative motion at
         the contact for unit forces along n, t1 and t2.
@@ -106,6 +109,7 @@ class Scene:
     )
     unit_friction: bool = instance(bool, default=False, kw_only=True, repr=False)
     encounter: Any = attrs.field(default=None, eq=False, repr=False, kw_only=True)
+    frame: Array | None = attrs.field(default=None, eq=False, repr=False, kw_only=True)
     inverse_mass: Array | None = attrs.field(
         default=None, converter=_tensors, eq=key, repr=False, kw_only=True
     )
@@ -180,10 +184,10 @@ class Scene:
 
     def numbers(self) -> dict[str, Real]:
         """Return every number of the scene and of its pair, by name."""
-        numbers = {field.name: getattr(self.pair, field.name) for field in attrs.fields(Pair)}
-        for field in attrs.fields(Scene):
-            if "unit" in field.metadata:
-                numbers[field.name] = getattr(self, field.name)
+        pair = self.pair
+        numbers = {name: getattr(pair, name) for name in OF_PAIR}
+        for name in OF_SCENE:
+            numbers[name] = getattr(self, name)
         for name in ("sphere", "target"):
             body = getattr(self, name)
             if body is not None and body.material.yield_stress is not None:
@@ -532,195 +536,6 @@ class Scene:
         return self.tangential_velocity + self.spin * self.sphere.radius
 
     @property
-    def slip_speed(self) -> Any:
-        """Magnitude of the slip velocity, in m/s, of the batch shape."""
-        return self.size_of(self.slip_velocity)
-
-    def size_of(self, slip: Any) -> Any:
-        """Return the magnitude of slip velocities, of the batch shape.
-
-        Parameters
-        ----------
-        slip : float or array
-            As ``slip_velocity``.
-        """
-        return abs(slip) if self.planar else np.hypot(slip[..., 0], slip[..., 1])
-
-    def along_slip(self, velocity: Any) -> Any:
-        """Return the part of slip velocities along the slip at first touch, of the batch shape.
-
-        Parameters
-        ----------
-        velocity : float or array
-            As ``slip_velocity``.
-        """
-        if self.planar:
-            return velocity
-        part = np.einsum("...i,...i->...", velocity, inverse_mass.along(self.slip_velocity))
-        return part if self.shape else float(part)
-
-    @property
-    def slip_axes(self) -> tuple[int, ...]:
-        """Axes of a slip velocity beside the batch's: (2,) in space, () in the plane."""
-        return () if self.planar else (2,)
-
-    @property
-    def chi(self) -> Any:
-        """Inertia ratio, eq. (38); in space (kappa/2) W_tt/W_nn, shape (..., 2, 2)."""
-        if self.planar:
-            return self.pair.inertia_ratio
-        W: Any = self.inverse_mass
-        half = 0.5 * np.asarray(self.pair.stiffness_ratio)
-        return half[..., None, None] * W[..., 1:, 1:] / W[..., :1, :1]
-
-    @property
-    def lam(self) -> Any:
-        """Lam = mu W_nt/W_nn, what friction adds to the approach; (..., 2) in space."""
-        return self._coupling(self.friction_coefficient)
-
-    @property
-    def eta(self) -> Any:
-        """Eta = kappa W_nt/(mu W_nn), what pressure adds to the slip; infinite without friction."""
-        with np.errstate(all="ignore"):
-            return self._coupling(np.divide(self.pair.stiffness_ratio, self.friction_coefficient))
-
-    @property
-    def rho(self) -> Real:
-        """Rho = mu²/kappa."""
-        mu: Any = self.friction_coefficient
-        rho: Real = mu * mu / self.pair.stiffness_ratio
-        return rho
-
-    def _coupling(self, factor: Any) -> Any:
-        """Return ``factor`` times W_nt/W_nn; 0 for spheres."""
-        if self.inverse_mass is None:
-            return 0.0
-        with np.errstate(all="ignore"):
-            W = self.inverse_mass
-            vectors = np.asarray(factor)[..., None] * W[..., 0, 1:] / W[..., :1, 0]
-        if not self.planar:
-            return vectors
-        return vectors[..., 0] if self.shape else float(vectors[0])
-
-    @property
-    def central(self) -> Scene:
-        """The impact with the same approach and no coupling: the scene itself for spheres.
-
-        Its slip is the magnitude in space, its tangential mass that along the slip.
-        """
-        if self.inverse_mass is None:
-            return self
-        slip, mass = self.tangential_velocity, self.pair.tangential_mass
-        if not self.planar:
-            slip = self.slip_speed
-            slip = slip if self.shape else float(slip)
-            along = inverse_mass.along(self.slip_velocity)
-            mass = inverse_mass.mass_along(self.inverse_mass, along)
-            mass = mass if self.shape else float(mass)
-        scene = attrs.evolve(
-            self,
-            tangential_velocity=batch.spread(slip, self.shape),
-            pair=attrs.evolve(self.pair, tangential_mass=mass),
-            inverse_mass=None,
-            planar=True,
-        )
-        return scene.numbered(self.index)
-
-    def parts(self, *, as_one: bool = False) -> list[tuple[Any, Scene]]:
-        """Return places and scenes of the impacts that are solved alike, at most three.
-
-        A part has no inverse mass where W does not couple and slip keeps its line, and is planar
-        where slip stays along t1.
-
-        Parameters
-        ----------
-        as_one : bool
-            True if impacts that differ stay one part, as a history with one time axis needs.
-        """
-        if self.inverse_mass is None:
-            return [(..., self)]
-        found = self._ways()
-        if not self.shape:
-            return [(..., self._going(found))]
-        kinds = np.unique(found).tolist()
-        if len(kinds) == 1:
-            return [(..., self._going(kinds[0]))]
-        if as_one:
-            return [(..., self)]
-        masks = [(found == kind, kind) for kind in kinds]
-        return [(where, self.take(where)._going(kind)) for where, kind in masks]
-
-    def _ways(self) -> Any:
-        """Return the way in which each impact is solved."""
-        slip = np.asarray(self.tangential_velocity)
-        if self.planar:
-            slip = np.stack((slip, 0.0 * slip), axis=-1)
-        if self.shape:
-            slip = np.broadcast_to(slip, (*self.shape, 2))
-        W: Any = self.inverse_mass
-        return inverse_mass.ways(W, self.normal_speed, slip)
-
-    def _going(self, way: int) -> Scene:
-        """Return this scene as it is solved in one way."""
-        if way == inverse_mass.CENTRAL:
-            return self.central
-        if way == inverse_mass.SPATIAL or self.planar:
-            return self
-        slip = batch.spread(self.slip_velocity[..., 0], self.shape)
-        return attrs.evolve(self, tangential_velocity=slip, planar=True).numbered(self.index)
-
-    def impulse(self, rate: Any, change: Any) -> Array:
-        """Return the impulse on the target along n, t1 and t2, shape (..., 3), in N s.
-
-        Parameters
-        ----------
-        rate, change : float or array
-            Rate of approach after, and change of the slip velocity, in m/s.
-        """
-        if self.inverse_mass is None:
-            push = self.pair.normal_mass * (self.normal_speed - rate)
-            drag = -self.pair.tangential_mass * change
-            return np.stack(np.broadcast_arrays(push, drag, 0.0), axis=-1)
-        return inverse_mass.impulse(
-            self.inverse_mass, self._vectors(rate - self.normal_speed, change)
-        )
-
-    def energies(self, rate: Any, change: Any) -> tuple[Any, Any, Any]:
-        """Return the energy at the start, and what approach and slip lose of it, in J.
-
-        Parameters
-        ----------
-        rate, change : float or array
-            Rate of approach after, and change of the slip velocity, in m/s.
-        """
-        speed: Any = self.normal_speed
-        if self.inverse_mass is None:
-            return self.pair.energies(speed, self.slip_velocity, rate, change)
-        before, moved = self.velocity, self._vectors(rate - speed, change)
-        momentum = inverse_mass.impulse(self.inverse_mass, np.stack((-before, moved)))
-        start = 0.5 * np.einsum("...i,...i->...", momentum[0], before)
-        whole = np.einsum("...i,...i->...", momentum[1], before + 0.5 * moved)
-        lost = 0.5 * self.pair.normal_mass * (speed - rate) * (speed + rate)
-        if not self.shape:
-            start, whole = float(start), float(whole)
-        return start, lost, whole - lost
-
-    @property
-    def velocity(self) -> Array:
-        """Approach and slip at first touch along n, t1 and t2, shape (..., 3), in m/s."""
-        return self._vectors(self.normal_speed, self.slip_velocity)
-
-    def _vectors(self, approach: Any, slip: Any) -> Array:
-        """Return rates along n and slip velocities as vectors of shape (..., 3)."""
-        vectors = np.zeros((*self.shape, 3))
-        vectors[..., 0] = approach
-        if self.planar:
-            vectors[..., 1] = slip
-        else:
-            vectors[..., 1:] = slip
-        return vectors
-
-    @property
     def psi_scale(self) -> Real:
         """kappa/(mu v1) of eq. (29), psi per m/s of slip velocity; infinite without friction."""
         if not self.shape:  # plain numbers are ten times as fast
@@ -753,6 +568,9 @@ class Scene:
         return self.psi(self.slip_velocity)
 
 
+#: Numbers of a pair and of a scene.
+OF_PAIR = tuple(field.name for field in attrs.fields(Pair))
+OF_SCENE = tuple(field.name for field in attrs.fields(Scene) if "unit" in field.metadata)
 #: Units of the entries from which scenes are made.
 UNITS: dict[str, str] = {
     field.name: field.metadata["unit"]

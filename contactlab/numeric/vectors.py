@@ -15,6 +15,7 @@ from contactlab.numeric.checks import Rule, first_of, key, real, refuse
 Array = NDArray[np.float64]
 
 NOTHING = (0.0, 0.0, 0.0)
+_ROLLED = [1, 2, 0]
 _THREE, _PLAIN = struct.Struct("3d"), (float, int, np.float64)
 #: Largest number in a vector, and least length of a normal and least speed of approach. The
 #: squares of these bounds are finite and positive in floating point.
@@ -98,6 +99,12 @@ def moving(vectors: Array) -> bool:
 def square_root(square: Any) -> Any:
     """Return the square root of an array, or of a float as a float."""
     return math.sqrt(square) if isinstance(square, float) else np.sqrt(square)
+
+
+def cross(one: Any, other: Any) -> Array:
+    """Return the products of vectors, shape (..., 3); ``np.cross`` takes several times as long."""
+    rolled = one * other[..., _ROLLED] - one[..., _ROLLED] * other
+    return np.asarray(rolled[..., _ROLLED])
 
 
 def difference(minuend: Array, subtrahend: Array) -> tuple[Any, Any, Any]:

@@ -73,14 +73,16 @@ class ImpactResult(Answer):
         """Return what ``repr`` says of the answer."""
         scene, psi2 = self.scene, np.asarray(self.psi2)
         if scene.shape:
-            finite = scene.size_of(psi2) if scene.slip_axes else psi2
+            finite, what = psi2, "psi2"
+            if psi2.ndim > len(scene.shape):
+                finite, what = scene.size_of(psi2), "abs(psi2)"
             finite = finite[np.isfinite(finite)]
             ends = f" from {finite.min():.6g} to {finite.max():.6g}" if finite.size else " unknown"
-            what = "abs(psi2)" if scene.slip_axes else "psi2"
             return f"{np.size(self.motion.status)} impacts, {what}{ends}"
-        told = {"psi1": scene.psi1, "chi": scene.chi}
-        if scene.inverse_mass is not None:
-            told |= {"lam": scene.lam, "normal_restitution": self.normal_restitution}
+        told = scene.groups
+        if told.pop("eta", None) is not None:
+            del told["rho"]
+            told["normal_restitution"] = self.normal_restitution
         words = (
             f"{name}={_numbers_told(value)}" for name, value in (told | {"psi2": psi2}).items()
         )
@@ -176,10 +178,8 @@ class ImpactResult(Answer):
 
     def _in_space(self, name: str) -> Any:
         """Return a vector after the impact of bodies that are no spheres; None without them."""
-        encounter = self.scene.encounter
-        if encounter is None or self.scene.sphere is not None:
-            return None
-        return pushed(encounter, self.impulse)[name]
+        encounter, axes = self.scene.encounter, self.scene.frame
+        return None if axes is None else pushed(encounter, axes, self.impulse)[name]
 
     @property
     def rebound_spin(self) -> Any:

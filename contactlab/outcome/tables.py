@@ -25,8 +25,7 @@ from contactlab.outcome.result import ImpactResult
 #: Most sentences on failed impacts that are shown.
 SENTENCES = 3
 #: Entries of a scene that are shown beside its bodies.
-SCENE = ("friction_coefficient", "normal_speed", "tangential_velocity", "spin", "psi1", "chi")
-COUPLING = ("lam", "eta", "rho")
+SCENE = ("friction_coefficient", "normal_speed", "tangential_velocity", "spin")
 #: Vectors in space of bodies that are no spheres, which tables leave to their own section.
 IN_SPACE = ("rebound_spin",)
 #: In place of an imbalance, where the friction work is what the velocities lose.
@@ -77,8 +76,7 @@ def scene_section(scene: Scene) -> Section:
         rows += _body("sphere", scene.sphere)
         if scene.target is not None:
             rows += _body("struck sphere" if sphere_target else "half-space", scene.target)
-    coupled = scene.inverse_mass is not None
-    for name in (*SCENE, *(COUPLING if coupled else ())):
+    for name in (*SCENE, *scene.groups):
         unit = unit_in(entry_unit(name), scene)
         for part, values in components(name, getattr(scene, name), scene.shape):
             rows.append([part.replace("_", " "), _range(values), unit])
@@ -247,19 +245,17 @@ def _each(name: str, value: Any) -> list[tuple[str, Any]]:
 def _contact(result: ImpactResult) -> list[Row]:
     """Return restitutions, duration and maxima of the contact."""
     scene, motion = result.scene, result.motion
-    coupled = scene.inverse_mass is not None
     rows: list[Row] = [
-        *([name, value, "1"] for name, value in _each("chi", scene.chi)),
         *(
             [part, value, "1"]
-            for name in (COUPLING if coupled else ())
-            for part, value in _each(name, getattr(scene, name))
+            for name, group in [*scene.groups.items()][1:]
+            for part, value in _each(name, group)
         ),
         ["normal restitution e", result.normal_restitution, "1"],
         ["tangential restitution e_t", result.tangential_restitution, "1"],
         ["contact time", motion.duration, "s"],
     ]
-    if coupled:
+    if "lam" in scene.groups:
         rows.append(["compressions", result.compressions, "1"])
     if scene.sphere is None and scene.encounter is None:
         return rows

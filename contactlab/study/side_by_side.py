@@ -9,13 +9,15 @@ from typing import Any
 import numpy as np
 
 from contactlab.impact.scene import entry_unit
-from contactlab.outcome.columns import COMPARISON_TABLE, columns_of, quantity_named
+from contactlab.outcome.columns import COMPARISON_TABLE, columns_of, components, quantity_named
 from contactlab.outcome.tables import IN_SPACE, heading, number, time
 from contactlab.outcome.text_table import table
 from contactlab.scene_file import SceneFile
 
 #: Scores below this are rounding errors and shown as 0.
 ZERO = 1e-12
+#: Laws beside each other, one impact's, above which each has a row.
+MOST_COLUMNS = 4
 
 
 def default_quantities(comparison: Any) -> list[str]:
@@ -24,9 +26,9 @@ def default_quantities(comparison: Any) -> list[str]:
     if measured:
         return list(dict.fromkeys(measured))
     scene = comparison.scene
-    psi2 = ["psi2_1", "psi2_2"] if scene.slip_axes else ["psi2"]
+    psi2 = [name for name, _ in components("psi2", comparison.runs[0].result.psi2, scene.shape)]
     if scene.shape:
-        return psi2 if scene.inverse_mass is None else ["normal_restitution", *psi2]
+        return ["normal_restitution", *psi2] if "lam" in scene.groups else psi2
     known = {column.name for column in columns_of(scene)}
     laws, others = comparison.names, [*COMPARISON_TABLE[1:], "compressions"]
     return psi2 + [
@@ -93,8 +95,16 @@ def _short(value: object) -> str:
 
 
 def _one_impact(comparison: Any, quantities: Sequence[str]) -> str:
-    """Return the quantities of one impact under all laws, one row each."""
+    """Return the quantities of one impact under all laws, a row each; of many laws a column."""
     first, *others = comparison.names
+    if len(comparison.names) > MOST_COLUMNS:
+        units = {name: quantity_named(name).unit_in(comparison.scene) for name in quantities}
+        headings = ["law", *(heading(name, unit) for name, unit in units.items())]
+        rows = [
+            [law, *(float(comparison.values(name, law)) for name in quantities)]
+            for law in comparison.names
+        ]
+        return table(headings, rows)
     headings = ["", *comparison.names, *(f"{name} - {first}" for name in others), "unit"]
     rows = []
     for name in quantities:

@@ -45,7 +45,8 @@ ESTIMATED = 3.0
 BOOKS = 1e-5
 #: Bound of energy from nothing, over the energy at the start, however coarse the method.
 LARGEST_GAIN = 0.1
-#: The same of eccentric impacts: of the books of a law that declares none, and of the gain.
+#: Both bounds where friction changes the approach: of the books of a law that declares none, and
+#: of the gain.
 BODIES_BOOKS, BODIES_GAIN = 1e-3, 1e-3
 #: Bound of e - 1 under a law with a closed-form motion, and of 1 - e if elastic, however few steps.
 LARGEST_NORMAL = 1e-9
@@ -60,7 +61,8 @@ class Outcome:
     error, bound : float
         Error of the change of slip velocity and its bound, over the range; NaN without an answer.
         The bound of a law that declares no error is ``UNDECLARED``, or ``ESTIMATED`` times the
-        estimated error where that is larger. Of eccentric impacts the distance from rigid bodies.
+        estimated error where that is larger. Where friction changes the approach, ``error`` is the
+        distance from rigid bodies.
     note : str
         The status, or the sentences on what is wrong.
     """

@@ -20,7 +20,7 @@ from contactlab.testing.check import CHANGES, GROWS, WHOLE, apply_if, check, hol
 from contactlab.testing.compare import same
 from contactlab.testing.load_paths import FRICTION, bodies, scene
 from contactlab.testing.units import ODD_UNITS, in_units
-from contactlab.testing.ways import Way, allowed, course, meet, ways
+from contactlab.testing.ways import ROUNDING, Way, allowed, course, meet, ways, ways_of_bodies
 
 #: Entries of a motion.
 ENTRIES = (*TangentialMotion.numbers(), "status", "detail")
@@ -45,7 +45,7 @@ REFERENCE = {
 
 def met(law: Any) -> Iterator[tuple[Way, float, float, Any, Any]]:
     """Iterate over ways, psi1 and chi, with change of psi and friction work of each impact."""
-    for way in ways(law):
+    for way in ways_of_bodies(law):
         for chi, psi1 in itertools.product(CHI, PSI1):
             change, _, work = meet(way, psi1, chi)
             yield way, psi1, chi, change, work
@@ -67,7 +67,9 @@ def impact_odd(law: Any) -> None:
 @check(TangentialLaw)
 def impact_units(law: Any) -> None:
     """An impact does not depend on the units of length, time and mass (theory §7)."""
-    for way, converted in zip(ways(law), ways(in_units(law, ODD_UNITS)), strict=True):
+    for way, converted in zip(
+        ways_of_bodies(law), ways_of_bodies(in_units(law, ODD_UNITS)), strict=True
+    ):
         for chi, psi1 in itertools.product(CHI, PSI1):
             change, _, work = meet(way, psi1, chi)
             converted_change, _, converted_work = meet(converted, psi1, chi, units=ODD_UNITS)
@@ -114,7 +116,7 @@ def impact_books(law: Any) -> None:
 def impact_coulomb_limit(law: Any) -> None:
     """The force never exceeds mu P along an impact (TangentialLaw, 1)."""
     followed = 0
-    for way in ways(law):
+    for way in ways_of_bodies(law):
         for chi, psi1 in itertools.product(CHI, (0.3, 1.2, 3.5)):
             history = course(way, psi1, chi)[0]
             if np.isnan(history.tangential_force).all():
@@ -134,16 +136,18 @@ def impact_coulomb_limit(law: Any) -> None:
 @check(TangentialLaw)
 def impact_central(law: Any) -> None:
     """A central impact makes no tangential force (TangentialLaw, 2)."""
-    for way in ways(law):
+    for way in ways_of_bodies(law):
         for chi in CHI:
             change, _, work = meet(way, 0.0, chi)
-            hold(change == 0.0 and work == 0.0, f"psi1 = 0 gives psi2 = {change:.2g} ({way}).")
+            least = ROUNDING if way.bodies else 0.0  # a sum of many steps, where nothing is zero
+            sentence = f"psi1 = 0 gives psi2 = {change:.2g} ({way})."
+            hold(abs(change) <= least and abs(work) <= least, sentence)
 
 
 @check(TangentialLaw, Integrator)
 def impact_repeatable(law: Any) -> None:
     """A run does not change the law, is repeatable, and does not depend on an observer."""
-    for way in ways(law):
+    for way in ways_of_bodies(law):
         kept = copy.deepcopy(law)
         first: Any = meet(way, 1.2, 1.44)[1]
         meet(way, 3.5, 3.0)
@@ -167,7 +171,7 @@ def impact_batch(law: Any) -> None:
     friction = np.linspace(0.1, 0.7, psi1.size).reshape(psi1.shape)
     impacts = scene(psi1, chi, bodies=bodies(*psi1.shape), friction=friction)
     room = 1e-9 if isinstance(law, Integrator) else 1e-8
-    for way in ways(law):
+    for way in ways_of_bodies(law):
         change, motion, work = way.run(impacts)
         for name in ENTRIES:
             shape = np.shape(getattr(motion, name))
@@ -187,7 +191,7 @@ def impact_after_another(law: Any) -> None:
     stacked = scene(
         *(np.full((1, 1, 1), number) for number in (2.0, CHI[2])), bodies=1.6, friction=0.6
     )
-    for way in ways(law):
+    for way in ways_of_bodies(law):
         way.run(first)
         alone, _, _ = way.run(second)
         gap = abs(float(np.ravel(way.run(stacked).change)[0]) - float(alone))
@@ -203,7 +207,7 @@ def impact_after_another(law: Any) -> None:
 @check(TangentialLaw, claim="partial_slip", nature=WHOLE)
 def impact_reference(law: Any) -> None:
     """Impacts with partial slip end as the exact solution does (theory §5)."""
-    for way in ways(law):
+    for way in ways_of_bodies(law):
         for (chi, psi1), psi2 in REFERENCE.items():
             error = abs(psi1 + meet(way, psi1, chi)[0] - psi2)
             within(

@@ -38,6 +38,8 @@ MOST_STEPS = 20_000
 INTEGRATION = 2e-3
 #: Bound of the error of a whole-impact answer by rounding.
 ROUNDING = 1e-9
+#: W_nt over sqrt(W_nn W_tt) of impacts that are solved as those of bodies.
+COUPLING = 1e-10
 
 
 class Answer(NamedTuple):
@@ -49,16 +51,22 @@ class Answer(NamedTuple):
 
 
 class Way(NamedTuple):
-    """One way of running a law: by an integrator, or as whole impacts, under a normal law."""
+    """One way of running a law: by an integrator, or as whole impacts, under a normal law.
+
+    In a way of ``bodies`` normal and tangential motion are solved together, as where friction
+    changes the approach; by ``COUPLING`` it hardly does, so that the answer is the spheres'.
+    """
 
     law: TangentialLaw
     normal: NormalLaw
     integrator: Integrator | None
+    bodies: bool = False
 
     def __str__(self) -> str:
         """Return the way in words."""
         by = f"{type(self.law).__name__} by {type(self.integrator).__name__}"
-        return by if self.integrator else "as whole impacts"
+        by = by if self.integrator else "as whole impacts"
+        return f"{by}, with the normal motion" if self.bodies else by
 
     @property
     def exact(self) -> bool:
@@ -74,7 +82,9 @@ class Way(NamedTuple):
         """
         motion: TangentialMotion
         limits.begin(f"an impact, {_which(impact)} ({self})")
-        if self.integrator is None:
+        if self.bodies:
+            motion = _together(self, _coupled(impact), recorder)
+        elif self.integrator is None:
             motion = Simulation(normal=self.normal, tangential=self.law).run(impact).motion
         else:
             normal = normal_motion(self.normal, impact)
@@ -84,6 +94,26 @@ class Way(NamedTuple):
         unit = impact.pair.tangential_mass / np.square(impact.psi_scale)
         change = impact.psi(motion.slip_velocity_change)
         return Answer(change, motion, motion.friction_work / unit)
+
+
+def _coupled(impact: Scene) -> Scene:
+    """Return an impact with an inverse mass that hardly couples; the mirror image of its mirror."""
+    pair, shape = impact.pair, impact.shape
+    W = np.zeros((*shape, 3, 3))
+    W[..., 0, 0] = 1.0 / np.asarray(pair.normal_mass)
+    W[..., 1, 1] = W[..., 2, 2] = 1.0 / np.asarray(pair.tangential_mass)
+    coupling = COUPLING * np.sign(impact.slip_velocity)
+    W[..., 0, 1] = W[..., 1, 0] = coupling * np.sqrt(W[..., 0, 0] * W[..., 1, 1])
+    numbers = impact.friction_coefficient, impact.normal_speed, impact.slip_velocity
+    return Scene(None, None, *numbers, pair=pair, inverse_mass=W)
+
+
+def _together(way: Way, impact: Scene, recorder: Observer | None) -> TangentialMotion:
+    """Return the motion of an impact in which friction changes the approach."""
+    normal = normal_motion(way.normal, impact.central)
+    if way.integrator is None or way.law.together:
+        return way.law.impacts_together(impact, normal, None, recorder)
+    return way.integrator.integrate_together(normal, way.law, impact, recorder)
 
 
 def _followed(way: Way, normal: NormalMotion, impact: Scene) -> None:
@@ -152,6 +182,29 @@ def ways(law: TangentialLaw | Integrator, normal: NormalLaw | None = None) -> li
     return listed
 
 
+def ways_of_bodies(law: TangentialLaw | Integrator) -> list[Way]:
+    """Return the ways of ``ways``, and those in which bodies of any shape are run.
+
+    Raises
+    ------
+    NotApplicableError
+        If there is no way.
+    """
+    listed = ways(law)
+    together = [
+        Way(each.law, each.normal, None if each.law.together else each.integrator, bodies=True)
+        for each in listed
+        if each.law.together or (each.integrator is not None and _marches(each))
+    ]
+    return listed + together[:1]
+
+
+def _marches(way: Way) -> bool:
+    """Return whether the integrator of a way marches the law with the normal motion."""
+    present = isinstance(way.law, SteppedTangentialLaw) and not way.law.needs_future
+    return way.integrator is not None and way.integrator.together and present
+
+
 def meet(
     way: Way, psi1: Any, chi: Any, *, units: Units | None = None, recorder: Observer | None = None
 ) -> Answer:
@@ -171,7 +224,7 @@ def meet(
 
 def course(way: Way, psi1: float, chi: float) -> tuple[History, TangentialMotion]:
     """Return history and motion of an impact, marched step by step."""
-    if way.integrator is None:
+    if way.integrator is None and not way.bodies:
         simulation = Simulation(normal=way.normal, tangential=way.law)
         result = simulation.run(scene(psi1, chi), history=True)
         assert result.history

@@ -132,7 +132,7 @@ class Frictionless(WholeImpactTangentialLaw):
             normal.maximum_force, 0.5 * impulse * (speed + rate),
         )  # fmt: skip
         return TangentialMotion(
-            slip_velocity_change=drag[..., 0] if scene.planar else drag,
+            slip_velocity_change=scene.tangent(drag),
             friction_work=spread(0.0, scene.shape),
             normal=Ends(*entries),
             status=filled(Status.SUCCESS, scene.shape),

@@ -36,7 +36,7 @@ def rigid_impacts(scene: Scene, normal: NormalMotion) -> TangentialMotion:
     number: Any = np.asarray if shape else float
     unknown = spread(math.nan, shape)  # they happen in no time
     return TangentialMotion(
-        slip_velocity_change=number(change[..., 0]) if scene.planar else change,
+        slip_velocity_change=scene.tangent(change),
         friction_work=number(work),
         normal=Ends(unknown, number(after[..., 0]), *3 * (unknown,), number(loss)),
         status=filled(Status.SUCCESS, shape),

@@ -73,8 +73,6 @@ MISSING = "must be given too (chi is 1.4412 for a solid sphere)"
          "--measured: needs a SCENE.toml with the bodies of the experiment"),
         (["compare", "SWEEP", "--column", "a=b"],
          "--column: names headings of --measured DATA.csv, which is missing"),
-        (["compare", "BALL", "--all"], "{ball}: --all compares over a sweep; a file needs [sweep], "
-         "and --psi1 a range START:STOP:COUNT"),
         (["compare", "SWEEP", "--all", "--tangential", "coulomb"], "ALL"),
         (["compare", "SWEEP", "--all", "--integrator", "paper"], "ALL"),
         (["compare", "SWEEP", "--all", "--normal", "hertz,jkr"], "ALL"),

@@ -120,10 +120,14 @@ def test_bad_input(run, sweep, arguments, words):
     assert words in ran.err
 
 
-def test_all_of_a_single_impact_is_refused(run, ball):
+def test_all_of_a_single_impact_have_a_row_each(run, ball):
     ran = run("compare", ball, "--all")
-    assert ran.status == 2
-    assert "[sweep]" in ran.err
+    assert ran.status == 0
+    laws = [
+        line.split()[0] for line in ran.out.partition("cost")[0].splitlines() if line[:1].islower()
+    ]
+    assert laws[:3] == ["law", "fronts", "annulus"]
+    assert "caution," in ran.out
 
 
 def test_bands_are_the_numerical_error_carried_into_the_quantity():

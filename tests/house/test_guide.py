@@ -29,7 +29,9 @@ BLOCKS = re.compile(r"```python\n(.*?)```\n(?:```text\n(.*?)```\n)?", re.DOTALL)
 #: "theory §5", "theory §§1 and 4", also where a line ends between the two.
 CITATION = re.compile(r"\btheory(?:\.md`?)?\s+(?:#:?\s*)?(§§?\s*\d+(?:(?:,| and| to)\s+§?\d+)*)")
 DOI = re.compile(r"10\.\d{4,9}/[^\s,;]+")
-LAWS = ("Viscoelastic", "Brush", "HardSphere", "RoughSphere", "SlipThenRoll", "Leapfrog")
+LAWS = (
+    "Viscoelastic", "Brush", "HardSphere", "RoughSphere", "SlipThenRoll", "Leapfrog", "Bristle",
+)  # fmt: skip
 #: Laws whose checks take longer than a second.
 HEAVY = ("Viscoelastic", "Brush", "Leapfrog")
 #: Where names in the tables of the guide are looked for.

@@ -1,0 +1,261 @@
+"""What a scene tells of its slip and its inverse mass, for spheres and for bodies of any shape."""
+
+from __future__ import annotations
+
+import copy
+import math
+from typing import TYPE_CHECKING, Any, Self
+
+import attrs
+import numpy as np
+
+from contactlab.impact import inverse_mass
+from contactlab.impact.bodies import Pair
+from contactlab.impact.grid import Array
+from contactlab.numeric import arrays as batch
+from contactlab.numeric.checks import Real
+
+#: Groups of theory §14, where friction changes the approach.
+COUPLED = ("lam", "eta", "rho")
+
+
+class Motions:
+    """Base of scenes: slip, dimensionless groups, ways of solving, impulses and energies."""
+
+    __slots__ = ()
+
+    if TYPE_CHECKING:
+        pair: Pair
+        shape: tuple[int, ...]
+        planar: bool
+        inverse_mass: Array | None
+        friction_coefficient: Real
+        normal_speed: Real
+        tangential_velocity: Any
+        index: Any
+
+        slip_velocity: Any
+        psi1: Any
+        take: Any
+
+    @property
+    def slip_speed(self) -> Any:
+        """Magnitude of the slip velocity, in m/s, of the batch shape."""
+        return self.size_of(self.slip_velocity)
+
+    def size_of(self, slip: Any) -> Any:
+        """Return the magnitude of slip velocities, of the batch shape.
+
+        Parameters
+        ----------
+        slip : float or array
+            As ``slip_velocity``.
+        """
+        return abs(slip) if self.planar else np.hypot(slip[..., 0], slip[..., 1])
+
+    def along_slip(self, velocity: Any) -> Any:
+        """Return the part of slip velocities along the slip at first touch, of the batch shape.
+
+        Parameters
+        ----------
+        velocity : float or array
+            As ``slip_velocity``.
+        """
+        if self.planar:
+            return velocity
+        part = np.einsum("...i,...i->...", velocity, inverse_mass.along(self.slip_velocity))
+        return part if self.shape else float(part)
+
+    @property
+    def slip_axes(self) -> tuple[int, ...]:
+        """Axes of a slip velocity beside the batch's: (2,) in space, () in the plane."""
+        return () if self.planar else (2,)
+
+    @property
+    def chi(self) -> Any:
+        """Inertia ratio, eq. (38); in space (kappa/2) W_tt/W_nn, shape (..., 2, 2)."""
+        if self.inverse_mass is None:
+            return self.pair.inertia_ratio
+        W, half = self.inverse_mass, 0.5 * np.asarray(self.pair.stiffness_ratio)
+        if not self.planar:
+            return half[..., None, None] * W[..., 1:, 1:] / W[..., :1, :1]
+        chi = half * W[..., 1, 1] / W[..., 0, 0]
+        return chi if self.shape else float(chi)
+
+    @property
+    def lam(self) -> Any:
+        """Lam = mu W_nt/W_nn, what friction adds to the approach; (..., 2) in space."""
+        return self._coupling(self.friction_coefficient)
+
+    @property
+    def eta(self) -> Any:
+        """Eta = kappa W_nt/(mu W_nn), what pressure adds to the slip; infinite without friction."""
+        with np.errstate(all="ignore"):
+            return self._coupling(np.divide(self.pair.stiffness_ratio, self.friction_coefficient))
+
+    @property
+    def rho(self) -> Real:
+        """Rho = mu²/kappa."""
+        mu: Any = self.friction_coefficient
+        rho: Real = mu * mu / self.pair.stiffness_ratio
+        return rho
+
+    def _coupling(self, factor: Any) -> Any:
+        """Return ``factor`` times W_nt/W_nn; 0 for spheres."""
+        if self.inverse_mass is None:
+            return 0.0
+        with np.errstate(all="ignore"):
+            W = self.inverse_mass
+            vectors = np.asarray(factor)[..., None] * W[..., 0, 1:] / W[..., :1, 0]
+        return self.tangent(vectors)
+
+    def tangent(self, vectors: Any) -> Any:
+        """Return vectors of the tangent plane, (..., 2), as this scene has its slip.
+
+        Parameters
+        ----------
+        vectors : array, shape (..., 2)
+            Along t1 and t2.
+        """
+        if not self.planar:
+            return vectors
+        return vectors[..., 0] if self.shape else float(vectors[0])
+
+    @property
+    def groups(self) -> dict[str, Any]:
+        """The dimensionless groups that determine the impact, by name."""
+        names = ("psi1", "chi") if self.inverse_mass is None else ("psi1", "chi", *COUPLED)
+        return {name: getattr(self, name) for name in names}
+
+    @property
+    def most_slip_change(self) -> Any:
+        """The largest change of slip velocity in m/s, of an elastic impact of gross slip.
+
+        It is infinite where friction changes the approach: no such bound is known there.
+        """
+        if self.inverse_mass is not None:
+            return math.inf + 0.0 * self.slip_speed
+        pair = self.pair
+        friction: Any = self.friction_coefficient * self.normal_speed
+        # This is 4 chi in psi; psi itself would be infinite without friction.
+        return 2.0 * (friction * (pair.normal_mass / pair.tangential_mass))
+
+    @property
+    def central(self) -> Self:
+        """The impact with the same approach and no coupling: the scene itself for spheres.
+
+        Its slip is the magnitude in space, its tangential mass that along the slip.
+        """
+        if self.inverse_mass is None:
+            return self
+        pair = self.pair
+        if not self.planar:
+            along = inverse_mass.along(self.slip_velocity)
+            mass = inverse_mass.mass_along(self.inverse_mass, along)
+            pair = attrs.evolve(pair, tangential_mass=mass if self.shape else float(mass))
+        slip = batch.spread(self.slip_speed if not self.planar else self.slip_velocity, self.shape)
+        return self._with(tangential_velocity=slip, pair=pair, inverse_mass=None, planar=True)
+
+    def _with(self, **entries: Any) -> Self:
+        """Return this scene with other entries, of numbers that were checked before."""
+        scene = copy.copy(self)
+        for name, value in entries.items():
+            object.__setattr__(scene, name, batch.locked(value))
+        return scene
+
+    def parts(self, *, as_one: bool = False) -> list[tuple[Any, Self]]:
+        """Return places and scenes of the impacts that are solved alike, at most three.
+
+        A part has no inverse mass where W does not couple and slip keeps its line, and is planar
+        where slip stays along t1.
+
+        Parameters
+        ----------
+        as_one : bool
+            True if impacts that differ stay one part, as a history with one time axis needs.
+        """
+        if self.inverse_mass is None:
+            return [(..., self)]
+        found = self._ways()
+        if not self.shape:
+            return [(..., self._going(found))]
+        kinds = np.unique(found).tolist()
+        if len(kinds) == 1:
+            return [(..., self._going(kinds[0]))]
+        if as_one:
+            return [(..., self)]
+        masks = [(found == kind, kind) for kind in kinds]
+        return [(where, self.take(where)._going(kind)) for where, kind in masks]
+
+    def _ways(self) -> Any:
+        """Return the way in which each impact is solved."""
+        W: Any = self.inverse_mass
+        slip = np.zeros((*self.shape, 2))
+        if self.planar:
+            slip[..., 0] = self.tangential_velocity
+        else:
+            slip[...] = self.tangential_velocity
+        return inverse_mass.ways(W, self.normal_speed, slip)
+
+    def _going(self, way: int) -> Self:
+        """Return this scene as it is solved in one way."""
+        if way == inverse_mass.CENTRAL:
+            return self.central
+        if way == inverse_mass.SPATIAL or self.planar:
+            return self
+        W: Any = self.inverse_mass
+        mass = 1.0 / W[..., 1, 1]
+        pair = attrs.evolve(self.pair, tangential_mass=mass if self.shape else float(mass))
+        slip = batch.spread(self.slip_velocity[..., 0], self.shape)
+        return self._with(tangential_velocity=slip, pair=pair, planar=True)
+
+    def impulse(self, rate: Any, change: Any) -> Array:
+        """Return the impulse on the target along n, t1 and t2, shape (..., 3), in N s.
+
+        Parameters
+        ----------
+        rate, change : float or array
+            Rate of approach after, and change of the slip velocity, in m/s.
+        """
+        if self.inverse_mass is None:
+            push = self.pair.normal_mass * (self.normal_speed - rate)
+            drag = -self.pair.tangential_mass * change
+            return np.stack(np.broadcast_arrays(push, drag, 0.0), axis=-1)
+        return inverse_mass.impulse(
+            self.inverse_mass, self._vectors(rate - self.normal_speed, change)
+        )
+
+    def energies(self, rate: Any, change: Any) -> tuple[Any, Any, Any]:
+        """Return the energy at the start, and what approach and slip lose of it, in J.
+
+        Parameters
+        ----------
+        rate, change : float or array
+            Rate of approach after, and change of the slip velocity, in m/s.
+        """
+        speed: Any = self.normal_speed
+        if self.inverse_mass is None:
+            return self.pair.energies(speed, self.slip_velocity, rate, change)
+        before, moved = self.velocity, self._vectors(rate - speed, change)
+        momentum = inverse_mass.impulse(self.inverse_mass, np.stack((-before, moved)))
+        start = 0.5 * np.einsum("...i,...i->...", momentum[0], before)
+        whole = np.einsum("...i,...i->...", momentum[1], before + 0.5 * moved)
+        lost = 0.5 * self.pair.normal_mass * (speed - rate) * (speed + rate)
+        if not self.shape:
+            start, whole = float(start), float(whole)
+        return start, lost, whole - lost
+
+    @property
+    def velocity(self) -> Array:
+        """Approach and slip at first touch along n, t1 and t2, shape (..., 3), in m/s."""
+        return self._vectors(self.normal_speed, self.slip_velocity)
+
+    def _vectors(self, approach: Any, slip: Any) -> Array:
+        """Return rates along n and slip velocities as vectors of shape (..., 3)."""
+        vectors = np.zeros((*self.shape, 3))
+        vectors[..., 0] = approach
+        if self.planar:
+            vectors[..., 1] = slip
+        else:
+            vectors[..., 1:] = slip
+        return vectors
