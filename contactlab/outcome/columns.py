@@ -214,7 +214,7 @@ def scaled_forces(result: Any) -> tuple[Any, Any, Any]:
     peak = float(result.motion.maximum_force)
     time = np.concatenate([[0.0], history.time / result.motion.duration])
     force = history.tangential_force
-    force = np.linalg.norm(force, axis=-1) if scene.slip_axes else force
+    force = np.linalg.norm(force, axis=-1) if force.ndim > history.time.ndim else force
     tangential = force / (scene.friction_coefficient * peak)
     normal = history.normal_force / peak
     return time, np.concatenate([[0.0], tangential]), np.concatenate([[0.0], normal])
