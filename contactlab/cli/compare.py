@@ -85,8 +85,9 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.all:
         compared = _all(arguments, file)
     else:
-        own = own_law(arguments, file.laws, file.scene)
-        arguments.tangential = arguments.tangential or list(dict.fromkeys([own, *DEFAULT_LAWS]))
+        if not named:
+            own = own_law(arguments, file.laws, file.scene)
+            arguments.tangential = list(dict.fromkeys([own, *DEFAULT_LAWS]))
         compared = simulations(arguments, file.laws)
     compared = _answering(file.scene, compared, told=named or arguments.all)
     with shared.progress(arguments.progress, "runs") as progress:

@@ -15,7 +15,7 @@ from contactlab.outcome.plan import PSI2_ERROR, TANGENTIAL_MOTION, Clause, Plan
 
 PARTED = "collision: the bodies separate, they pass through untouched"
 STANDS_FOR = (
-    "restitution {:g}: of a frictionless impact on the mass 1/W_nn, Tsuji's law; a body's own V2 "
+    "restitution {}: of a frictionless impact on the mass 1/W_nn, Tsuji's law; a body's own V2 "
     "follows from it"
 )
 
@@ -31,7 +31,10 @@ def collision_plan(plan: Plan, met: Encounter | None, passed: Any, restitution: 
         everywhere = np.ones(met.shape, dtype=bool)
         damped = np.broadcast_to(np.asarray(restitution) < 1.0, met.shape)
         if damped.any():
-            computed.append(Clause(STANDS_FOR, damped, (np.broadcast_to(restitution, met.shape),)))
+            e = np.asarray(restitution)[damped] if np.ndim(restitution) else restitution
+            low, high = float(np.min(e)), float(np.max(e))
+            told = f"{low:g}" if low == high else f"{low:g} to {high:g}"
+            computed.append(Clause(STANDS_FOR.format(told), damped))
         cautions += [Clause(text, everywhere) for text in contact_vectors(met)]
     if passed.any():
         left_out.append(Clause(PARTED, passed))

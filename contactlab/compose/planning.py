@@ -15,6 +15,7 @@ from contactlab.compose.answers import Answer, Mask, separated
 from contactlab.compose.composition import Laws
 from contactlab.compose.normal_motion import normal_motion, normal_or_failed
 from contactlab.compose.normal_spin_words import with_normal_spin
+from contactlab.compose.together import WHOLE
 from contactlab.contracts import faults
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.law import Law
@@ -170,7 +171,7 @@ def _in_place(laws: Laws, used: Laws) -> str:
     pairs = [
         f"{type(new).__name__} for {type(old).__name__}"
         for old, new in zip(laws, used, strict=True)
-        if new is not old
+        if type(new) is not type(old)
     ]
     return f"laws: {', '.join(pairs)}, which has no answer where friction changes the approach"
 
@@ -203,6 +204,8 @@ def _cautions(
 ) -> Clauses:
     """Return the cautions about numbers of the scene, of the laws, and of the energy books."""
     central, coupled = part.central, part.inverse_mass is not None
+    if coupled:
+        central = together.at_larger_slip(part)
     known = masks.known
     whole = central if every(known) else central.take(known)
     said = [*unit_slips(whole), *unlikely(whole), *rigid_bodies(whole)]
@@ -336,6 +339,8 @@ def _no_history(history: bool | str, columns: PlanColumns, marched: Mask) -> str
         return "history: not asked for"
     if history != "fields":
         return "traction and stick/slip fields: not asked for (history='fields')"
+    if not some(marched) and WHOLE in columns.reasons:
+        return "traction and stick/slip fields: a law that answers both motions together has none"
     if not (some(marched) or any(reason.fields for reason in columns.reasons)):
         return "traction and stick/slip fields: there is no march to take them from"
     return None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import attrs
 import numpy as np
 
 from contactlab.compose.composition import Laws
@@ -15,6 +16,7 @@ from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.contracts.tangential_motion import Observer, TangentialMotion
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import spread
 from contactlab.numeric.checks import shown
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import ENDLESS, MARCHED, PlanColumns, Reason
@@ -75,6 +77,18 @@ def columns_of(laws: Laws, scene: Scene, normal: NormalMotion) -> PlanColumns:
 def books_bound(laws: Laws, central: Scene) -> Any:
     """Return the bound of the imbalance of the energy books over the energy at the start."""
     return np.maximum(laws.tangential.books_bound(central), CANCELS)
+
+
+def at_larger_slip(scene: Scene) -> Scene:
+    """Return the central scene at the larger slip: at first touch, or as pressure alone leaves it.
+
+    Sizes of cautions grow with the slip, and pressure makes slip where there is none at first.
+    """
+    central, W = scene.central, np.asarray(scene.inverse_mass)
+    drag = 2.0 * np.asarray(scene.normal_speed)[..., None] * W[..., 0, 1:] / W[..., :1, 0]
+    after = scene.size_of(np.asarray(scene.slip_velocity) - scene.tangent(drag))
+    slip = spread(np.maximum(scene.slip_speed, after), scene.shape)
+    return attrs.evolve(central, tangential_velocity=slip).numbered(scene.index)
 
 
 def cautions(laws: Laws, scene: Scene) -> list[str]:

@@ -262,6 +262,7 @@ def forces_over_contact(axes: Axes, comparison: Comparison) -> Axes:
     drawn = False
     for number, run in enumerate(comparison.runs):
         if not run.result.history or run.result.history.time.size == 0:
+            axes.plot([], [], label=f"{verbatim(run.name)}: no course", **law_style(number))
             continue
         time, tangential, normal = scaled_forces(run.result)
         if not drawn:

@@ -31,16 +31,17 @@ def entries(
     friction_coefficient: Any,
 ) -> dict[str, Any]:
     """Return the entries of ``Scene`` for the groups of ``Scene.nondimensional``."""
-    in_space = rho is not None and np.shape(chi)[-2:] == (2, 2) and np.shape(psi1)[-1:] == (2,)
     incidence = real(
         "psi1", psi1, remedy="give the non-dimensional angle of incidence, eq. (29) of the paper"
     )
     remedy = "chi of eq. (38); 1.4412 for a solid sphere, nu = 0.3"
-    inertia = (
-        real("chi", chi, remedy=remedy)
-        if in_space
-        else real("chi", chi, rule=POSITIVE, remedy=remedy)
-    )
+    inertia = real("chi", chi, remedy=remedy)
+    square, vectors = np.shape(inertia)[-2:] == (2, 2), np.shape(incidence)[-1:] == (2,)
+    in_space = rho is not None and square and (vectors or not np.all(np.greater(inertia, 0.0)))
+    if not in_space:
+        if square and not np.all(np.greater(inertia, 0.0)):
+            remedy = "a tensor of the tangent plane needs rho = mu²/kappa"
+        inertia = real("chi", chi, rule=POSITIVE, remedy=remedy)
     drag = real("lam", lam, remedy="lam = mu W_nt/W_nn of theory §14; 0 for spheres")
     given = None
     if poisson_ratio is not None:
@@ -108,12 +109,16 @@ def _rho(inertia: Any, drag: Any, eta: Any, rho: Any, kappa: Any, mu: Any, in_sp
 
 def _by_eta(drag: Any, eta: Any) -> Any:
     """Return lam/eta; 1 where both are zero."""
+    if not np.any(drag):
+        if not np.any(eta):
+            return None
+        raise refuse("eta", eta, "needs lam too: both are zero without coupling", "give lam")
     alone = (np.asarray(drag) == 0.0) & (np.asarray(eta) == 0.0)
     rule = "must be positive: both have the sign of W_nt, and both are zero without coupling"
     with np.errstate(all="ignore"):
         squared = np.where(alone, 1.0, np.divide(drag, eta))
     if not np.all((squared > 0.0) & np.isfinite(squared)):
-        raise refuse("lam / eta", squared, rule, "rho = lam/eta = mu²/kappa")
+        raise refuse("lam / eta", np.ravel(squared).tolist(), rule, "rho = lam/eta = mu²/kappa")
     return _number(squared)
 
 

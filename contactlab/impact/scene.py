@@ -97,7 +97,11 @@ class Scene(Motions):
         the argument.
     """
 
-    sphere: Sphere | None = instance(Sphere, remedy="make one: Sphere(...)", optional=True)
+    sphere: Sphere | None = instance(
+        Sphere,
+        remedy="make one: Sphere(...); of other bodies take Encounter(...).scene",
+        optional=True,
+    )
     target: Sphere | HalfSpace | None = instance(HalfSpace, Sphere, optional=True)
     friction_coefficient: Real = quantity("1", rule=NON_NEGATIVE)
     normal_speed: Real = quantity("m/s", rule=POSITIVE)
@@ -437,8 +441,8 @@ class Scene(Motions):
                 raise refuse(
                     f"scenes[{position}]",
                     scene,
-                    "must have bodies if, and only if, scenes[0] has: else spin would be lost",
-                    "give all in SI, or all by psi1 and chi",
+                    "must have a sphere if, and only if, scenes[0] has: else spin would be lost",
+                    "give all of spheres, all of other bodies, or all by psi1 and chi",
                 )
             if scene.unit_friction != scenes[0].unit_friction:
                 raise refuse(

@@ -66,7 +66,10 @@ class ImpactResult(Answer):
 
     def __repr__(self) -> str:
         """Return the answer, statuses and laws on one line."""
-        laws = ", ".join(name.partition(" ")[0] for name in self.laws.values())
+        laws = ", ".join(
+            "+".join(name.partition(" ")[0] for name in names.split(" and "))
+            for names in self.laws.values()
+        )
         return f"ImpactResult({self._told()}; {statuses_told(self.status)}; {laws})"
 
     def _told(self) -> str:
@@ -142,9 +145,14 @@ class ImpactResult(Answer):
         return self.scene.slip_velocity + self.motion.slip_velocity_change
 
     @property
-    def rebound_normal_velocity(self) -> Real:
-        """Velocity of the sphere along the normal, in m/s; negative: away from the target."""
+    def rebound_normal_velocity(self) -> Any:
+        """Velocity of the sphere along the normal, in m/s; negative: away from the target.
+
+        None for bodies that are no spheres: see ``velocity_in_space`` and ``normal_velocity``.
+        """
         speed, pair = self.scene.normal_speed, self.scene.pair
+        if self.scene.frame is not None:
+            return None
         share = 1.0 if self.scene.sphere is None else pair.normal_mass / self.scene.sphere.mass
         return speed - share * (speed - self.motion.normal_velocity)
 

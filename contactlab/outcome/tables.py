@@ -209,13 +209,13 @@ def _velocities(result: ImpactResult) -> list[Row]:
         *_pairs(
             "local tangential velocity", scene.slip_velocity, result.rebound_slip_velocity, "m/s"
         ),
-        ["normal velocity", scene.normal_speed, result.rebound_normal_velocity, "m/s"],
     ]
     if not bodies:
-        return rows
+        return [*rows, ["normal velocity", scene.normal_speed, result.normal_velocity, "m/s"]]
     after_tangential = result.rebound_tangential_velocity
     after_angle = QUANTITIES["rebound_angle_deg"].read(result)
     rows += [
+        ["normal velocity", scene.normal_speed, result.rebound_normal_velocity, "m/s"],
         ["tangential velocity", scene.tangential_velocity, after_tangential, "m/s"],
         ["spin", scene.spin, result.rebound_spin, "rad/s"],
         ["angle of the path", np.degrees(result.incidence_angle), after_angle, "deg"],

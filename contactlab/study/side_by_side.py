@@ -28,7 +28,7 @@ def default_quantities(comparison: Any) -> list[str]:
     scene = comparison.scene
     psi2 = [name for name, _ in components("psi2", comparison.runs[0].result.psi2, scene.shape)]
     if scene.shape:
-        return ["normal_restitution", *psi2] if "lam" in scene.groups else psi2
+        return [*psi2, "normal_restitution"] if "lam" in scene.groups else psi2
     known = {column.name for column in columns_of(scene)}
     laws, others = comparison.names, [*COMPARISON_TABLE[1:], "compressions"]
     return psi2 + [

@@ -19,6 +19,7 @@ from contactlab.contracts import (
     Integrator,
     Law,
     NormalLaw,
+    SteppedTangentialLaw,
     TangentialLaw,
 )
 from contactlab.testing.check import CHECKS, check, hold
@@ -30,6 +31,13 @@ ALIKE = 0.85
 BAD_NUMBERS = (float("nan"), float("inf"), float("-inf"), "seven", 1j)
 #: Values that a parameter must refuse if it is a word, or True or False.
 BAD_WORDS, BAD_FLAGS = ("no such word", 3.5), (float("nan"), "yes", 2)
+
+#: Words of a class of law, with the method that each promises.
+WORDS: tuple[tuple[str, Any, str], ...] = (
+    ("together", TangentialLaw, "impacts_together"),
+    ("together", Integrator, "integrate_together"),
+    ("vectors", SteppedTangentialLaw, "begin"),
+)
 
 
 def claims(contract: type[Law]) -> frozenset[str]:
@@ -66,6 +74,10 @@ def contract(law: Law) -> None:
             stated = getattr(law, name, None)
             good = isinstance(stated, type) and issubclass(stated, base)
             hold(good, f"{name} = {stated!r}: must be a class derived from {base.__name__}.")
+    for word, base, method in WORDS:
+        if isinstance(law, base) and getattr(law, word) is True:
+            own = getattr(type(law), method) is not getattr(base, method)
+            hold(own, f"It has the word {word!r}, and does not define {method}.")
     if "elastic_hertz" in law.offers:
         hold(
             isinstance(law, ClosedFormNormalLaw),

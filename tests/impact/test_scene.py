@@ -96,8 +96,8 @@ REFUSED = [
         r"friction_coefficient \(3,\), normal_speed \(2,\)",
     ),
     # The spin of the scene with bodies would be lost.
-    (lambda: Scene.stack([scene(), BARE]), r"scenes\[1\].*must have bodies"),
-    (lambda: Scene.stack([BARE, scene()]), r"scenes\[1\].*must have bodies"),
+    (lambda: Scene.stack([scene(), BARE]), r"scenes\[1\].*must have a sphere"),
+    (lambda: Scene.stack([BARE, scene()]), r"scenes\[1\].*must have a sphere"),
     (lambda: Scene.stack(None), "scenes = "),
     (lambda: Scene.stack(3), "scenes = "),
     (lambda: Scene.stack([scene(), 3.0]), r"scenes\[1\]"),
