@@ -72,9 +72,10 @@ class Laws:
         """Return the laws by kind."""
         return dict(zip(KINDS, self, strict=True))
 
-    def accept(self, scene: Scene) -> None:
-        """Refuse a scene that a law cannot run."""
-        for _, part in scene.parts():
+    def accept(self, scene: Scene, *, as_one: bool = False) -> None:
+        """Refuse a scene that a law cannot run; ``as_one`` as in ``Scene.parts``."""
+        # what answers where slip turns answers on a line too: its remedy holds for the whole batch
+        for _, part in reversed(scene.parts(as_one=as_one)):
             central = part.central
             for each in self.of(part):
                 each.accept(central)
@@ -93,18 +94,26 @@ class Laws:
         if part.inverse_mass is None:
             return self
         refused = _no_answer(self, part.planar)
-        if refused is None:
+        if refused is None and not _rigid_in_silence(self):
             return self
         for names in TOGETHER:
             free = {kind: name for kind, name in names.items() if kind not in self.named}
             other = self.changed(**{kind: law(kind, name) for kind, name in free.items()})
             if misfit(*other) is None and _no_answer(other, part.planar) is None:
                 return other
-        raise ValueError(f"{refused}; {_remedy(self, part.planar)}")
+        remedy = _remedy(self, part.planar)
+        if refused is None:
+            name = RIGID["tangential"]
+            refused = f"{_name(self.tangential)}: rigid theory is not taken unless it is named"
+            remedy += f"; or name it: tangential={name!r}"
+        raise ValueError(f"{refused}; {remedy}")
 
-    def versions(self, scene: Scene) -> dict[str, str]:
-        """Return name and version of each law by kind, of several in one scene with "and"."""
-        used = [versions(*self.of(part)) for _, part in scene.parts()]
+    def versions(self, scene: Scene, *, as_one: bool = False) -> dict[str, str]:
+        """Return name and version of each law by kind, of several in one scene with "and".
+
+        ``as_one`` is that of ``Scene.parts``.
+        """
+        used = [versions(*self.of(part)) for _, part in scene.parts(as_one=as_one)]
         return {kind: " and ".join(dict.fromkeys(each[kind] for each in used)) for kind in KINDS}
 
     def changed(self, **laws: Any) -> Laws:
@@ -130,6 +139,19 @@ def _no_answer(laws: Laws, planar: bool) -> str | None:
         return None
     where = "and slip keeps to a line" if planar else "and slip turns"
     return f"{name}: has no answer where friction changes the approach {where}: {reason}"
+
+
+def _rigid_in_silence(laws: Laws) -> bool:
+    """Return whether nobody named rigid theory, and an elastic law runs beside the normal law."""
+    if "tangential" in laws.named:
+        return False
+    if versions(*laws)["tangential"].partition(" ")[0] != RIGID["tangential"]:
+        return False
+    elastic = (
+        laws.changed(**{kind: law(kind, name) for kind, name in names.items()})
+        for names in TOGETHER
+    )
+    return any(misfit(*other) is None for other in elastic)
 
 
 def _remedy(laws: Laws, planar: bool) -> str:

@@ -48,7 +48,7 @@ def estimated(laws: Laws, result: ImpactResult) -> tuple[Real, Real]:
     errors = np.array(np.broadcast_arrays(plan.psi2_error, plan.restitution_error))
     errors = np.where(_successes(result.status), np.broadcast_to(errors, (2, *scene.shape)), np.nan)
     answer, successes = _answer(scene, motion), _successes(result.status)
-    for where, part in scene.parts():
+    for where, part in scene.parts(as_one=bool(result.history)):
         ended, marched = successes[where], plan.marched[where]
         if part.inverse_mass is not None:
             marched = ended  # an answer as a whole has the accuracy of its integrator

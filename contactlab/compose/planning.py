@@ -109,7 +109,7 @@ def plan_of(
         return said if scene.encounter is None else with_normal_spin(said, scene.encounter)
 
     def of_impacts() -> Words:
-        parts = scene.parts()
+        parts = scene.parts(as_one=bool(history))
         if len(parts) == 1:
             return _words(laws, parts[0][1], scene, columns, motion, asked)
         said = []

@@ -99,8 +99,8 @@ class Simulation:
             The same as in ``run``.
         """
         laws = self.laws
-        laws.accept(_scene(scene))
-        columns = solve.planned(laws, scene, _history(history))
+        laws.accept(_scene(scene), as_one=bool(_history(history)))
+        columns = solve.planned(laws, scene, history)
         return plan_of(laws, scene, columns, history=history)
 
     def run(
@@ -137,7 +137,7 @@ class Simulation:
         started, laws, recorder = time.perf_counter(), self.laws, None
         if _history(history):
             recorder = Recorder(_scene(scene).shape, with_fields=history == "fields")
-        laws.accept(_scene(scene))
+        laws.accept(_scene(scene), as_one=bool(history))
         flat = scene
         if len(scene.shape) > 1:  # laws and integrators are run over one axis
             flat = scene.take(np.ones(scene.shape, dtype=bool))
@@ -242,7 +242,7 @@ def _result(
         scene=scene,
         plan=plan,
         motion=motion if succeeded(motion.status) else without_failures(motion),
-        laws=laws.versions(scene),
+        laws=laws.versions(scene, as_one=bool(history)),
         history=history,
         run_time=time.perf_counter() - started,
     )

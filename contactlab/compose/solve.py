@@ -57,13 +57,11 @@ def outcome(
     """
     if scene.inverse_mass is None:  # spheres have one way
         return _alike(laws, scene, history, recorder)
-    parts = scene.parts()
+    parts = scene.parts(as_one=bool(history))
     if len(parts) == 1:
         _, part = parts[0]
         columns, motion = _alike(laws.of(part), part, history, recorder)
         return columns, _in_axes(motion, scene, part)
-    if recorder is not None:  # one time axis for all
-        return _alike(laws.of(scene), scene, history, recorder)
     pieces = []
     for where, part in parts:
         columns, motion = _alike(laws.of(part), part, history, recorder)
@@ -86,17 +84,6 @@ def _alike(
 ) -> tuple[PlanColumns, Motion]:
     """Return columns and motion of impacts that are solved in one way."""
     coupled = scene.inverse_mass is not None
-    if (
-        history
-        and scene.shape
-        and (not laws.integrator.common_instants or (coupled and laws.tangential.together))
-    ):
-        raise refuse(
-            "history",
-            history,
-            f"impacts of a batch have instants of their own under {laws.integrator!r}",
-            "run them one by one",
-        )
     if coupled and recorder is None and scene.shape and scene.shape[0] > together.AT_A_TIME:
         return _cut(laws, scene, _blocks(scene.shape[0], together.AT_A_TIME))
     solve = _together if coupled else _along
@@ -183,7 +170,8 @@ def _blocks(size: int, block: int) -> list[slice]:
 def planned(laws: Laws, scene: Scene, history: bool | str) -> PlanColumns:
     """Return the columns of the plan, without a march."""
     parts = [
-        (where, prepare(laws.of(part), part, history).columns) for where, part in scene.parts()
+        (where, prepare(laws.of(part), part, history).columns)
+        for where, part in scene.parts(as_one=bool(history))
     ]
     return parts[0][1] if len(parts) == 1 else PlanColumns.merged(parts, scene.shape)
 
@@ -215,10 +203,22 @@ def _named(laws: Laws, motion: Motion) -> Motion:
 
 def prepare(laws: Laws, scene: Scene, history: bool | str) -> Prepared:
     """Return what impacts of one way need before the march, or raise LawFaultError."""
+    coupled = scene.inverse_mass is not None
+    if (
+        history
+        and scene.shape
+        and (not laws.integrator.common_instants or (coupled and laws.tangential.together))
+    ):
+        raise refuse(
+            "history",
+            history,
+            f"impacts of a batch have instants of their own under {laws.integrator!r}",
+            "run them one by one",
+        )
     normal = normal_or_failed(laws.normal, scene.central)
     accuracy = laws.integrator.accuracy
     with faults.blaming(laws.tangential):
-        if scene.inverse_mass is not None:
+        if coupled:
             columns = together.columns_of(laws, scene, normal)
             return Prepared(normal, [], columns, together.books_bound(laws, normal.scene))
         known = answers(normal, laws.tangential, history=history, accuracy=accuracy)

@@ -160,9 +160,13 @@ def tabor_caution(
 
 
 def named(scene: Scene) -> dict[str, Any]:
-    """Return the bodies of a scene by the name of their argument; none of a scene of numbers."""
+    """Return the bodies of a scene by the name of their argument; none of a scene of numbers.
+
+    A batch with targets of several kinds has no target.
+    """
     if scene.sphere is not None:
-        return {"sphere": scene.sphere, "target": scene.target}
+        bodies = {"sphere": scene.sphere, "target": scene.target}
+        return {name: body for name, body in bodies.items() if body is not None}
     if scene.encounter is None:
         return {}
     return {name: getattr(scene.encounter, name) for name in ("body", "target")}

@@ -163,11 +163,16 @@ class Motions:
             object.__setattr__(scene, name, batch.locked(value))
         return scene
 
-    def parts(self) -> list[tuple[Any, Self]]:
+    def parts(self, *, as_one: bool = False) -> list[tuple[Any, Self]]:
         """Return places and scenes of the impacts that are solved alike, at most three.
 
         A part has no inverse mass where W does not couple and slip keeps its line, and is planar
         where slip stays along t1.
+
+        Parameters
+        ----------
+        as_one : bool
+            True if impacts that differ stay one part, as a history with one time axis needs.
         """
         if self.inverse_mass is None:
             return [(..., self)]
@@ -177,6 +182,8 @@ class Motions:
         kinds = np.unique(found).tolist()
         if len(kinds) == 1:
             return [(..., self._going(kinds[0]))]
+        if as_one:
+            return [(..., self)]
         masks = [(found == kind, kind) for kind in kinds]
         return [(where, self.take(where)._going(kind)) for where, kind in masks]
 

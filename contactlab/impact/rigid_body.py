@@ -95,7 +95,7 @@ class RigidBody:
     """
 
     mass: Real = quantity("kg", rule=POSITIVE)
-    inertia: Any = _array("kg m²", (3, 3))
+    _inertia: Any = _array("kg m²", (3, 3))
     material: Material = instance(
         Material, remedy="make one, Material(...), or by its name: Material.named('steel')"
     )
@@ -108,14 +108,19 @@ class RigidBody:
         "1", rule=Rule(lambda ratio: ratio >= 1.0, "must be at least 1"), default=1.0
     )
     bending_period: Real | None = quantity("s", rule=POSITIVE, default=None)
+    #: Inertia about the centre of mass, in kg m², shape (..., 3, 3), whatever was given.
+    inertia: Any = attrs.field(init=False, eq=False, repr=False)
     #: Batch shape of mass, inertia and curvature together.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
 
     def __attrs_post_init__(self) -> None:
-        if (self.inertia is None) == (self.principal is None):
+        if (self._inertia is None) == (self.principal is None):
             rule = "give one of the two"
             remedy = "inertia=(..., 3, 3), or principal=(..., 3) with axes=(..., 3, 3)"
-            raise refuse("inertia, principal", (self.inertia, self.principal), rule, remedy)
+            if self.principal is not None:
+                remedy += "; attrs.evolve keeps what it is not told: give None for the other"
+            raise refuse("inertia, principal", (self._inertia, self.principal), rule, remedy)
+        inertia = self._inertia
         if self.principal is not None:
             axes = np.eye(3) if self.axes is None else self.axes
             product = np.swapaxes(axes, -1, -2) @ axes
@@ -123,13 +128,23 @@ class RigidBody:
                 raise refuse("axes", self.axes, "columns must be unit vectors at right angles")
             inertia = np.einsum("...ij,...j,...kj->...ik", axes, self.principal, axes)
             inertia.flags.writeable = False
-            object.__setattr__(self, "inertia", inertia)
         elif self.axes is not None:
             raise refuse("axes", self.axes, "belong to principal moments", "leave axes out")
-        _check_inertia(self.inertia)
+        _check_inertia(inertia)
+        object.__setattr__(self, "inertia", inertia)
         shapes = (np.shape(each) for each in (self.mass, self.curvature_radius))
         shape = np.broadcast_shapes(*shapes, self.inertia.shape[:-2])
         object.__setattr__(self, "shape", shape)
+
+    def __repr__(self) -> str:
+        """Return the arguments that were given."""
+        given = {
+            field.alias: getattr(self, field.name)
+            for field in attrs.fields(RigidBody)
+            if field.init
+        }
+        told = (f"{name}={value!r}" for name, value in given.items() if value is not None)
+        return f"RigidBody({', '.join(told)})"
 
     def take(self, shape: tuple[int, ...], part: Any) -> RigidBody:
         """Return the bodies of a batch of ``shape`` that ``part`` indexes.

@@ -451,6 +451,12 @@ class Scene(Motions):
                     "must have a friction coefficient if, and only if, scenes[0] has",
                     "give friction_coefficient to every Scene.nondimensional, or to none",
                 )
+        kinds = {
+            tuple(type(getattr(scene.encounter, name, None)) for name in ("body", "target"))
+            for scene in scenes
+        }
+        if len(kinds) > 1:  # no one encounter has bodies of several kinds
+            scenes = [attrs.evolve(scene, encounter=None) for scene in scenes]
         if any(scene.inverse_mass is not None for scene in scenes):
             planar = all(scene.planar for scene in scenes)
             scenes = [scene._of_any_shape(planar) for scene in scenes]
@@ -468,7 +474,11 @@ class Scene(Motions):
         W, pair = self.inverse_mass, self.pair
         if W is None:
             W = np.diag([1.0 / pair.normal_mass, *2 * [1.0 / pair.tangential_mass]])
-        return attrs.evolve(self, tangential_velocity=slip, inverse_mass=W, planar=planar)
+        # one impact taken of one: bodies given by principal moments then have their inertia
+        encounter = None if self.encounter is None else self.encounter.take(())
+        return attrs.evolve(
+            self, tangential_velocity=slip, inverse_mass=W, planar=planar, encounter=encounter
+        )
 
     def take(self, part: Any) -> Scene:
         """Return the scene of the impacts that ``part`` indexes.

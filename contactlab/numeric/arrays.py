@@ -53,9 +53,12 @@ def stacked(items: Sequence[Any]) -> Any:
     if any(type(item) is not type(first) for item in items):
         return None  # bodies of different kinds: laws need the pair only
     if attrs.has(type(first)):
-        names = [field.name for field in attrs.fields(type(first)) if field.init]
+        names = {field.alias: field.name for field in attrs.fields(type(first)) if field.init}
         return type(first)(
-            **{name: stacked([getattr(item, name) for item in items]) for name in names}
+            **{
+                alias: stacked([getattr(item, name) for item in items])
+                for alias, name in names.items()
+            }
         )
     if not isinstance(first, np.ndarray) and all(item == first for item in items):
         return first

@@ -206,11 +206,16 @@ def csv_heading(name: str, unit: str, scene: Scene) -> str:
 
 
 def scaled_forces(result: Any) -> tuple[Any, Any, Any]:
-    """Return t/duration, F/(mu P_max) and P/P_max of an impact with a history, from first touch."""
+    """Return t/duration, F/(mu P_max) and P/P_max of an impact with a history, from first touch.
+
+    Of a force in space F is the length.
+    """
     scene, history = result.scene, result.history
     peak = float(result.motion.maximum_force)
     time = np.concatenate([[0.0], history.time / result.motion.duration])
-    tangential = history.tangential_force / (scene.friction_coefficient * peak)
+    force = history.tangential_force
+    force = np.linalg.norm(force, axis=-1) if force.ndim > history.time.ndim else force
+    tangential = force / (scene.friction_coefficient * peak)
     normal = history.normal_force / peak
     return time, np.concatenate([[0.0], tangential]), np.concatenate([[0.0], normal])
 

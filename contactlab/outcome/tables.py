@@ -72,10 +72,10 @@ def scene_section(scene: Scene) -> Section:
     """Return bodies, friction and velocities of a scene, as ranges for a batch."""
     rows: list[Row] = []
     if scene.sphere is not None:
-        assert scene.target is not None
         sphere_target = isinstance(scene.target, Sphere)
         rows += _body("sphere", scene.sphere)
-        rows += _body("struck sphere" if sphere_target else "half-space", scene.target)
+        if scene.target is not None:
+            rows += _body("struck sphere" if sphere_target else "half-space", scene.target)
     for name in (*SCENE, *scene.groups):
         unit = unit_in(entry_unit(name), scene)
         for part, values in components(name, getattr(scene, name), scene.shape):

@@ -60,6 +60,20 @@ def test_a_sweep_is_written_and_read_back(run, file, tmp_path):
             assert row["status"] == "SUCCESS"
 
 
+@pytest.mark.parametrize("sweep", ["", "[sweep]\npsi1 = [0.5, 1.0]\n"])
+@pytest.mark.parametrize("scene", ["central", "plane", "space"])
+def test_comparisons_are_drawn(run, file, tmp_path, scene, sweep):
+    """Forces of single impacts, of a length in space; curves of a sweep."""
+    text = {"central": "[nondimensional]\npsi1 = 1.0\nchi = 0.8\n", "space": SPACE}
+    if scene == "space":
+        sweep = sweep.replace("psi1 = [0.5, 1.0]", "rho = [0.1, 0.2]")
+    path, figure = file(text.get(scene, PLANE.format(psi1=1.0)) + sweep), tmp_path / "c.png"
+    ran = run("compare", path, "--figure", figure)
+    assert ran.status == 0, ran.err
+    with Image.open(figure) as image:
+        assert np.asarray(image).std() > 0.0
+
+
 def test_run_tells_both_bodies_as_collide_does(run, tmp_path):
     after = contactlab.collide(read_scene(FOOT).encounter)
     history = tmp_path / "h.csv"

@@ -103,8 +103,8 @@ REFUSED = [
         "sphere, target = (None, None): both bodies must be given; or use "
         "Scene.nondimensional(psi1=, chi=)",
     ),
-    (lambda: Scene(3, PLATE, 0.2, 1.0), "sphere = 3: must be a Sphere; make one: Sphere(...); of other bodies take "
-     "Encounter(...).scene"),
+    (lambda: Scene(3, PLATE, 0.2, 1.0), "sphere = 3: must be a Sphere; make one: Sphere(...); of "
+     "other bodies take Encounter(...).scene"),
     (lambda: Scene(BALL, 3, 0.2, 1.0), "target = 3: must be a HalfSpace or a Sphere"),
     (
         lambda: Scene(None, None, 0.2, 1.0, pair=3),
@@ -197,8 +197,8 @@ def test_a_refusal_names_value_rule_and_remedy(make, words):
     [
         (
             [MADE, BARE],
-            ": must have a sphere if, and only if, scenes[0] has: else spin would be lost; give all "
-            "of spheres, all of other bodies, or all by psi1 and chi",
+            ": must have a sphere if, and only if, scenes[0] has: else spin would be lost; give "
+            "all of spheres, all of other bodies, or all by psi1 and chi",
         ),
         (
             [BARE, Scene.nondimensional(psi1=1.0, chi=1.0, friction_coefficient=0.1)],

@@ -130,12 +130,20 @@ def of_each(bundle: Bundle, before: Real, after: Array, pressure: Real) -> Geome
 
 
 def spring_fields(radius: Any, deflection: Any, limit: Any, *, metres: Any = 1.0) -> dict[str, Any]:
-    """Return the fields of springs, w and l in units of ``metres``, all of one shape."""
+    """Return the fields of springs, w and l in units of ``metres``, all of one shape.
+
+    A complex w is a vector: its parts are on a last axis, and ``slipping`` is 1 whatever its sign.
+    """
     slips = (limit > 0.0) & (np.abs(deflection) >= limit)
+    along = slips * np.sign(deflection.real)
+    if np.iscomplexobj(deflection):
+        along = slips
+        deflection = np.stack((deflection.real, deflection.imag), axis=-1)
+        metres = np.asarray(metres)[..., None]
     return {
         "radius": radius,
         "displacement": metres * deflection,
         "limit": metres * limit,
         "stuck": (limit > 0.0) & ~slips,
-        "slipping": (slips * np.sign(deflection)).astype(np.int8),
+        "slipping": along.astype(np.int8),
     }

@@ -163,6 +163,10 @@ class _March:
             )
             response, state = law.advance(state, increment, before, contact)
             force = self._components(response.force, response.friction_work)
+            if response.settled is not True and not np.all(response.settled):
+                force = self._unsettled(response.settled, force)
+                if not np.any(self.alive):
+                    return None
             if not self.elastic:  # a viscous force acts on the rate in the middle of its kick
                 rate = velocity[0] - 0.5 * self._kick(contact.force, force)[0]
                 with faults.blaming(alone):
@@ -205,6 +209,15 @@ class _March:
                     f"{np.max(self.compressions)} compressions."
                 )
                 return self.fail(Status.NOT_SEPARATED, sentence, self.alive)
+
+    def _unsettled(self, settled: Any, force: list[Any]) -> list[Any]:
+        """Mark impacts to which the law has no answer, and return the forces of the others."""
+        lost = self.alive & ~np.broadcast_to(settled, self.shape)
+        sentence = faults.sentence(self.law, "no division found", self.steps)
+        if np.any(lost):
+            self.fail(Status.UNSETTLED, sentence, lost)
+        self.alive = self.alive & ~lost
+        return [np.where(lost, 0.0, each) for each in force]
 
     def _joined(self, components: list[Any]) -> Any:
         """Return a displacement or velocity as the law takes it."""
