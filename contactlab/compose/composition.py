@@ -74,6 +74,11 @@ class Laws:
 
     def accept(self, scene: Scene, *, as_one: bool = False) -> None:
         """Refuse a scene that a law cannot run; ``as_one`` as in ``Scene.parts``."""
+        if scene.inverse_mass is None:  # spheres have one way
+            self.normal.accept(scene)
+            self.tangential.accept(scene)
+            self.integrator.accept(scene)
+            return
         # what answers where slip turns answers on a line too: its remedy holds for the whole batch
         for _, part in reversed(scene.parts(as_one=as_one)):
             central = part.central
@@ -113,6 +118,8 @@ class Laws:
 
         ``as_one`` is that of ``Scene.parts``.
         """
+        if scene.inverse_mass is None:
+            return versions(self.normal, self.tangential, self.integrator)
         used = [versions(*self.of(part)) for _, part in scene.parts(as_one=as_one)]
         return {kind: " and ".join(dict.fromkeys(each[kind] for each in used)) for kind in KINDS}
 

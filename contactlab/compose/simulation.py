@@ -242,7 +242,7 @@ def _result(
         scene=scene,
         plan=plan,
         motion=motion if succeeded(motion.status) else without_failures(motion),
-        laws=laws.versions(scene, as_one=bool(history)),
+        laws=laws.versions(scene, as_one=history is not NO_HISTORY),
         history=history,
         run_time=time.perf_counter() - started,
     )

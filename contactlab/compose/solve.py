@@ -109,10 +109,11 @@ def _along(
     laws: Laws, scene: Scene, history: bool | str, recorder: Recorder | None
 ) -> tuple[PlanColumns, Motion, Any]:
     """Return columns, motion and bound of the books of impacts along a known normal motion."""
-    prepared = prepare(laws, scene, history)
-    _halved_if_failed(prepared.normal, recorder)
-    tangential = _tangential(laws, prepared, recorder)
-    return prepared.columns, Motion.along(prepared.normal, tangential), prepared.books_bound
+    normal, known, columns, bound = prepare(laws, scene, history)
+    if scene.shape:
+        _halved_if_failed(normal, recorder)
+    tangential = _tangential(laws, normal, known, columns.marched, recorder)
+    return columns, Motion.along(normal, tangential), bound
 
 
 def _together(
@@ -215,7 +216,7 @@ def prepare(laws: Laws, scene: Scene, history: bool | str) -> Prepared:
             f"impacts of a batch have instants of their own under {laws.integrator!r}",
             "run them one by one",
         )
-    normal = normal_or_failed(laws.normal, scene.central)
+    normal = normal_or_failed(laws.normal, scene.central if coupled else scene)
     accuracy = laws.integrator.accuracy
     with faults.blaming(laws.tangential):
         if coupled:
@@ -231,10 +232,11 @@ def _parts(size: int, *, most: int) -> list[slice]:
     return consecutive([1] * size if size <= most else [size // 2, size - size // 2])
 
 
-def _tangential(laws: Laws, prepared: Prepared, recorder: Recorder | None) -> TangentialMotion:
+def _tangential(
+    laws: Laws, normal: NormalMotion, known: list[Answer], marched: Any, recorder: Recorder | None
+) -> TangentialMotion:
     """Return the tangential motion, by whole-impact answers where there are any, else marched."""
-    normal, known, columns, _ = prepared
-    shape, marched = normal.scene.shape, columns.marched
+    shape = normal.scene.shape
     if every(marched):
         return _march(laws, normal, recorder)
     if recorder is not None and not some(marched):
