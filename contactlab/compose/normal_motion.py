@@ -14,7 +14,7 @@ from contactlab.contracts import faults
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
 from contactlab.contracts.status import Status
-from contactlab.impact.scene import Scene
+from contactlab.impact.scene import NoIndexError, Scene
 from contactlab.numeric.checks import shown
 from contactlab.numeric.lobatto import lobatto, rows
 from contactlab.numeric.runge_kutta import attempt
@@ -89,11 +89,13 @@ def _common(law: NormalLaw, scene: Scene) -> MotionTable | None:
             return _TABLES[key]
     except TypeError:  # a law, or a body of a law's own, that cannot be hashed
         return None
-    watched = _Watched.of(single)
-    with np.errstate(all="ignore"):
-        solved = _Solver(law, watched).solve()
-    if watched.was_read:
-        return None
+    try:
+        with np.errstate(all="ignore"):
+            solved = _Solver(law, single.unnumbered()).solve()
+    except faults.LawFaultError as fault:
+        if isinstance(fault.__cause__, NoIndexError):
+            return None
+        raise
     while len(_TABLES) >= MOST_KEPT:
         del _TABLES[next(iter(_TABLES))]
     _TABLES[key] = solved.table
@@ -104,29 +106,6 @@ def _common(law: NormalLaw, scene: Scene) -> MotionTable | None:
 #: impact is often run under several friction laws. A table takes some 50 kB.
 MOST_KEPT = 16
 _TABLES: dict[tuple[NormalLaw, Scene], MotionTable] = {}
-
-
-class _Watched(Scene):
-    """A single impact that records whether a law read its index: then no other impact shares it."""
-
-    __slots__ = ("was_read",)
-    was_read: bool
-
-    @classmethod
-    def of(cls, scene: Scene) -> _Watched:
-        """Return a watched copy of a scene."""
-        watched = object.__new__(cls)
-        for field in attrs.fields(Scene):
-            if field.name != "index":
-                object.__setattr__(watched, field.name, getattr(scene, field.name))
-        object.__setattr__(watched, "was_read", False)
-        return watched
-
-    @property
-    def index(self) -> int:
-        """Return 0, and record that the index was read."""
-        object.__setattr__(self, "was_read", True)
-        return 0
 
 
 class _Solver:

@@ -45,6 +45,10 @@ def _tensors(value: Any) -> Array | None:
     return None if value is None else np.asarray(batch.locked(np.array(value, dtype=np.float64)))
 
 
+class NoIndexError(LookupError):
+    """A law asked for the index of a scene that stands for many impacts."""
+
+
 @arguments_told
 @attrs.frozen
 class Scene(Motions):
@@ -120,9 +124,7 @@ class Scene(Motions):
     planar: bool = instance(bool, default=True, kw_only=True, repr=False)
     #: Batch shape: () for one impact.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
-    #: Index of each impact in the whole batch, integers of the batch shape; 0 for one impact.
-    #: ``take``, blocks, chunks and workers keep the index, which a law may use as a random seed.
-    index: Any = attrs.field(init=False, eq=False, repr=False)
+    _index: Any = attrs.field(init=False, eq=False, repr=False)
     _axes: tuple[tuple[str, Array], ...] = attrs.field(init=False, eq=False, repr=False, default=())
     _varied: tuple[tuple[str, Array], ...] = attrs.field(
         init=False, eq=False, repr=False, default=()
@@ -148,7 +150,7 @@ class Scene(Motions):
             raise refuse("shape", shape, "a scene must hold at least one impact")
         object.__setattr__(self, "shape", shape)
         index = batch.locked(np.arange(math.prod(shape)).reshape(shape)) if shape else 0
-        object.__setattr__(self, "index", index)
+        object.__setattr__(self, "_index", index)
         if self.inverse_mass is not None:
             self._check_inverse_mass()
         self._check_scales()
@@ -511,6 +513,20 @@ class Scene(Motions):
         spread = attrs.evolve(taken, normal_speed=np.full(count, taken.normal_speed))
         return spread.numbered(taken.index)
 
+    @property
+    def index(self) -> Any:
+        """Index of each impact in the whole batch, integers of the batch shape; 0 for one impact.
+
+        ``take``, blocks, chunks and workers keep the index, which a law may use as a random seed.
+        """
+        if self._index is None:
+            raise NoIndexError("the scene stands for many impacts")
+        return self._index
+
+    def unnumbered(self) -> Scene:
+        """Return this scene without ``index``: a law that asks for it raises ``NoIndexError``."""
+        return self._with(_index=None)
+
     def numbered(self, index: Any) -> Scene:
         """Return this scene with another ``index`` of its impacts in the whole batch.
 
@@ -529,7 +545,7 @@ class Scene(Motions):
             rule = f"must be whole numbers of the shape {self.shape}"
             raise refuse("index", index, rule, "such as scene.index of the whole batch")
         scene = copy.copy(self)
-        object.__setattr__(scene, "index", batch.locked(indices) if self.shape else int(indices))
+        object.__setattr__(scene, "_index", batch.locked(indices) if self.shape else int(indices))
         return scene
 
     @property
