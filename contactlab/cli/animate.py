@@ -38,9 +38,10 @@ def execute(arguments: argparse.Namespace) -> int:
     file, scene, simulation = inputs(arguments)
     if scene.shape:
         raise ValueError("scene: must be a single impact, not a sweep; leave out [sweep]")
-    shared.tell_normal_spin(None if file is None else file.encounter)
-    if scene.inverse_mass is not None:
-        return _bodies(arguments, None if file is None else file.encounter, simulation)
+    encounter = None if file is None else file.encounter
+    shared.tell_normal_spin(encounter)
+    if encounter is not None and isinstance(encounter.body, RigidBody):
+        return _bodies(arguments, encounter, simulation)
     with shared.working(arguments.progress, "frames") as progress:
         result = simulation.run(scene, history="fields").check()
         ghosts = {
@@ -56,12 +57,8 @@ def execute(arguments: argparse.Namespace) -> int:
     return shared.OK
 
 
-def _bodies(
-    arguments: argparse.Namespace, encounter: Encounter | None, simulation: Simulation
-) -> int:
-    """Draw an impact of bodies that are no spheres."""
-    if encounter is None or not isinstance(encounter.body, RigidBody):
-        raise ValueError("scene: has no body to draw; give a file with [body]")
+def _bodies(arguments: argparse.Namespace, encounter: Encounter, simulation: Simulation) -> int:
+    """Draw an impact of a body that is no sphere."""
     with shared.working(arguments.progress, "frames") as progress:
         result = simulation.run(encounter.scene, history=True).check()
         collisions = {

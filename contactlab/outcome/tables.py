@@ -255,7 +255,7 @@ def _contact(result: ImpactResult) -> list[Row]:
         ["tangential restitution e_t", result.tangential_restitution, "1"],
         ["contact time", motion.duration, "s"],
     ]
-    if "lam" in scene.groups:
+    if "compressions" in {column.name for column in columns_of(scene)}:
         rows.append(["compressions", result.compressions, "1"])
     if scene.sphere is None and scene.encounter is None:
         return rows

@@ -160,3 +160,11 @@ def test_animate_draws_the_body_and_the_ghost(frames, least, run, tmp_path, monk
     assert out.stat().st_size > least
     with Image.open(out) as picture:  # first touch and separation each are two frames alike
         assert max(frames // 2, 6) <= picture.n_frames <= frames - 2
+
+
+def test_animate_draws_an_impact_of_numbers(run, tmp_path, monkeypatch):
+    monkeypatch.setattr(animation, "SAMPLES", (0.0, 1.0))
+    scene, out = tmp_path / "scene.toml", tmp_path / "m.gif"
+    scene.write_text("[nondimensional]\npsi1 = 1.0\nchi = 1.5\nlam = 0.4\neta = 0.4\n")
+    assert run("animate", scene, "--out", out).status == 0
+    assert out.read_bytes()[:6] == b"GIF89a"
