@@ -109,7 +109,7 @@ def close(told, value):
 def test_the_table_of_laws_is_what_the_command_prints():
     scores = {one["law"]: one for one in printed("compare", "--all")["scores"]}
     table = rows("## What discrete-element codes do", LAWS)
-    assert len(table) == 12
+    assert len(table) == 11
     for name, *told in table:
         law, _, form = name.removeprefix("rigid ").partition(",")
         form = form.split()[0] if law == "mindlin_cap" else ""

@@ -10,8 +10,8 @@ from PIL import Image
 
 import contactlab
 from contactlab import Scene, Simulation, read_scene
-from contactlab.figures import animation, body_animation
 from tests.longer import longer
+from tests.short_animations import shorten
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 FOOT = EXAMPLES / "foot.toml"
@@ -150,9 +150,7 @@ def test_what_is_for_spheres_says_so(run, tmp_path, monkeypatch, command, word):
 @pytest.mark.parametrize(("frames", "least"), [(8, 5_000), *longer((108, 50_000))])
 def test_animate_draws_the_body_and_the_ghost(frames, least, run, tmp_path, monkeypatch):
     if frames == 8:
-        for name, count in (("ARRIVING", 2), ("IN_CONTACT", 4), ("LEAVING", 2)):
-            monkeypatch.setattr(body_animation, name, count)
-        monkeypatch.setattr(animation, "SAMPLES", (0.0, 1.0))
+        shorten(monkeypatch)
     out = tmp_path / "foot.gif"
     ran = run("animate", FOOT, "--ghost", "coulomb", "--out", out)
     assert ran.status == 0
@@ -163,7 +161,7 @@ def test_animate_draws_the_body_and_the_ghost(frames, least, run, tmp_path, monk
 
 
 def test_animate_draws_an_impact_of_numbers(run, tmp_path, monkeypatch):
-    monkeypatch.setattr(animation, "SAMPLES", (0.0, 1.0))
+    shorten(monkeypatch)
     scene, out = tmp_path / "scene.toml", tmp_path / "m.gif"
     scene.write_text("[nondimensional]\npsi1 = 1.0\nchi = 1.5\nlam = 0.4\neta = 0.4\n")
     assert run("animate", scene, "--out", out).status == 0

@@ -4,6 +4,8 @@ import json
 
 import pytest
 
+from tests.short_animations import shorten
+
 BODIES = {
     "sphere": '[sphere]\nradius = 0.01\nmaterial = "steel"\n',
     "body": (
@@ -59,7 +61,8 @@ def test_commands_that_print_tables_tell_too(run, files, words):
     assert CAUTION in " ".join((ran.out + ran.err).split())
 
 
-def test_a_report_and_a_picture_of_a_ball(run, files, tmp_path):
+def test_a_report_and_a_picture_of_a_ball(run, files, tmp_path, monkeypatch):
+    shorten(monkeypatch)
     kind, one, _ = files
     if kind == "sphere":
         page = tmp_path / "page.html"

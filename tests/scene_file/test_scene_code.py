@@ -8,6 +8,7 @@ import pytest
 
 from contactlab import Simulation, create, read_scene
 from contactlab.cli.main import main
+from tests.short_animations import shorten
 
 #: A friction law that says whether its file ran.
 LAW = """
@@ -207,8 +208,9 @@ REPLACED = (
 
 @pytest.mark.parametrize(("scene", "name", "kind", "words"), REPLACED)
 def test_a_law_that_the_command_line_replaces_is_not_run(
-    tmp_path, ran, capsys, scene, name, kind, words
+    tmp_path, ran, capsys, monkeypatch, scene, name, kind, words
 ):
+    shorten(monkeypatch)
     written(tmp_path / "scenes", "../beside/evil.py:Evil", kind=kind, scene=scene)
     status, told = command(capsys, name, "scene.toml", *words)
     assert (status, [line for line in told.splitlines() if "error" in line]) == (0, [])
