@@ -1,6 +1,7 @@
 """What a command says of a file is true: on a full disk, without permission, after Ctrl-C."""
 
 import os
+import signal
 
 import numpy as np
 import pytest
@@ -32,7 +33,9 @@ class Stopping(LinearSpring):
 def stopping(tmp_path):
     path = tmp_path / "law.py"
     path.write_text(STOPPING, encoding="utf-8")
-    return ("--tangential", f"{path}:Stopping")
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job ignores it
+    yield ("--tangential", f"{path}:Stopping")
+    signal.signal(signal.SIGINT, before)
 
 
 @pytest.mark.parametrize("suffix", ["npz", *longer("csv", "json")])
