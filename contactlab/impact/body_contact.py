@@ -21,7 +21,7 @@ from contactlab.impact.bodies import (
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.vectors import cross
+from contactlab.numeric.vectors import cross, solved
 
 Array = NDArray[np.float64]
 
@@ -79,7 +79,7 @@ def arms(encounter: Any, normal: Array) -> tuple[Array, Array]:
 def turned(body: Any, moment: Array) -> Array:
     """Return J⁻¹ times a moment about the centre of mass, shape (..., 3); 0 for a half-space."""
     if isinstance(body, RigidBody):
-        return np.asarray(np.linalg.solve(body.inertia, moment[..., None])[..., 0])
+        return np.asarray(solved(body.inertia, moment[..., None])[..., 0])
     if isinstance(body, Sphere):
         return np.asarray(moment / _moment(body)[..., None])
     return np.zeros(3)
@@ -109,7 +109,7 @@ def inverse_mass_of(encounter: Any, normal: Array) -> Array:
         if isinstance(body, Sphere):
             spin = -(K @ K) / _moment(body)[..., None, None]
         else:
-            spin = -K @ np.linalg.solve(body.inertia, K)
+            spin = -K @ solved(body.inertia, K)
         total = total + spin + np.eye(3) / np.asarray(body.mass)[..., None, None]
     return np.asarray(0.5 * (total + np.swapaxes(total, -1, -2)))
 

@@ -14,7 +14,7 @@ from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.table import between_nodes, read_rows
-from contactlab.numeric.vectors import components
+from contactlab.numeric.vectors import components, solved
 
 Array = NDArray[np.float64]
 
@@ -171,6 +171,6 @@ def _turned(encounter: Encounter, normal: Array, radius: Any) -> Any:
             share: Any = radius / (body.gyration_ratio * body.radius)
             total = total + share * share / body.mass
         else:
-            turned = np.linalg.solve(body.inertia, normal[..., None])[..., 0]
+            turned = solved(body.inertia, normal[..., None])[..., 0]
             total = total + radius * radius * np.einsum("...i,...i->...", normal, turned)
     return total

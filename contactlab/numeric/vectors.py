@@ -23,6 +23,13 @@ LARGEST, LEAST = 1e100, 1e-100
 RANGE = Rule(lambda value: np.abs(value) <= LARGEST, f"must be finite, at most {LARGEST:g}")
 
 
+def solved(matrices: Array, columns: Array) -> Array:
+    """Return A⁻¹ B of matrices that broadcast: NumPy 1 takes a B of one axis less for vectors."""
+    shape = np.broadcast_shapes(matrices.shape[:-2], columns.shape[:-2])
+    whole = np.broadcast_to(columns, (*shape, *columns.shape[-2:]))
+    return np.asarray(np.linalg.solve(matrices, whole))
+
+
 def vector(unit: str, *, default: Any = attrs.NOTHING) -> Any:
     """Return an attrs field for checked vectors."""
     return attrs.field(
