@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import Any
 
@@ -103,7 +103,7 @@ class Laws:
             return self
         for names in TOGETHER:
             free = {kind: name for kind, name in names.items() if kind not in self.named}
-            other = self.changed(**{kind: law(kind, name) for kind, name in free.items()})
+            other = self.taking(free)
             if misfit(*other) is None and _no_answer(other, part.planar) is None:
                 return other
         remedy = _remedy(self, part.planar)
@@ -122,6 +122,10 @@ class Laws:
             return versions(self.normal, self.tangential, self.integrator)
         used = [versions(*self.of(part)) for _, part in scene.parts(as_one=as_one)]
         return {kind: " and ".join(dict.fromkeys(each[kind] for each in used)) for kind in KINDS}
+
+    def taking(self, names: Mapping[str, str]) -> Laws:
+        """Return the laws with others of some kinds, by name."""
+        return self.changed(**{kind: law(kind, name) for kind, name in names.items()})
 
     def changed(self, **laws: Any) -> Laws:
         """Return the laws with others of some kinds."""
@@ -150,21 +154,15 @@ def _no_answer(laws: Laws, planar: bool) -> str | None:
 
 def _rigid_in_silence(laws: Laws) -> bool:
     """Return whether nobody named rigid theory, and an elastic law runs beside the normal law."""
-    if "tangential" in laws.named:
+    if "tangential" in laws.named or "rigid" not in laws.tangential.offers:
         return False
-    if versions(*laws)["tangential"].partition(" ")[0] != RIGID["tangential"]:
-        return False
-    elastic = (
-        laws.changed(**{kind: law(kind, name) for kind, name in names.items()})
-        for names in TOGETHER
-    )
-    return any(misfit(*other) is None for other in elastic)
+    return any(_fits(*laws.taking(names)) for names in TOGETHER)
 
 
 def _remedy(laws: Laws, planar: bool) -> str:
     """Return which laws to take in place of those that have no answer."""
     for names in TOGETHER:
-        other = laws.changed(**{kind: law(kind, name) for kind, name in names.items()})
+        other = laws.taking(names)
         if misfit(*other) is None and _no_answer(other, planar) is None:
             words = ", ".join(f"{kind}={name!r}" for kind, name in names.items())
             return f"take {words}, or leave both out"

@@ -190,12 +190,7 @@ class Motions:
     def _ways(self) -> Any:
         """Return the way in which each impact is solved."""
         W: Any = self.inverse_mass
-        slip = np.zeros((*self.shape, 2))
-        if self.planar:
-            slip[..., 0] = self.tangential_velocity
-        else:
-            slip[...] = self.tangential_velocity
-        return inverse_mass.ways(W, self.normal_speed, slip)
+        return inverse_mass.ways(W, self.normal_speed, self.velocity[..., 1:])
 
     def _going(self, way: int) -> Self:
         """Return this scene as it is solved in one way."""

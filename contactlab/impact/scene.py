@@ -497,10 +497,7 @@ class Scene(Motions):
             isinstance(part, slice) and self.shape and part == slice(0, self.shape[0])
         ):
             return self
-        plain = self
-        if self.encounter is not None:
-            plain = copy.copy(self)
-            object.__setattr__(plain, "encounter", None)
+        plain = self if self.encounter is None else self._with(encounter=None)
         taken: Scene = batch.taken(plain, self.shape, part)
         if self.encounter is not None:
             object.__setattr__(taken, "encounter", self.encounter.take(part))
@@ -544,9 +541,7 @@ class Scene(Motions):
         if indices.shape != self.shape or indices.dtype.kind not in "iu":
             rule = f"must be whole numbers of the shape {self.shape}"
             raise refuse("index", index, rule, "such as scene.index of the whole batch")
-        scene = copy.copy(self)
-        object.__setattr__(scene, "_index", batch.locked(indices) if self.shape else int(indices))
-        return scene
+        return self._with(_index=indices if self.shape else int(indices))
 
     @property
     def slip_velocity(self) -> Any:

@@ -208,7 +208,7 @@ def csv_heading(name: str, unit: str, scene: Scene) -> str:
 def scaled_forces(result: Any) -> tuple[Any, Any, Any]:
     """Return t/duration, F/(mu P_max) and P/P_max of an impact with a history, from first touch.
 
-    Of a force in space F is the length.
+    In space F is the length of the force.
     """
     scene, history = result.scene, result.history
     peak = float(result.motion.maximum_force)

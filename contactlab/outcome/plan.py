@@ -25,7 +25,7 @@ Parts: TypeAlias = Sequence[tuple[Any, T]]
 #: undeclared numerical error of psi2, and spin about the normal.
 TANGENTIAL_MOTION, PSI2_ERROR = "tangential_motion", "psi2_error"
 NORMAL_SPIN = "normal_spin"
-#: What is said beside an error of psi2 where there is spin about the normal.
+#: Words beside an error of psi2 where bodies spin about the normal.
 WITHOUT_SPIN = "without spin about the normal"
 #: Codes of impacts that no whole-impact answer is for: marched, without an end of the normal
 #: motion, and unknown. Other codes are places in the reasons.
