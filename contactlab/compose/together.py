@@ -84,11 +84,10 @@ def at_larger_slip(scene: Scene) -> Scene:
 
     Sizes of cautions grow with the slip, and pressure makes slip where there is none at first.
     """
-    central, W = scene.central, np.asarray(scene.inverse_mass)
-    drag = 2.0 * np.asarray(scene.normal_speed)[..., None] * W[..., 0, 1:] / W[..., :1, 0]
-    after = scene.size_of(np.asarray(scene.slip_velocity) - scene.tangent(drag))
+    drag = scene.coupling(2.0 * np.asarray(scene.normal_speed))
+    after = scene.size_of(np.asarray(scene.slip_velocity) - drag)
     slip = spread(np.maximum(scene.slip_speed, after), scene.shape)
-    return attrs.evolve(central, tangential_velocity=slip).numbered(scene.index)
+    return attrs.evolve(scene.central, tangential_velocity=slip).numbered(scene.index)
 
 
 def cautions(laws: Laws, scene: Scene) -> list[str]:

@@ -85,13 +85,13 @@ class Motions:
     @property
     def lam(self) -> Any:
         """Lam = mu W_nt/W_nn, what friction adds to the approach; (..., 2) in space."""
-        return self._coupling(self.friction_coefficient)
+        return self.coupling(self.friction_coefficient)
 
     @property
     def eta(self) -> Any:
         """Eta = kappa W_nt/(mu W_nn), what pressure adds to the slip; infinite without friction."""
         with np.errstate(all="ignore"):
-            return self._coupling(np.divide(self.pair.stiffness_ratio, self.friction_coefficient))
+            return self.coupling(np.divide(self.pair.stiffness_ratio, self.friction_coefficient))
 
     @property
     def rho(self) -> Real:
@@ -100,8 +100,13 @@ class Motions:
         rho: Real = mu * mu / self.pair.stiffness_ratio
         return rho
 
-    def _coupling(self, factor: Any) -> Any:
-        """Return ``factor`` times W_nt/W_nn; 0 for spheres."""
+    def coupling(self, factor: Any) -> Any:
+        """Return ``factor`` times W_nt/W_nn, as this scene has its slip; 0 for spheres.
+
+        Parameters
+        ----------
+        factor : float or array
+        """
         if self.inverse_mass is None:
             return 0.0
         with np.errstate(all="ignore"):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import MappingProxyType
@@ -384,10 +383,8 @@ class Scene(Motions):
         axes : mapping of str to array, shape (n_i,)
             Values of each entry that varies, the last varying fastest.
         """
-        grid = copy.copy(self)
         lines = [(name, np.array(values, dtype=np.float64)) for name, values in axes.items()]
-        object.__setattr__(grid, "_axes", tuple((name, batch.locked(v)) for name, v in lines))
-        return grid
+        return self._with(_axes=tuple((name, batch.locked(v)) for name, v in lines))
 
     def varying(self, entries: Mapping[str, Any]) -> Scene:
         """Return this batch with the values of the entries that vary in it together.
@@ -397,10 +394,8 @@ class Scene(Motions):
         entries : mapping of str to array
             Values of the batch shape.
         """
-        scene = copy.copy(self)
         lines = tuple((name, batch.locked(np.array(each))) for name, each in entries.items())
-        object.__setattr__(scene, "_varied", lines)
-        return scene
+        return self._with(_varied=lines)
 
     @property
     def varied(self) -> Mapping[str, Array]:
