@@ -37,7 +37,11 @@ class NormalLaw(Law):
     6. ``cautions`` returns doubts about the model when a plan is read, as those of a
        ``TangentialLaw``. ``plastic`` is True for a law whose bodies
        yield; such a law has no caution about yield.
-    7. ``dissipation`` is the energy that the law takes from a motion. It is asked of a motion that
+    7. ``viscous`` is True for a law whose force is Hertz's plus a viscous one over Hertz's radius
+       b² = R z: P = b³ in Hertz's units where the rate is 0, and more while the bodies approach.
+       Tangential laws may then share its loss: the relaxation time of the contact follows from
+       force, radius, approach and rate. Such a law has no memory.
+    8. ``dissipation`` is the energy that the law takes from a motion. It is asked of a motion that
        friction has changed, whose loss of kinetic energy is not the law's alone.
 
     Parameters of methods
@@ -50,6 +54,7 @@ class NormalLaw(Law):
 
     kind: ClassVar[str] = "normal"
     plastic: ClassVar[bool] = False
+    viscous: ClassVar[bool] = False
 
     @abstractmethod
     def start(self, scene: Scene) -> Any:

@@ -63,6 +63,7 @@ class HuntCrossley(OfRestitution):
 
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure"})
+    viscous: ClassVar[bool] = True
 
     restitution: float | None = restitution(default=None)
     damping: float | None = quantity("s/m", rule=NON_NEGATIVE, default=None)

@@ -95,6 +95,7 @@ class KuwabaraKono(OfRestitution):
 
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius"})
+    viscous: ClassVar[bool] = True
 
     restitution: float | None = restitution(default=None)
     relaxation_time: float | None = quantity("s", rule=NON_NEGATIVE, default=None)

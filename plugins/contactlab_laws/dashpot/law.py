@@ -62,6 +62,7 @@ class Tsuji(OfRestitution, ClosedFormNormalLaw, Tabulated):
 
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure"})
+    viscous: ClassVar[bool] = True
 
     restitution: float = restitution(default=0.9)
 

@@ -11,15 +11,20 @@ from numpy.typing import NDArray
 from contactlab.contracts import (
     AllStepsResponse,
     Increment,
+    Law,
     NormalContact,
+    NormalLaw,
     NormalMotion,
     Steps,
     TangentialResponse,
 )
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real, choice, count, refuse
+from contactlab.numeric.checks import Real, Rule, choice, count, quantity, refuse
 from contactlab_laws.jaeger.law import ProfileLaw
-from contactlab_laws.springs import doubling
+from contactlab_laws.springs import doubling, viscous
+
+#: The rule of the loss in shear; the largest measured is that of golf balls, about 4.
+SHEAR_LOSS = Rule(lambda value: (value >= 0.0) & (value <= 8.0), "must be one number from 0 to 8")
 
 
 @attrs.frozen(kw_only=True)
@@ -45,6 +50,10 @@ class Springs(ProfileLaw):
         (theory §13). A doubling grid takes nothing from the normal motion to come, and serves
         where nobody knows this motion, as in discrete-element codes. Between a quarter of its
         springs and all of them carry the contact; it is marched step by step.
+    shear_loss : float
+        Relaxation time in shear over that in pressure, under a viscous normal law: 1, the
+        default, is the theory of one loss for both (theory §15); 0 is shear without loss. Other
+        numbers are for fits. Normal laws that are not viscous have no loss in shear.
 
     References
     ----------
@@ -60,11 +69,16 @@ class Springs(ProfileLaw):
 
     springs: int = count(default=50, most=100_000)
     grid: str = choice("largest", "doubling", default="largest")
+    shear_loss: float = quantity("1", rule=SHEAR_LOSS, default=1.0)
 
     def __attrs_post_init__(self) -> None:
         if self.grid == "doubling" and self.springs % 2:
             rule = 'must be even with grid = "doubling", which merges springs in pairs'
             raise refuse("springs", self.springs, rule, f"take {self.springs + 1}")
+
+    def shares_loss(self, normal: Law) -> bool:
+        """Return whether the normal law is viscous, and shear loses."""
+        return isinstance(normal, NormalLaw) and normal.viscous and self.shear_loss > 0.0
 
     def books_bound(self, scene: Scene) -> Real:
         """Return 0.05 + 0.03/n: the fewest steps leave 0.03, one spring 0.02 whatever the steps.
@@ -80,6 +94,12 @@ class Springs(ProfileLaw):
 
     def start(self, scene: Scene, normal: NormalMotion) -> Any:
         """Return contacts without traction."""
+        if self.shares_loss(normal.law):
+            follows = self.grid == "doubling"
+            unit = scene.pair.radius if follows else normal.maximum_radius
+            return self._viscous(
+                scene, normal, unit, spanned=None if follows else 1.0, grows=follows
+            )
         if self.grid == "doubling":
             return doubling.start(scene, self.springs)
         return super().start(scene, normal)
@@ -90,7 +110,17 @@ class Springs(ProfileLaw):
         As ``vectors`` they turn with the slip.
         """
         spanned = normal.maximum_radius
+        if self.shares_loss(normal.law):
+            return self._viscous(
+                scene, normal, spanned, spanned=viscous.SPARE, grows=True, vectors=vectors
+            )
         return doubling.start(scene, self._even(), spanned=spanned, vectors=vectors)
+
+    def _viscous(self, scene: Scene, normal: NormalMotion, unit: Real, **how: Any) -> viscous.State:
+        """Return springs that share the loss of the normal law, lengths in units of ``unit``."""
+        law: Any = normal.law
+        springs = self._even() if how["grows"] else self.springs
+        return viscous.start(scene, law, springs, unit, shear_loss=self.shear_loss, **how)
 
     def _even(self) -> int:
         """Return the number of springs, one more if odd: a doubling grid merges pairs."""
@@ -100,6 +130,8 @@ class Springs(ProfileLaw):
         self, state: Any, increment: Increment, before: NormalContact, after: NormalContact
     ) -> tuple[TangentialResponse, Any]:
         """Return the force after the step."""
+        if isinstance(state, viscous.State):
+            return viscous.advance(state, increment, after)
         if isinstance(state, doubling.State):
             return doubling.advance(state, increment, after)
         return super().advance(state, increment, before, after)
@@ -107,10 +139,14 @@ class Springs(ProfileLaw):
     def advance_all(
         self, scene: Scene, normal: NormalMotion, steps: Steps
     ) -> AllStepsResponse | None:
-        """Return the forces of all steps; None on a doubling grid, which goes step by step."""
-        return None if self.grid == "doubling" else super().advance_all(scene, normal, steps)
+        """Return the forces of all steps; None where springs go step by step."""
+        if self.grid == "doubling" or self.shares_loss(normal.law):
+            return None
+        return super().advance_all(scene, normal, steps)
 
     def fields(self, state: Any) -> Mapping[str, NDArray[Any]]:
         """Return radius, displacement and limit (m), stuck and slipping of every spring."""
+        if isinstance(state, viscous.State):
+            return viscous.fields(state)
         own = isinstance(state, doubling.State)
         return doubling.fields(state) if own else super().fields(state)
