@@ -288,8 +288,9 @@ def moved(
     if size is not before.size:  # as many springs over another length
         old = old * np.where(before.size > 0.0, size / (before.size + TINY), 1.0)
     mean = 0.5 * (before.weight * old + weight * traction)
-    gained = _real(mean, deflection - held)
-    work = _real(mean, move) - gained
+    # springs that entered count as if they had moved all the time: the force is their mean
+    gained = _real(mean, (deflection - held) / np.maximum(part, TINY))
+    work = _real(mean, drive.move) - gained
     after = Memory(size, edge, excess, lead * slip, share, weight, deflection)
     force = drive.acting * share
     return force, np.maximum(work.sum(axis=0), 0.0), gained.sum(axis=0), after
