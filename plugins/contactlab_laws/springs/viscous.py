@@ -62,6 +62,8 @@ class Memory(NamedTuple):
         What the springs span.
     edge, excess : array, shape (K,)
         b² and j at the end of the last step.
+    time : array, shape (items,)
+        A there, in s; 0 before first touch.
     lead : array, shape (items,)
         A times the slip velocity there, complex for vectors.
     share : array, shape (items,)
@@ -75,6 +77,7 @@ class Memory(NamedTuple):
     size: Any
     edge: Any
     excess: Any
+    time: Any
     lead: Array
     share: Array
     weight: Array
@@ -134,7 +137,7 @@ def start(
     none, one = np.zeros(items), np.zeros(1)
     rows = np.zeros((springs, items), dtype=complex if vectors else float)
     size = np.full(items if grows else 1, spanned or 0.0)
-    memory = Memory(size, one, one, rows[0], rows[0], none, rows)
+    memory = Memory(size, one, one, none, rows[0], rows[0], none, rows)
     scales = Scales.at(scene, radius)
     if shape:
         scales = Scales._make(flat(each, shape) for each in scales)
@@ -249,10 +252,10 @@ def moved(
 ) -> tuple[Array, Array, Array, Memory]:
     """Return force (N), friction work and loss in shear (scaled), and the springs after a step."""
     items = before.deflection.shape[1:]
-    edge, excess, decay = (
-        _column(each, items)
-        for each in (contact.edge, contact.excess, drive.drift / np.maximum(contact.time, TINY))
-    )
+    # A in the middle of the step, and at its end
+    middle = np.where(before.time > 0.0, 0.5 * (before.time + contact.time), contact.time)
+    decay = drive.drift / np.maximum(middle, TINY)
+    edge, excess, decay = (_column(each, items) for each in (contact.edge, contact.excess, decay))
     held, size, merged = before.deflection, before.size, 0.0
     if grows or splits:
         size, held, merged = fitted(before, np.sqrt(edge + 0.0 * size), 1.0, spans=not splits)
@@ -291,7 +294,7 @@ def moved(
     # springs that entered count as if they had moved all the time: the force is their mean
     gained = _real(mean, (deflection - held) / np.maximum(part, TINY))
     work = _real(mean, drive.move) - gained
-    after = Memory(size, edge, excess, lead * slip, share, weight, deflection)
+    after = Memory(size, edge, excess, contact.time, lead * slip, share, weight, deflection)
     force = drive.acting * share
     return force, np.maximum(work.sum(axis=0), 0.0), gained.sum(axis=0), after
 
