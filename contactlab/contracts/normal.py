@@ -41,7 +41,9 @@ class NormalLaw(Law):
        b² = R z: P = b³ in Hertz's units where the rate is 0, and more while the bodies approach.
        Tangential laws may then share its loss: the relaxation time of the contact follows from
        force, radius, approach and rate. Such a law has no memory.
-    8. ``dissipation`` is the energy that the law takes from a motion. It is asked of a motion that
+    8. ``similar`` is True if motions of all impacts are one in units of Hertz's impact, as those of
+       a law that is given by its restitution: then one of a batch is integrated.
+    9. ``dissipation`` is the energy that the law takes from a motion. It is asked of a motion that
        friction has changed, whose loss of kinetic energy is not the law's alone.
 
     Parameters of methods
@@ -73,6 +75,11 @@ class NormalLaw(Law):
         rate : float or array, shape (...,)
             Time derivative of the approach in m/s, positive in compression.
         """
+
+    @property
+    def similar(self) -> bool:
+        """True if all motions are one in units of Hertz's impact (clause 8)."""
+        return False
 
     def dissipation(self, motion: NormalMotion) -> Real:
         """Return the energy in J that the law dissipates along a motion, of the batch shape.

@@ -31,9 +31,8 @@ VANISHES = 1e-6
 BLOCK = 4096
 #: More steps are made anew for each impact: these take half a megabyte.
 LONGEST_KEPT = 4000
-#: Parts of a motion from which graded steps are made; the least radius in them, over the largest;
-#: relative difference up to which motions count as alike.
-GRADED, LEAST_RADIUS, ALIKE = 512, 1e-6, 1e-9
+#: Parts of a motion from which graded steps are made, and the least radius in them, over the largest.
+GRADED, LEAST_RADIUS = 512, 1e-6
 
 
 def resolving(radians: Any, law: TangentialLaw) -> Any:
@@ -79,23 +78,16 @@ def _graded(normal: NormalMotion, count: int) -> Any:
 
     The greatest approach is at an end of a step: the contact radius has a kink there.
     """
+    shape = normal.scene.shape
+    if normal.alike and shape:
+        normal, shape = normal.take((0,) * len(shape)), ()
     u = np.linspace(0.0, 1.0, 2 * GRADED + 1)
     fractions = np.sin(0.5 * math.pi * u) ** 2
     sample = normal.at(_column(np.asarray(normal.phase(fractions)), normal))
-    rate, radius = (np.asarray(each) for each in (sample.rate, sample.contact.radius))
-    rate, radius = (each.reshape(len(u), -1) for each in np.broadcast_arrays(rate, radius))
-    same = [np.abs(each - each[:, :1] * (each[1:2] / each[1:2, :1])) for each in (rate, radius)]
-    if all(
-        (off <= ALIKE * np.abs(each).max(axis=0)).all()
-        for off, each in zip(same, (rate, radius), strict=True)
-    ):
-        rate, radius = rate[:, :1], radius[:, :1]
-    found = np.stack(
-        [_even(u, fractions, *each, count) for each in zip(rate.T, radius.T, strict=True)]
-    )
-    if len(found) == 1:
-        return found[0]
-    return found.T.reshape(-1, *normal.scene.shape)
+    columns = np.broadcast_arrays(sample.rate, sample.contact.radius, np.empty((len(u), *shape)))
+    rate, radius = (each.reshape(len(u), -1).T for each in columns[:2])
+    found = [_even(u, fractions, *each, count) for each in zip(rate, radius, strict=True)]
+    return np.stack(found, axis=-1).reshape(-1, *shape)
 
 
 def _even(u: Any, fractions: Any, rate: Any, radius: Any, count: int) -> Any:

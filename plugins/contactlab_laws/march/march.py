@@ -95,7 +95,7 @@ def _show(normal: NormalMotion, steps: Steps, force: Any, observer: Observer) ->
 
 def _malformed(response: AllStepsResponse, scene: Scene, steps: int) -> str | None:
     """Return a sentence on an answer of wrong kind or shape, or None."""
-    force, work, settled = response
+    force, work, settled, shear = response
     if not isinstance(force, np.ndarray) or not force.ndim or faults.malformed(force, force.shape):
         return f"the forces {shown(force)}"
     count = len(force)
@@ -103,7 +103,10 @@ def _malformed(response: AllStepsResponse, scene: Scene, steps: int) -> str | No
     if missing or force.shape[1:] != scene.shape:
         wanted = f"for {steps} steps of a scene of shape {scene.shape}"
         return f"forces of shape {force.shape} {wanted}"
-    return f"friction work {shown(work)}" if faults.malformed(work, scene.shape) else None
+    for name, energy in (("friction work", work), ("loss in shear", shear)):
+        if faults.malformed(energy, scene.shape):
+            return f"{name} {shown(energy)}"
+    return None
 
 
 def _one_by_one(

@@ -21,7 +21,7 @@ from contactlab.contracts import (
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, Rule, choice, count, quantity, refuse
 from contactlab_laws.jaeger.law import ProfileLaw
-from contactlab_laws.springs import doubling, viscous
+from contactlab_laws.springs import doubling, viscous, viscous_steps
 
 #: The rule of the loss in shear; the largest measured is that of golf balls, about 4.
 SHEAR_LOSS = Rule(lambda value: (value >= 0.0) & (value <= 8.0), "must be one number from 0 to 8")
@@ -140,8 +140,10 @@ class Springs(ProfileLaw):
         self, scene: Scene, normal: NormalMotion, steps: Steps
     ) -> AllStepsResponse | None:
         """Return the forces of all steps; None where springs go step by step."""
-        if self.grid == "doubling" or self.shares_loss(normal.law):
+        if self.grid == "doubling":
             return None
+        if self.shares_loss(normal.law):
+            return viscous_steps.advance_all(self.start(scene, normal), scene, normal, steps)
         return super().advance_all(scene, normal, steps)
 
     def fields(self, state: Any) -> Mapping[str, NDArray[Any]]:

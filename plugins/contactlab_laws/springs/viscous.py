@@ -30,9 +30,13 @@ from contactlab_laws.springs.turning import dragged
 #: Rates below this times that at first touch say nothing of A: the law is asked at this one.
 SLOWEST = 1e-3
 #: Turns of Newton's method for the slip velocity where the force acts.
-TURNS = 2
+TURNS = 3
+#: Feedback of the force on the slip velocity in a step, over the force, from which they are taken.
+STIFF = 0.05
 #: A grid that spans a contact known before spans this much more.
 SPARE = 1.05
+#: Rounding errors up to which impacts of a batch count as alike: their contacts come of a table.
+ALIKE = 1e3
 #: Added to numbers that divide, so that none is zero.
 TINY = 1e-300
 
@@ -176,7 +180,7 @@ def advance(
     contact = _contact(state, row(after.radius), row(after.friction_load), sampled)
     limit, acting = (row(each) for each in (after.friction_load, increment.friction_load))
     friction = scales.force / scales.normal_force
-    drive = _Drive(
+    drive = Drive(
         tangential(increment.displacement) * scales.displacement,
         row(increment.drift),
         tangential(sampled.slip),
@@ -205,7 +209,7 @@ def _shaped(values: Array, shape: tuple[int, ...]) -> Any:
 def _contact(state: State, radius: Array, load: Array, sampled: Any) -> Contact:
     """Return what the contact tells the springs."""
     scales, shape = state.scales, state.shape
-    b, cube = _limits(radius / scales.radius, load / scales.normal_force)
+    b, cube = limits(radius / scales.radius, load / scales.normal_force)
     # the viscous force over the rate, asked while the surfaces approach: no tension cuts it there
     rate = np.maximum(np.abs(sampled.rate), SLOWEST * state.speed)
     asked, _ = state.law.respond(state.parts, sampled.approach, rate)
@@ -219,14 +223,14 @@ def relaxation_time(
     """Return A in s from a viscous contact at a rate of approach, shape (items,); 0 out of it."""
     b = flat(contact.radius, shape) / scales.radius if shape else contact.radius / scales.radius
     load = flat(contact.force, shape) if shape else contact.force
-    excess = _limits(np.atleast_1d(b), np.atleast_1d(load / scales.normal_force))[1]
+    excess = limits(np.atleast_1d(b), np.atleast_1d(load / scales.normal_force))[1]
     per_rate = np.square(scales.radius) / (
         (flat(radius, shape) * flat(rate, shape)) if shape else radius * float(rate)
     )
     return np.asarray(excess * per_rate)
 
 
-def _limits(b: Array, load: Array) -> tuple[Array, Array]:
+def limits(b: Array, load: Array) -> tuple[Array, Array]:
     """Return b and j of a contact of radius b under a load, of which Hertz's is b³."""
     with np.errstate(invalid="ignore"):
         excess = np.where(b > 0.0, (load - b**3) / (1.5 * (b + TINY)), 0.0)
@@ -234,7 +238,7 @@ def _limits(b: Array, load: Array) -> tuple[Array, Array]:
     return np.where(excess < 0.0, np.cbrt(load), b), np.maximum(excess, 0.0)
 
 
-class _Drive(NamedTuple):
+class Drive(NamedTuple):
     """The tangential motion of a step, each of shape (items,); tangential ones may be complex."""
 
     move: Array
@@ -248,7 +252,7 @@ class _Drive(NamedTuple):
 
 
 def moved(
-    before: Memory, contact: Contact, drive: _Drive, grows: bool, splits: bool
+    before: Memory, contact: Contact, drive: Drive, grows: bool, splits: bool
 ) -> tuple[Array, Array, Array, Memory]:
     """Return force (N), friction work and loss in shear (scaled), and the springs after a step."""
     items = before.deflection.shape[1:]
@@ -272,22 +276,13 @@ def moved(
     in_contact = total > 0.0
     per_total = 1.0 / np.where(in_contact, total, 1.0)
     weight = drive.limit * per_total
-    share = np.divide(drive.force, drive.acting, out=0.0 * drive.force, where=drive.acting > 0.0)
-    slip, stiff = drive.slip, lead * drive.mobility * drive.acting
-    for turn in range(TURNS):
-        pull = lead * slip
-        traction = deflection + pull
-        stuck = np.abs(traction) < most
-        traction = _cut(traction, most, stuck)
-        found = traction.sum(axis=0) * per_total
-        if not in_contact.all():
-            found = np.where(in_contact, found, _alone(pull, excess, before.share))
-        new = share + (found - share) / (1.0 + stiff * (stuck.sum(axis=0) * per_total))
-        slip = slip + (share - new) * (drive.mobility * drive.acting)
-        share = new
+    share, slip, traction = solved(
+        deflection, most, lead, drive, per_total, out=np.empty_like(deflection)
+    )
+    if not in_contact.all():
+        share = np.where(in_contact, share, alone(lead * drive.slip, excess, before.share))
     # the work on springs is lost or stored; what is stored is lost when a spring leaves, or after
-    old = held + before.lead
-    old = _cut(old, least, np.abs(old) < least)
+    old = _cut(held + before.lead, least)
     if size is not before.size:  # as many springs over another length
         old = old * np.where(before.size > 0.0, size / (before.size + TINY), 1.0)
     mean = 0.5 * (before.weight * old + weight * traction)
@@ -299,16 +294,51 @@ def moved(
     return force, np.maximum(work.sum(axis=0), 0.0), gained.sum(axis=0), after
 
 
+def solved(
+    deflection: Array, most: Array, lead: Array, drive: Drive, per_total: Array, *, out: Array
+) -> tuple[Array, Array, Array]:
+    """Return share of Coulomb's limit, slip velocity and tractions, which depend on each other.
+
+    From the force of the last step one turn is of second order; where the force moves the slip
+    velocity much, as by a long relaxation in a light body, Newton's method is. ``out`` takes the
+    tractions.
+    """
+    share = np.divide(drive.force, drive.acting, out=0.0 * drive.force, where=drive.acting > 0.0)
+    stiff = lead * drive.mobility * drive.acting * per_total
+    traction = np.add(deflection, lead * drive.slip, out=out)
+    _cut(traction, most)
+    found = np.ones(len(traction)).dot(traction) * per_total
+    slip = drive.slip + (share - found) * (drive.mobility * drive.acting)
+    hard = np.flatnonzero(stiff * len(traction) > STIFF)
+    if not hard.size:
+        return found, slip, traction
+    few = [np.broadcast_to(each, share.shape)[hard] for each in (lead, stiff, per_total)]
+    push = (drive.mobility * drive.acting)[hard]
+    one, at, limits = share[hard], drive.slip[hard], most[:, hard if most.shape[1] > 1 else 0, ...]
+    limits = limits.reshape(len(most), -1)
+    for _ in range(TURNS):
+        pulled = deflection[:, hard] + few[0] * at
+        stuck = (np.abs(pulled) < limits).sum(axis=0)
+        _cut(pulled, limits)
+        new = one + (pulled.sum(axis=0) * few[2] - one) / (1.0 + few[1] * stuck)
+        at, one = at + (one - new) * push, new
+    found[hard], slip[hard], traction[:, hard] = one, at, pulled
+    return found, slip, traction
+
+
 def _real(first: Any, second: Any) -> Any:
     """Return the products, of complex numbers the inner products."""
     return (np.conj(first) * second).real if np.iscomplexobj(first) else first * second
 
 
-def _cut(traction: Any, most: Any, stuck: Any) -> Any:
-    """Return tractions no longer than their limit."""
-    if not np.iscomplexobj(traction):
-        return np.minimum(np.maximum(traction, -most), most)
-    return np.where(stuck, traction, traction * (most / (np.abs(traction) + TINY)))
+def _cut(traction: Any, most: Any) -> Any:
+    """Cut tractions to their limit, in place, and return them."""
+    if traction.dtype.kind != "c":
+        np.minimum(traction, most, out=traction)
+        return np.maximum(traction, -most, out=traction)
+    size = np.abs(traction)
+    traction *= np.where(size > most, most / (size + TINY), 1.0)
+    return traction
 
 
 def _column(value: Array, items: tuple[int, ...]) -> Array:
@@ -344,7 +374,7 @@ def _slipped(held: Array, move: Any, _: Any, first: Array, most: Array, decay: A
     return np.minimum(np.maximum(held + move, free - span), free + span)
 
 
-def _alone(pull: Array, excess: Array, share: Array) -> Array:
+def alone(pull: Array, excess: Array, share: Array) -> Array:
     """Return the share of a contact that is smaller than a cell: of its edge, or as it was."""
     begun = excess > 0.0
     ratio = pull / np.where(begun, excess, 1.0)
@@ -359,7 +389,7 @@ def fields(state: State) -> dict[str, Any]:
     places = np.multiply.outer(np.arange(springs) + 0.5, memory.size / springs)
     limit = _limit(places * places, memory.edge, memory.excess)
     traction = memory.deflection + memory.lead
-    traction = _cut(traction, limit, np.abs(traction) < limit)
+    traction = _cut(traction, limit)
     rows = (
         np.broadcast_to(each, (springs, items)).T.reshape(*shape, springs)
         for each in (places * scales.radius, memory.deflection, traction, limit)
