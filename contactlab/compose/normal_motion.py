@@ -65,9 +65,9 @@ def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
         return SolvedMotion(law, scene, table)
     if scene.shape and law.similar and math.prod(scene.shape) > 1:
         first = scene.take((0,) * len(scene.shape))
-        motion = normal_motion(law, first)
-        if isinstance(motion, SolvedMotion) and motion.status is Status.SUCCESS:
-            return SolvedMotion(law, scene, motion.table, Units.of(scene, first))
+        alone = normal_motion(law, first)
+        if isinstance(alone, SolvedMotion) and alone.status is Status.SUCCESS:
+            return SolvedMotion(law, scene, alone.table, Units.of(scene, first))
     with np.errstate(all="ignore"):
         return _Solver(law, scene).solve()
 

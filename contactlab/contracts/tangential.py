@@ -329,8 +329,8 @@ class SteppedTangentialLaw(TangentialLaw):
        take scales; the motion that follows may be another, with a larger contact, or with several
        compressions. ``stiffness`` is an upper bound for the contacts of the approach alone.
     8. ``shares_loss(normal_law)`` is True if the force depends on the slip velocity too, through
-       the loss of a viscous normal law. Increments then have ``sampled``, and integrators grade
-       their steps at first touch, where such a force grows as the root of time.
+       the loss of a viscous normal law. Increments then have ``sampled``, and integrators
+       grade their steps at first touch, where such a force grows as the root of time.
     9. With the word ``vectors`` a law without future takes displacements and slip velocities of shape
        (..., 2) from the state of ``begin(..., vectors=True)``, and returns a force of this shape;
        friction work has the batch shape. A rotation of all vectors rotates the forces; the length
@@ -377,7 +377,7 @@ class SteppedTangentialLaw(TangentialLaw):
         return 0.0
 
     def shares_loss(self, normal: Law) -> bool:
-        """Return whether the law shares the loss of a normal law (clause 8); by default it does not.
+        """Return whether the law shares the loss of a normal law (clause 8); False by default.
 
         Parameters
         ----------

@@ -50,8 +50,8 @@ class EnergyLedger:
     shear_loss : float or array
         What a viscous contact lost in shear, beside the friction work; 0 in other contacts.
     imbalance : float or array
-        start - end - normal_loss - friction_work - shear_loss: zero in an exact solution. In an axisymmetric
-        law the losses are independent: the normal force does no work in slip, friction none in
+        start - end - normal_loss - friction_work - shear_loss: zero in an exact solution. In an
+        axisymmetric law the losses are independent: the normal force does no work in slip, friction none in
         approach. NaN if friction changed the normal motion and the normal law declares no
         dissipation.
     checked : bool or array of bool
@@ -91,7 +91,8 @@ def books(
 ) -> EnergyLedger:
     """Return the energy books of the energy at the start, and of what approach and slip lose.
 
-    ``losses`` are friction work and loss in shear, ``exchange`` is the energy in J that friction moved from the normal to the tangential motion.
+    ``losses`` are friction work and loss in shear, ``exchange`` is the energy in J
+    that friction moved from the normal to the tangential motion.
     """
     start, lost, slip = energies
     friction_work, shear_loss = losses

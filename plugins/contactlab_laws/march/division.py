@@ -31,7 +31,7 @@ VANISHES = 1e-6
 BLOCK = 4096
 #: More steps are made anew for each impact: these take half a megabyte.
 LONGEST_KEPT = 4000
-#: Parts of a motion from which graded steps are made, and the least radius in them, over the largest.
+#: Parts of a motion from which graded steps are made; least radius in them, over the largest.
 GRADED, LEAST_RADIUS = 512, 1e-6
 
 

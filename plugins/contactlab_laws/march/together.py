@@ -163,7 +163,7 @@ class _March:
             moved = self._joined([each * drift for each in velocity[1:]])
             start = self._joined(velocity[1:])
             # forces that depend on rates act on those in the middle of their kick
-            for turn in range(1 if self.elastic else TURNS):
+            for _ in range(1 if self.elastic else TURNS):
                 at = velocity
                 if not self.elastic:
                     kick = self._kick(pressure, force, step)

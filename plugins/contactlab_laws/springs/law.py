@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import attrs
+import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import (
@@ -16,13 +18,20 @@ from contactlab.contracts import (
     NormalLaw,
     NormalMotion,
     Steps,
+    TangentialLaw,
     TangentialResponse,
+    WholeImpact,
+    sliding,
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, Rule, choice, count, quantity, refuse
 from contactlab_laws.jaeger.law import ProfileLaw
 from contactlab_laws.springs import doubling, viscous, viscous_steps
+from contactlab_laws.viscoelastic import evidence
 
+#: Error of psi2 of springs that share a loss: the first times chi² over springs², and the second
+#: times 1 + chi² over steps²; measured from so many springs on, up to so large a chi.
+BY_SPRINGS, BY_STEPS, LEAST_MEASURED, LARGEST_CHI = 0.12, 15.0, 8, 6.0
 #: The rule of the loss in shear; the largest measured is that of golf balls, about 4.
 SHEAR_LOSS = Rule(lambda value: (value >= 0.0) & (value <= 8.0), "must be one number from 0 to 8")
 
@@ -86,6 +95,35 @@ class Springs(ProfileLaw):
         Both fall as the squares of steps and springs; with 50 and 200 it is 1e-4.
         """
         return 0.05 + 0.03 / self.springs
+
+    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
+        """Return the whole-impact answers, with those of gross slip throughout."""
+        known = super().whole_impacts(scene, normal)
+        if not self.shares_loss(normal.law) or self.shear_loss != 1.0:
+            return known
+        # a spring slips on while the slip velocity exceeds w' = (l - w)/A, at most the rate
+        friction: Any = scene.friction_coefficient * normal.total_load_impulse
+        slip: Any = abs(scene.slip_velocity)
+        where = (abs(scene.psi1) >= 1.0) & (slip >= friction / scene.pair.tangential_mass)
+        if not scene.shape and not where:
+            return known
+        reason = "the impact slips from start to end"
+        return (*known, sliding(scene, normal, where=where, reason=reason, stops=False))
+
+    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:
+        """Return the error of springs that share a loss, measured for chi up to 6; else NaN."""
+        measured = self.shares_loss(normal.law) and self.shear_loss == 1.0
+        if not measured or self.grid == "doubling" or self.springs < LEAST_MEASURED:
+            return math.nan
+        square = np.square(scene.chi)
+        error = BY_SPRINGS * square / self.springs**2 + (BY_STEPS + BY_STEPS * square) / steps**2
+        return np.where(np.asarray(scene.chi) <= LARGEST_CHI, error, math.nan)
+
+    def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
+        """Return the cautions of springs, or of their loss where they share one."""
+        if not self.shares_loss(normal.law):
+            return super().cautions(scene, normal)
+        return (*TangentialLaw.cautions(self, scene, normal), *evidence.cautions(scene, normal))
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return 2 G* a, and half a spring more on a doubling grid, whose cells are not a's."""

@@ -260,9 +260,9 @@ def moved(
     middle = np.where(before.time > 0.0, 0.5 * (before.time + contact.time), contact.time)
     decay = drive.drift / np.maximum(middle, TINY)
     edge, excess, decay = (_column(each, items) for each in (contact.edge, contact.excess, decay))
-    held, size, merged = before.deflection, before.size, 0.0
+    held, size = before.deflection, before.size
     if grows or splits:
-        size, held, merged = fitted(before, np.sqrt(edge + 0.0 * size), 1.0, spans=not splits)
+        size, held, _ = fitted(size, held, np.sqrt(edge + 0.0 * size), 1.0, spans=not splits)
     squares = np.square(np.multiply.outer(np.arange(len(held)) + 0.5, size / len(held)))
     least = _limit(squares, before.edge, before.excess)
     most = _limit(squares, edge, excess)
