@@ -51,9 +51,9 @@ class EnergyLedger:
         What a viscous contact lost in shear, beside the friction work; 0 in other contacts.
     imbalance : float or array
         start - end - normal_loss - friction_work - shear_loss: zero in an exact solution. In an
-        axisymmetric law the losses are independent: the normal force does no work in slip, friction none in
-        approach. NaN if friction changed the normal motion and the normal law declares no
-        dissipation.
+        axisymmetric law the losses are independent: the normal force does no work in slip,
+        friction none in approach. NaN if friction changed the normal motion and the normal law
+        declares no dissipation.
     checked : bool or array of bool
         False where the books close by construction and the imbalance checks nothing.
     """

@@ -63,13 +63,17 @@ class HuntCrossley(OfRestitution):
 
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure"})
-    viscous: ClassVar[bool] = True
 
     restitution: float | None = restitution(default=None)
     damping: float | None = quantity("s/m", rule=NON_NEGATIVE, default=None)
 
     def __attrs_post_init__(self) -> None:
         one_of_two(self, "restitution", "damping", default=DEFAULT_RESTITUTION)
+
+    @property
+    def viscous(self) -> bool:
+        """True if there is any loss."""
+        return self.restitution not in (None, 1.0) or bool(self.damping)
 
     @property
     def similar(self) -> bool:

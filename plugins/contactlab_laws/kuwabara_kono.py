@@ -95,13 +95,17 @@ class KuwabaraKono(OfRestitution):
 
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius"})
-    viscous: ClassVar[bool] = True
 
     restitution: float | None = restitution(default=None)
     relaxation_time: float | None = quantity("s", rule=NON_NEGATIVE, default=None)
 
     def __attrs_post_init__(self) -> None:
         one_of_two(self, "restitution", "relaxation_time", default=DEFAULT_RESTITUTION)
+
+    @property
+    def viscous(self) -> bool:
+        """True if there is any loss."""
+        return self.restitution not in (None, 1.0) or bool(self.relaxation_time)
 
     @property
     def similar(self) -> bool:

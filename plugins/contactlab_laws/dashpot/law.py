@@ -62,9 +62,13 @@ class Tsuji(OfRestitution, ClosedFormNormalLaw, Tabulated):
 
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure"})
-    viscous: ClassVar[bool] = True
 
     restitution: float = restitution(default=0.9)
+
+    @property
+    def viscous(self) -> bool:
+        """True if there is any loss."""
+        return self.restitution < 1.0
 
     def start(self, scene: Scene) -> Parts:
         """Return stiffness and damping of the pair; the law has no memory."""

@@ -27,7 +27,6 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, Rule, choice, count, quantity, refuse
 from contactlab_laws.jaeger.law import ProfileLaw
 from contactlab_laws.springs import doubling, viscous, viscous_steps
-from contactlab_laws.viscoelastic import evidence
 
 #: Error of psi2 of springs that share a loss: the first times chi² over springs², and the second
 #: times 1 + chi² over steps²; measured from so many springs on, up to so large a chi.
@@ -123,6 +122,8 @@ class Springs(ProfileLaw):
         """Return the cautions of springs, or of their loss where they share one."""
         if not self.shares_loss(normal.law):
             return super().cautions(scene, normal)
+        from contactlab_laws.viscoelastic import evidence  # springs without loss need none of it
+
         return (*TangentialLaw.cautions(self, scene, normal), *evidence.cautions(scene, normal))
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:

@@ -165,7 +165,6 @@ def advance(
     """Return force, friction work and loss in shear of the step, and the springs after it."""
     shape, scales, memory = state.shape, state.scales, state.memory
     sampled = increment.sampled
-    assert sampled is not None
     vectors = memory.deflection.dtype.kind == "c"
 
     def row(value: Any) -> Any:
@@ -180,12 +179,14 @@ def advance(
     contact = _contact(state, row(after.radius), row(after.friction_load), sampled)
     limit, acting = (row(each) for each in (after.friction_load, increment.friction_load))
     friction = scales.force / scales.normal_force
+    still = np.zeros(memory.deflection.shape[1:])
+    rates = still, still, still
+    if sampled is not None:
+        rates = tangential(sampled.slip), tangential(sampled.force), row(sampled.mobility)
     drive = Drive(
         tangential(increment.displacement) * scales.displacement,
         row(increment.drift),
-        tangential(sampled.slip),
-        tangential(sampled.force),
-        row(sampled.mobility),
+        *rates,
         friction * limit,
         friction * acting,
         scales.displacement,
@@ -209,12 +210,14 @@ def _shaped(values: Array, shape: tuple[int, ...]) -> Any:
 def _contact(state: State, radius: Array, load: Array, sampled: Any) -> Contact:
     """Return what the contact tells the springs."""
     scales, shape = state.scales, state.shape
-    b, cube = limits(radius / scales.radius, load / scales.normal_force)
+    b, excess = limits(radius / scales.radius, load / scales.normal_force)
+    if sampled is None:  # slow
+        return Contact(b * b, 0.0 * excess, 0.0 * excess)
     # the viscous force over the rate, asked while the surfaces approach: no tension cuts it there
     rate = np.maximum(np.abs(sampled.rate), SLOWEST * state.speed)
     asked, _ = state.law.respond(state.parts, sampled.approach, rate)
     time = relaxation_time(asked, rate, state.radius, scales, shape)
-    return Contact(b * b, cube, state.shear_loss * time)
+    return Contact(b * b, excess, state.shear_loss * time)
 
 
 def relaxation_time(
@@ -371,7 +374,7 @@ def _slipped(held: Array, move: Any, _: Any, first: Array, most: Array, decay: A
     gone = -np.expm1(-decay)
     free = held * (1.0 - gone)
     span = first * gone + (most - first) * (1.0 - gone / np.maximum(decay, TINY))
-    return np.minimum(np.maximum(held + move, free - span), free + span)
+    return np.asarray(np.minimum(np.maximum(held + move, free - span), free + span))
 
 
 def alone(pull: Array, excess: Array, share: Array) -> Array:
@@ -379,7 +382,7 @@ def alone(pull: Array, excess: Array, share: Array) -> Array:
     begun = excess > 0.0
     ratio = pull / np.where(begun, excess, 1.0)
     ratio = ratio / np.maximum(np.abs(ratio), 1.0)
-    return np.where(begun, ratio, share)
+    return np.asarray(np.where(begun, ratio, share))
 
 
 def fields(state: State) -> dict[str, Any]:

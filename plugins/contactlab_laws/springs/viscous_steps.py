@@ -64,7 +64,7 @@ def advance_all(
         column = np.asarray(column)
         if column.size == count:
             return column.reshape(count, 1)
-        return np.broadcast_to(column, (count, *shape)).reshape(wide)
+        return np.asarray(np.broadcast_to(column, (count, *shape)).reshape(wide))
 
     contact = _contacts(state, steps, rows)
     drift, kick, acting = (rows(each) for each in (steps.drift, steps.kick, steps.friction_load))
