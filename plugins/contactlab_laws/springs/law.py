@@ -100,10 +100,14 @@ class Springs(ProfileLaw):
         known = super().whole_impacts(scene, normal)
         if not self.shares_loss(normal.law) or self.shear_loss != 1.0:
             return known
-        # a spring slips on while the slip velocity exceeds w' = (l - w)/A, at most the rate
+        # A spring slips on while psi exceeds w' = (l - w)/A: the rate of approach if bodies of
+        # Kelvin and Voigt part, less than nothing in unloading under any law.
         friction: Any = scene.friction_coefficient * normal.total_load_impulse
-        slip: Any = abs(scene.slip_velocity)
-        where = (abs(scene.psi1) >= 1.0) & (slip >= friction / scene.pair.tangential_mass)
+        reduced: Any = abs(scene.slip_velocity) - friction / scene.pair.tangential_mass
+        least: Any = 0.0
+        if "kelvin_voigt" in normal.offers:
+            least = normal.final_rate * scene.friction_coefficient / scene.pair.stiffness_ratio
+        where = (abs(scene.psi1) >= 1.0) & (reduced >= least)
         if not scene.shape and not where:
             return known
         reason = "the impact slips from start to end"

@@ -386,7 +386,10 @@ def alone(pull: Array, excess: Array, share: Array) -> Array:
 
 
 def fields(state: State) -> dict[str, Any]:
-    """Return radius, displacement and limit (m), stuck and slipping, shape (*shape, springs)."""
+    """Return radius, displacement and limit (m), stuck and slipping, shape (*shape, springs).
+
+    The displacement is that of an elastic spring under the same force; ``relaxed`` is w in m.
+    """
     memory, scales, shape = state.memory, state.scales, state.shape
     springs, items = memory.deflection.shape
     places = np.multiply.outer(np.arange(springs) + 0.5, memory.size / springs)
@@ -400,5 +403,5 @@ def fields(state: State) -> dict[str, Any]:
     radius, deflection, traction, limit = rows
     metres = np.asarray(scales.metres).reshape(*shape, 1)
     told = spring_fields(radius, traction, limit, metres=metres)
-    told["displacement"] = spring_fields(radius, deflection, limit, metres=metres)["displacement"]
-    return told
+    relaxed = spring_fields(radius, deflection, limit, metres=metres)["displacement"]
+    return {**told, "relaxed": relaxed}

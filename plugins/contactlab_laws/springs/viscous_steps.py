@@ -61,10 +61,10 @@ def advance_all(
     wide = (count, items)
 
     def rows(column: Any) -> Array:
-        column = np.asarray(column)
-        if column.size == count:
-            return column.reshape(count, 1)
-        return np.asarray(np.broadcast_to(column, (count, *shape)).reshape(wide))
+        table: Array = np.asarray(column)
+        if table.size == count:
+            return table.reshape(count, 1)
+        return np.broadcast_to(table, (count, *shape)).reshape(wide)
 
     contact = _contacts(state, steps, rows)
     drift, kick, acting = (rows(each) for each in (steps.drift, steps.kick, steps.friction_load))
