@@ -12,12 +12,13 @@ if (words[0] === "impact") {
 } else {
   const bytes = readFileSync(words[0]);
   const numbers = new Float64Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));
-  const [n, steps, unit, modulus, time] = numbers, width = time ? 13 : 8, state = new Float64Array(stateLength(n));
+  const [n, steps, unit, modulus, time] = numbers, width = time === 0 ? 8 : 13, state = new Float64Array(stateLength(n));
   const answers = new Float64Array(4 * steps), force = [0, 0, 0];
   for (let k = 0; k < steps; k++) {
     const row = Array.from(numbers.subarray(5 + width * k, 5 + width * (k + 1)));
     const given = [state, n, row.slice(0, 3), row.slice(3, 6), row[6], row[7], unit, modulus, force];
-    const work = time ? dampedStep(...given, row[8], row[9], row.slice(10), time) : step(...given);
+    const more = [row[8], row[9], row.slice(10), time];
+    const work = time === 0 ? step(...given) : dampedStep(...given, ...more);
     answers.set([...force, work], 4 * k);
   }
   writeFileSync(words[1], answers);
