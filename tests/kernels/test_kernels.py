@@ -50,7 +50,8 @@ def driven(words, folder, springs, rows, **lengths):
 
 def driven_each(words, folder, springs, motions):
     """Return the answers along several motions, which a row without contact parts, in one call."""
-    apart = np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0]])
+    apart = np.zeros((1, motions[0].shape[1]))
+    apart[0, 5] = 1.0
     found = driven(
         words, folder, springs, np.vstack([x for each in motions for x in (each, apart)])
     )
