@@ -261,8 +261,8 @@ def test_the_caution_has_the_size_of_the_evidence():
     """None where it slips throughout, none at e = 1; metals and deep contacts are told."""
     rubber = Material(young_modulus=3e6, poisson_ratio=0.45, density=1000.0)
     ball = Scene(
-        sphere=Sphere(radius=0.03, material=rubber), target=HalfSpace(RIGID), normal_speed=5.0, tangential_velocity=2.0,
-        friction_coefficient=0.5,
+        sphere=Sphere(radius=0.03, material=rubber), target=HalfSpace(RIGID),
+        normal_speed=5.0, tangential_velocity=2.0, friction_coefficient=0.5,
     )  # fmt: skip
     plan = springs(viscoelastic(0.8)).plan(ball)
     assert any("e_T" in text and "0.16 at e = 0.8" in text for text in map(str, plan.cautions))
