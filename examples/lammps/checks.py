@@ -214,7 +214,9 @@ def refusing(lammps: Engine) -> bool:
         )
     } | {
         f"coefficients {words}": (
-            partial(whole, lammps, law="springs8", coefficients=f"pair_coeff * * {model.format(words)}"),
+            partial(
+                whole, lammps, law="springs8", coefficients=f"pair_coeff * * {model.format(words)}"
+            ),
             told,
         )
         for words, told in (
