@@ -128,11 +128,11 @@ def plain(text: str) -> str:
     return text
 
 
-def kernel(end: str = "#endif") -> str:
-    """Return the kernel of contactlab, up to some words, as C++ without macros."""
+def kernel() -> str:
+    """Return the kernel of contactlab as C++ without macros."""
     file = resources.files("contactlab").joinpath("kernels", "contactlab_springs.h")
     text = file.read_text("utf-8")
-    return plain(text[text.index("/* Length of the state") : text.rindex(end)].strip())
+    return plain(text[text.index("/* Length of the state") : text.rindex("#endif")].strip())
 
 
 def merge(lammps: Path) -> None:
@@ -143,9 +143,7 @@ def merge(lammps: Path) -> None:
     for name in SUB_MODEL:
         text = (HERE / name).read_text("utf-8")
         text = text[text.index("*/") + 3 :]
-        # The step without damping is not called.
-        step = kernel("/* Takes one step of a contact. Returns the friction work")
-        text = re.sub(r'#include "contactlab_springs.h".*', lambda _, step=step: step, text)
+        text = re.sub(r'#include "contactlab_springs.h".*', lambda _: kernel(), text)
         author = AUTHOR if name.endswith(".cpp") else ""
         (granular / name).write_text(f"{head}{author}\n{plain(text).strip()}\n", "utf-8")
     if shutil.which("clang-format"):
