@@ -64,9 +64,14 @@ def thinned() -> list[str]:
     by Chebyshev polynomials of 2x - 1 on the leaf, in units of UNIT. The value is psi2/psi1, or
     where psi1 > 1 psi2 less that of slip throughout.
     """
-    trees = [list(_tree(_terms(_values(piece)))) for piece in PIECES]
+    trees = [tree(piece) for piece in PIECES]
     starts = len(PIECES) + np.cumsum([0, *map(len, trees[:-1])])
-    return [str(each) for each in (*starts, *(number for tree in trees for number in tree))]
+    return [str(each) for each in (*starts, *(number for each in trees for number in each))]
+
+
+def tree(piece: Piece) -> list[int]:
+    """Return the numbers of a piece, whose impacts take up to two minutes."""
+    return list(_tree(_terms(_values(piece))))
 
 
 def write(folder: Path | None = None) -> list[Path]:
