@@ -75,6 +75,29 @@ export function bounce(one, other, contact, normal, velocity, spin = ZERO, other
 export const rebound = (psi1, chi, restitution = 1) =>
   psi1 + Math.sign(psi1) * slipChange(Math.abs(psi1), chi, restitution);
 
+/**
+ * Balls to begin with: each a body for bounce and its contact. Poisson's ratios are ours, and so are thin shells.
+ *
+ * - football: radius and mass of law 2 of FIFA's Laws of the Game, 68 to 70 cm around and 410 to 450 g. Its contact
+ *   with a hard floor is ours.
+ * - tennisBall: radius, mass and restitution of appendix I of ITF's Rules of Tennis, 6.54 to 6.86 cm across, 56.0 to
+ *   59.4 g, and a rebound to 135 to 147 cm from 254 cm, on concrete. Friction is ours.
+ * - billiardBall: R, m, u_b and e_b of pooltool/objects/ball/params.py in ekiefl/pooltool (GitHub), with another ball.
+ * - superball: R. Cross, Exp. Mech. 54 (2014) 1523, doi 10.1007/s11340-014-9938-3, on granite; friction is that of
+ *   the three flattest bounces of its figure 3.
+ */
+export const BALLS = {
+  football: shell(0.11, 0.43, {friction: 0.5, restitution: 0.75}),
+  tennisBall: shell(0.0335, 0.0577, {friction: 0.6, restitution: 0.745}),
+  billiardBall: {body: {radius: 0.028575, mass: 0.170097, poisson: 0.34}, contact: {friction: 0.05, restitution: 0.95}},
+  superball: {body: {radius: 0.023, mass: 0.0462, poisson: 0.5}, contact: {friction: 0.39, restitution: 0.9}},
+};
+
+/** Returns a thin shell of rubber and its contact. */
+function shell(radius, mass, contact) {
+  return {body: {radius, mass, inertia: 2 / 3 * mass * radius ** 2, poisson: 0.5}, contact};
+}
+
 /** The largest chi, the largest speed, and the least restitution whose course is followed. */
 const MOST = 1e4, LARGE = 1e300, LEAST = 0.008;
 const ZERO = [0, 0, 0], BODY = ["radius", "mass", "young", "poisson", "inertia"];

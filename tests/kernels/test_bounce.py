@@ -11,6 +11,8 @@ import pytest
 
 import contactlab
 from contactlab import Encounter, HalfSpace, Material, Sphere, collide
+from contactlab_laws.viscoelastic.batch import extrapolated
+from contactlab_laws.viscoelastic.relaxation import number_of
 from table_builders.elastic import thin
 from table_builders.restituted import thin as restituted
 from tests.kernels.test_kernels import (
@@ -244,6 +246,19 @@ def test_with_a_restitution_it_is_springs_of_fine_steps(psi2):
     assert psi2(*PLANAR.T[:3]) == pytest.approx(PLANAR.T[3], abs=5e-5)
 
 
+@pytest.mark.parametrize(
+    ("lower", "upper", "bound"),
+    [(0.5, 2.0, 7e-5), *longer((0.34, 0.5, 4e-4), (2.0, 4.0, 5e-3), (4.0, 10.0, 1e-2))],
+)
+def test_any_restitution_is_that_of_springs_in_python(psi2, lower, upper, bound):
+    """Each impact with a restitution of its own, from 0.01 up, by the springs of the law."""
+    random, count = np.random.default_rng(10), 300
+    chi, e = random.uniform(lower, upper, count), random.uniform(0.01, 1.0, count)
+    psi1 = random.uniform(0.0, 1.0, count) * np.maximum(1.0, 2.0 * chi * (1.0 + e) - e)
+    expected = extrapolated(psi1, chi, number_of(e), springs=200, steps=1000)
+    assert np.abs(psi2(psi1, chi, e) - expected).max() < bound
+
+
 def test_where_it_slips_throughout_or_does_not_rebound_psi2_is_in_closed_form(psi2):
     random = np.random.default_rng(8)
     chi = random.uniform(0.34, 10.0, COUNT)
@@ -259,12 +274,13 @@ def test_where_it_slips_throughout_or_does_not_rebound_psi2_is_in_closed_form(ps
 
 def test_small_restitutions_lead_to_none(psi2):
     """That at 0.004 is half way from e = 0 to 0.008; springs meet it there."""
-    psi1 = np.linspace(0.05, 0.95, 19)
-    for chi in (0.4, 1.4, 3.0):
-        none, half, full, more = (psi2(psi1, chi, e) for e in (0.0, 0.004, 0.008, 0.00801))
-        assert half == pytest.approx((none + full) / 2.0, abs=5e-5)
-        assert more == pytest.approx(full, abs=5e-5)
-        assert np.abs(full - none).max() > 1e-4
+    values = (0.4, 1.4, 3.0), (0.0, 0.004, 0.008, 0.00801), np.linspace(0.05, 0.95, 19)
+    chi, e, psi1 = (each.ravel() for each in np.meshgrid(*values, indexing="ij"))
+    found = psi2(psi1, chi, e)
+    none, half, full, more = np.moveaxis(found.reshape(3, 4, 19), 1, 0)
+    assert half == pytest.approx((none + full) / 2.0, abs=5e-5)
+    assert more == pytest.approx(full, abs=5e-5)
+    assert (np.abs(full - none).max(axis=1) > 1e-4).all()
 
 
 #: psi1, chi, and velocity and spin after it at restitution 1, before there was any other.

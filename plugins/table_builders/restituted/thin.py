@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
+from numpy.typing import NDArray
 
 from contactlab_laws.tables.patches import Array
 from contactlab_laws.viscoelastic.batch import extrapolated
@@ -107,17 +108,20 @@ def _along(matrix: Array, terms: Array, axis: int) -> Array:
 def _terms(values: Array) -> Array:
     """Return Chebyshev terms of values at the nodes of a box."""
     for axis, count in enumerate(values.shape):
-        matrix = np.linalg.inv(chebvander(2.0 * nodes(count) - 1.0, count - 1))
-        values = _along(matrix, values, axis)
+        values = _along(_back(count), values, axis)
     return values
+
+
+def _back(count: int) -> Array:
+    """Return the matrix from values at the nodes to Chebyshev terms."""
+    return np.asarray(np.linalg.inv(chebvander(2.0 * nodes(count) - 1.0, count - 1)), float)
 
 
 def _halves(terms: Array, axis: int) -> list[Array]:
     """Return the terms on both halves of a box."""
     count = terms.shape[axis]
     x = nodes(count)
-    back = np.linalg.inv(chebvander(2.0 * x - 1.0, count - 1))
-    matrices = [back @ chebvander(x + shift, count - 1) for shift in (-1.0, 0.0)]
+    matrices = [_back(count) @ chebvander(x + shift, count - 1) for shift in (-1.0, 0.0)]
     return [_along(matrix, terms, axis) for matrix in matrices]
 
 
@@ -149,7 +153,7 @@ def _leaf(terms: Array) -> list[int]:
     return numbers
 
 
-def _last(units: np.typing.NDArray[np.int_]) -> np.typing.NDArray[np.int_]:
+def _last(units: NDArray[np.int_]) -> NDArray[np.int_]:
     """Return how many numbers along the last axis reach to the last that is not 0."""
     count = units.shape[-1]
-    return np.where(units != 0, np.arange(1, count + 1), 0).max(axis=-1, initial=0)
+    return np.asarray(np.where(units != 0, np.arange(1, count + 1), 0).max(axis=-1, initial=0))
