@@ -354,8 +354,8 @@ static inline double contactlab_bounce_loses(double psi1, double chi, double e)
 }
 
 /* Returns psi2 - psi1 for psi1 >= 0 (theory section 1) and a restitution e. For chi from 0.5 to 2.5, which all spheres
- * have but those with a dense core, psi2 to 1e-6 max(1, psi1) at e = 1; below it to 1e-4 for chi up to 2. By springs
- * else: to 0.006 up to chi = 4, 0.02 up to 10. */
+ * have but those with a dense core, psi2 to 1e-6 max(1, psi1) at e = 1, and below it to 1e-4 for chi up to 2. By
+ * springs else: to 0.006 up to chi = 4, 0.02 up to 10, and below e = 1 to 0.004 and 0.008. */
 static inline double contactlab_bounce_change(double psi1, double chi, double e)
 {
   const double sliding = 2 * chi * (1 + e);

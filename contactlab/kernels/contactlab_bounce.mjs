@@ -69,11 +69,16 @@ export function bounce(one, other, contact, normal, velocity, spin = ZERO, other
   return after;
 }
 
-/** Returns psi2 of psi1, chi (theory §1) and the restitution. For chi from 0.5 to 2.5, which all spheres have but
- *  those with a dense core, to 1e-6 max(1, |psi1|) at restitution 1; below it to 1e-4 for chi up to 2. By springs
- *  else: to 0.006 up to chi = 4, 0.02 up to 10. NaN for what is no number. */
-export const rebound = (psi1, chi, restitution = 1) =>
-  psi1 + Math.sign(psi1) * slipChange(Math.abs(psi1), chi, restitution);
+/**
+ * Returns psi2 of psi1, chi (theory §1) and the restitution, NaN for what is no number.
+ *
+ * For chi from 0.5 to 2.5, which all spheres have but those with a dense core, to 1e-6 max(1, |psi1|) at restitution
+ * 1, and below it to 1e-4 for chi up to 2. By springs else: to 0.006 up to chi = 4, 0.02 up to 10, and below
+ * restitution 1 to 0.004 and 0.008.
+ */
+export function rebound(psi1, chi, restitution = 1) {
+  return psi1 + Math.sign(psi1) * slipChange(Math.abs(psi1), chi, restitution);
+}
 
 /**
  * Balls to begin with: each a body for bounce and its contact. Poisson's ratios are ours, and so are thin shells.
