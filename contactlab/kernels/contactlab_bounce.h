@@ -233,7 +233,10 @@ static inline double contactlab_bounce_reach(double a, int loads, const double *
   return x + part;
 }
 
-static inline double contactlab_bounce_bound(double value, double most) { return fmax(-most, fmin(most, value)); }
+static inline double contactlab_bounce_bound(double value, double most)
+{
+  return value < -most ? -most : value > most ? most : value;
+}
 
 /* Returns psi2 - psi1 at a restitution e from 0.008 on, by 24 springs that lose: the step of theory section 15. */
 static inline double contactlab_bounce_followed(double psi1, double chi, double e)
