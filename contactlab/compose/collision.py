@@ -160,15 +160,19 @@ class Collision(Answer):
         contact = self.encounter.meeting()
         checked: Any = False
         exchange: Any = 0.0
+        shear: Any = 0.0
         if self.known is not None:
             checked = np.ones(self.encounter.shape, dtype=bool)
             checked[self.collided] = self.known.energy.checked
             exchange = np.zeros(self.encounter.shape)
             exchange[self.collided] = self.known.motion.exchange
+            shear = np.zeros(self.encounter.shape)
+            shear[self.collided] = self.known.motion.shear_loss
         after = self.normal_velocity, self.slip_velocity_change
         with np.errstate(over="ignore", under="ignore", invalid="ignore"):
             energies = self.encounter.pair.energies(contact.approach, contact.slip, *after)
-            return books(energies, self.friction_work, exchange, checked)
+            losses = self.friction_work, shear
+            return books(energies, losses, exchange, checked)
 
     def _energy_of_bodies(self) -> EnergyLedger:
         """Return the books of the impacts, spread over the encounters."""
@@ -177,7 +181,7 @@ class Collision(Answer):
         zeros = np.zeros(self.encounter.shape)
         entries: dict[str, Any] = {
             name: zeros.copy() if self.encounter.shape else 0.0
-            for name in ("start", "end", "normal_loss", "friction_work", "imbalance")
+            for name in ("start", "end", "normal_loss", "friction_work", "shear_loss", "imbalance")
         }
         if self.known is not None:
             for name, entry in entries.items():

@@ -29,6 +29,7 @@ DEFAULT_NORMAL = "hertz"
 PREFERRED = {
     "tangential": ("annulus", "springs", "coulomb"),
     "elastic": ("fronts", "springs", "coulomb"),  # under elastic Hertz contact: fronts is exact
+    "viscous": ("springs", "annulus", "coulomb"),  # springs share the loss of the normal law
     "integrator": ("events", "symplectic"),
     "steps": ("symplectic", "events"),  # integrators of laws that are stepped and nothing else
 }
@@ -239,6 +240,8 @@ def _preferred(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> tuple[st
     which = kind
     if kind == "tangential" and "elastic_hertz" in before[0].offers:
         which = "elastic"
+    elif kind == "tangential" and getattr(before[0], "viscous", False):
+        which = "viscous"
     elif kind == "integrator" and {way for way in WAYS if isinstance(before[-1], way)} == STEPS:
         which = "steps"  # no other integrator is imported
     for name in PREFERRED[which]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose.scaled_normal_law import ScaledNormalLaw
-from contactlab.compose.solved_motion import NODES, FailedMotion, MotionTable, SolvedMotion
+from contactlab.compose.solved_motion import NODES, FailedMotion, MotionTable, SolvedMotion, Units
 from contactlab.contracts import faults
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
@@ -63,6 +63,11 @@ def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
     table = _common(law, scene)
     if table is not None:
         return SolvedMotion(law, scene, table)
+    if scene.shape and law.similar and math.prod(scene.shape) > 1:
+        first = scene.take((0,) * len(scene.shape))
+        alone = normal_motion(law, first)
+        if isinstance(alone, SolvedMotion) and alone.status is Status.SUCCESS:
+            return SolvedMotion(law, scene, alone.table, Units.of(scene, first))
     with np.errstate(all="ignore"):
         return _Solver(law, scene).solve()
 

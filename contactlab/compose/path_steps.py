@@ -13,7 +13,7 @@ from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.sampled_motion import SampledMotion
 from contactlab.contracts.status import Status
-from contactlab.contracts.tangential import Increment, SteppedTangentialLaw
+from contactlab.contracts.tangential import Increment, Sampled, SteppedTangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import shown
@@ -122,10 +122,15 @@ def _steps(
     """Iterate over the steps, and count them; the first one presses only."""
     drift = np.diff(points.time, axis=0, prepend=0.0)
     moved, velocity = points.moved(points.displacement, points.displacement[:1])
-    rows = zip(*(_rows(each) for each in (moved, velocity, drift)), contacts, strict=True)
-    for blamed.step, (by, speed, time, after) in enumerate(rows, 1):
+    rates = points.moved(points.approach, 0.0)[1]
+    places = zip(_rows(points.approach), _rows(rates), strict=True)
+    rows = zip(*(_rows(each) for each in (moved, velocity, drift)), places, contacts, strict=True)
+    for blamed.step, (by, speed, time, place, after) in enumerate(rows, 1):
         # The force acts on no body: the path is prescribed.
-        yield Increment(locked(by), locked(speed), after.friction_load, 0.0 * time, time), after
+        # A path without times is slow: rates say nothing.
+        sampled = Sampled(*place, speed, 0.0 * speed, 0.0 * speed) if np.any(time) else None
+        moved_by = locked(by), locked(speed)
+        yield Increment(*moved_by, after.friction_load, 0.0 * time, time, sampled), after
 
 
 def _judged(laws: Any, columns: dict[str, Array], unsettled: Any) -> tuple[Any, str]:

@@ -22,6 +22,7 @@ from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
 from contactlab.contracts.status import Status
+from contactlab.contracts.tangential import SteppedTangentialLaw
 from contactlab.impact.cautions import rigid_bodies, three_numbers, unit_slips, unlikely
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, some, spread, taken
@@ -157,6 +158,9 @@ def _words(
         error = columns.restitution_error
         computed += _error_clauses("the normal restitution", error, masks.ended, advice)
     left_out = _not_marched(columns, masks)
+    if _loses_in_pressure_alone(used, part):
+        name = type(used.tangential).__name__
+        left_out.append(Clause(f"loss in shear: {name} has none beside this law", masks.known))
     if coupled and part.planar:
         left_out.append(Clause(ONE_PLANE, masks.known))
     if reason := _no_history(asked.history, columns, masks.marched):
@@ -164,6 +168,17 @@ def _words(
     with np.errstate(under="ignore"):
         cautions = _cautions(used, part, scene, motion, masks)
     return tuple(computed), tuple(left_out), cautions
+
+
+def _loses_in_pressure_alone(laws: Laws, scene: Scene) -> bool:
+    """Return whether the normal law is viscous, and the tangential law does not share its loss."""
+    tangential: Any = laws.tangential
+    if not laws.normal.viscous or "partial_slip" not in tangential.offers:
+        return False
+    shares = isinstance(tangential, SteppedTangentialLaw) and tangential.shares_loss(laws.normal)
+    if shares:
+        return False
+    return scene.rubs if scene.inverse_mass is None else together.at_larger_slip(scene).rubs
 
 
 def _in_place(laws: Laws, used: Laws) -> str:

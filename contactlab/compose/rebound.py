@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+#: Range of chi in the table of restitutions.
+RESTITUTED_CHI = (0.3, 3.0)
 #: Largest chi of the law for a restitution below 1; the range of chi and the least restitution of
 #: its table, and the largest errors of psi2 in the table and outside, against Coulomb's law at
 #: every point: ``tests/laws/test_damped_table.py``.

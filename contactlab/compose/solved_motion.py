@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 import attrs
 import numpy as np
@@ -13,6 +13,7 @@ from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion, NormalSample
 from contactlab.contracts.status import Status
+from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Real
@@ -146,21 +147,54 @@ def _largest(values: Array) -> Array:
     return np.asarray(np.maximum(values.max(axis=(1, 2)), peak.max(axis=(0, 2))))
 
 
+class Units(NamedTuple):
+    """Hertz's units of impacts over those of the impact of a table; floats or the batch shape."""
+
+    time: Real = 1.0
+    approach: Real = 1.0
+    rate: Real = 1.0
+    force: Real = 1.0
+    radius: Real = 1.0
+
+    @classmethod
+    def of(cls, scene: Scene, first: Scene) -> Units:
+        """Return the units of a batch over those of one impact."""
+        ours, theirs = hertz_scales(scene), hertz_scales(first)
+        return cls(
+            time=ours.duration / theirs.duration,
+            approach=ours.approach / theirs.approach,
+            rate=scene.normal_speed / first.normal_speed,
+            force=ours.force / theirs.force,
+            radius=ours.radius / theirs.radius,
+        )
+
+
 class SolvedMotion(NormalMotion):
-    """A normal motion interpolated in a table; its phase is proportional to time."""
+    """A normal motion interpolated in a table; its phase is proportional to time.
+
+    A table of one motion may serve a batch in ``units`` of each impact.
+    """
 
     accuracy = ACCURACY
 
-    def __init__(self, law: Law, scene: Scene, table: MotionTable) -> None:
-        self.law, self.scene, self.table = law, scene, table
+    def __init__(
+        self, law: Law, scene: Scene, table: MotionTable, units: Units | None = None
+    ) -> None:
+        self.law, self.scene, self.table, self.units = law, scene, table, units
+        self.alike = not table.shape
         # Batches of one table are alike up to the number of their axes.
-        self.shared = table.shared.setdefault(len(scene.shape), {}) if not table.shape else None
-        self.duration = table.shaped(table.ends * table.unit)
-        self.final_rate = table.shaped(table.last[:, RATE])
-        self.total_load_impulse = table.shaped(table.last[:, LOAD_IMPULSE])
-        self.maximum_approach = table.shaped(table.largest[:, APPROACH])
-        self.maximum_force = table.shaped(table.largest[:, FORCE])
-        self.maximum_radius = table.shaped(_radius(table.largest[:, RADIUS_SQUARED]))
+        shared = self.alike and units is None
+        self.shared = table.shared.setdefault(len(scene.shape), {}) if shared else None
+        unit = Units() if units is None else units
+        self.duration = table.shaped(table.ends * table.unit) * unit.time
+        self.final_rate = table.shaped(table.last[:, RATE]) * unit.rate
+        self.total_load_impulse = table.shaped(table.last[:, LOAD_IMPULSE]) * (
+            unit.force * unit.time
+        )
+        self.maximum_approach = table.shaped(table.largest[:, APPROACH]) * unit.approach
+        self.maximum_force = table.shaped(table.largest[:, FORCE]) * unit.force
+        largest = _radius(table.largest[:, RADIUS_SQUARED])
+        self.maximum_radius = table.shaped(largest) * unit.radius
         self.status = batch.filled(table.shaped(table.status), scene.shape)
         self.detail = batch.filled(table.shaped(table.detail), scene.shape)
 
@@ -174,7 +208,12 @@ class SolvedMotion(NormalMotion):
         share = np.broadcast_to(fraction, outer).reshape(*outer[: len(outer) - len(shape)], items)
         columns = np.moveaxis(self.table.at(share * self.table.ends), -1, 0).reshape(6, *outer)
         approach, rate, force, radius_squared, load, load_impulse = columns
-        contact = NormalContact(force, _radius(radius_squared), approach, np.maximum(load, 0.0))
+        radius, load = _radius(radius_squared), np.maximum(load, 0.0)
+        if (unit := self.units) is not None:
+            approach, rate, force = approach * unit.approach, rate * unit.rate, force * unit.force
+            radius, load = radius * unit.radius, load * unit.force
+            load_impulse = load_impulse * (unit.force * unit.time)
+        contact = NormalContact(force, radius, approach, load)
         return NormalSample(fraction * self.duration, approach, rate, contact, load_impulse)
 
     def phase(self, fraction: Real) -> Real:
@@ -186,7 +225,10 @@ class SolvedMotion(NormalMotion):
         scene, table = self.scene.take(part), self.table
         if table.shape:
             table = table.take(np.arange(math.prod(table.shape)).reshape(table.shape)[part])
-        return SolvedMotion(self.law, scene, table)
+        units = self.units
+        if units is not None:
+            units = Units._make(batch.taken(each, self.scene.shape, part) for each in units)
+        return SolvedMotion(self.law, scene, table, units)
 
 
 def _radius(squared: Array) -> Array:

@@ -95,6 +95,8 @@ class NormalMotion(ABC):
     detail: Any = ""
     #: Declared relative error of the load impulse; NaN, the default, means not declared.
     accuracy: float = math.nan
+    #: True if the motions of all impacts are one but for their scale.
+    alike: bool = False
     #: A dict that equal motions share, for ``once``; None, the default, if nothing is shared.
     shared: dict[Any, Any] | None = None
 
@@ -173,6 +175,8 @@ class ClosedFormMotion(NormalMotion):
     Contact begins at phase 0, the approach is greatest at pi/2, contact ends at pi. Methods of
     high order keep their order in such a phase; in time they would not.
     """
+
+    alike = True
 
     @property
     @abstractmethod

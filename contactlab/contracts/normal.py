@@ -39,6 +39,12 @@ class NormalLaw(Law):
        yield; such a law has no caution about yield.
     7. ``dissipation`` is the energy that the law takes from a motion. It is asked of a motion that
        friction has changed, whose loss of kinetic energy is not the law's alone.
+    8. ``viscous`` is True for a law whose force is Hertz's plus a viscous one over Hertz's radius
+       b² = R z: P = b³ in Hertz's units where the rate is 0, and more while the bodies approach.
+       Tangential laws may then share its loss: the relaxation time of the contact follows from
+       force, radius, approach and rate. Such a law has no memory.
+    9. ``similar`` is True if motions of all impacts are one in units of Hertz's impact, as those of
+       a law that is given by its restitution: then one of a batch is integrated.
 
     Parameters of methods
     ---------------------
@@ -68,6 +74,16 @@ class NormalLaw(Law):
         rate : float or array, shape (...,)
             Time derivative of the approach in m/s, positive in compression.
         """
+
+    @property
+    def viscous(self) -> bool:
+        """True if Hertz's force and a viscous one act over Hertz's radius (clause 8)."""
+        return False
+
+    @property
+    def similar(self) -> bool:
+        """True if all motions are one in units of Hertz's impact (clause 8)."""
+        return False
 
     def dissipation(self, motion: NormalMotion) -> Real:
         """Return the energy in J that the law dissipates along a motion, of the batch shape.

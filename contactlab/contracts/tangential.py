@@ -22,6 +22,30 @@ from contactlab.numeric.checks import Mask, Real
 Array = NDArray[np.float64]
 
 
+class Sampled(NamedTuple):
+    """The motion at the end of a step, where its force acts; entries broadcast to the batch shape.
+
+    A law whose force depends on rates takes them from here. The slip velocity there depends on the
+    force in turn: it is ``slip`` if the force is ``force``, and falls by ``mobility`` for each
+    newton more.
+
+    Attributes
+    ----------
+    approach, rate : float or array
+        Approach in m and its rate in m/s, positive in compression.
+    slip, force : float or array
+        Slip velocity in m/s and the force in N that it belongs to; shape (..., 2) for vectors.
+    mobility : float or array
+        In m/(N s): half the duration over the tangential mass; 0 along a prescribed path.
+    """
+
+    approach: Real
+    rate: Real
+    slip: Any
+    force: Any
+    mobility: Any
+
+
 class Increment(NamedTuple):
     """One step as a stepped law sees it; every entry broadcasts to the batch shape.
 
@@ -40,6 +64,8 @@ class Increment(NamedTuple):
     drift : float or array
         The time in s for which the bodies moved: ``displacement`` is ``velocity`` times ``drift``.
         NaN, the default, if the integrator does not tell.
+    sampled : Sampled, optional
+        The motion at the end of the step. Integrators give it to laws with ``shares_loss``.
     """
 
     displacement: Real
@@ -47,6 +73,7 @@ class Increment(NamedTuple):
     friction_load: Real
     duration: Real
     drift: Real = math.nan
+    sampled: Sampled | None = None
 
 
 class TangentialResponse(NamedTuple):
@@ -63,11 +90,15 @@ class TangentialResponse(NamedTuple):
         books close under every integrator.
     settled : bool or array
         False where the law has no answer; the run then ends with a status.
+    shear_loss : float or array
+        Energy in J that the bodies lose in shear over ``duration``, at least 0: that of a viscous
+        contact, beside the friction work.
     """
 
     force: Real
     friction_work: Real
     settled: Mask = True
+    shear_loss: Real = 0.0
 
 
 class TangentialLaw(Law):
@@ -262,11 +293,14 @@ class AllStepsResponse(NamedTuple):
         Friction work in J, summed over the steps.
     settled : bool or array of bool
         False where the law has no answer to the step after the last force.
+    shear_loss : float or array of the batch shape
+        Energy in J that the bodies lose in shear, summed over the steps.
     """
 
     force: Array
     friction_work: Real
     settled: Mask
+    shear_loss: Real = 0.0
 
 
 class SteppedTangentialLaw(TangentialLaw):
@@ -294,7 +328,10 @@ class SteppedTangentialLaw(TangentialLaw):
        returns its state there; ``normal`` is the approach without friction, from which a law may
        take scales; the motion that follows may be another, with a larger contact, or with several
        compressions. ``stiffness`` is an upper bound for the contacts of the approach alone.
-    8. With the word ``vectors`` such a law takes displacements and slip velocities of shape
+    8. ``shares_loss(normal_law)`` is True if the force depends on the slip velocity too, through
+       the loss of a viscous normal law. Increments then have ``sampled``, and integrators
+       grade their steps at first touch, where such a force grows as the root of time.
+    9. With the word ``vectors`` a law without future takes displacements and slip velocities of shape
        (..., 2) from the state of ``begin(..., vectors=True)``, and returns a force of this shape;
        friction work has the batch shape. A rotation of all vectors rotates the forces; the length
        of the force does not exceed mu times the friction load.
@@ -338,6 +375,15 @@ class SteppedTangentialLaw(TangentialLaw):
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return an upper bound of the tangential stiffness, in N/m, of the batch shape."""
         return 0.0
+
+    def shares_loss(self, normal: Law) -> bool:
+        """Return whether the law shares the loss of a normal law (clause 8); False by default.
+
+        Parameters
+        ----------
+        normal : NormalLaw
+        """
+        return False
 
     def path_cautions(self) -> tuple[str, ...]:
         """Return one sentence for each doubt about the law along a prescribed path; none here."""

@@ -63,6 +63,8 @@ class TangentialMotion(BatchMotion):
         which may be so large that the sum would lose digits of the change.
     friction_work : float or array
         Friction work in J, summed over the answers of the tangential law.
+    shear_loss : float or array
+        Energy in J that the bodies lost in shear, summed likewise; 0 unless the contact is viscous.
     status : Status or array of Status
         How the run of each impact ended.
     detail : str or array of str
@@ -78,6 +80,7 @@ class TangentialMotion(BatchMotion):
 
     slip_velocity_change: Any = attrs.field(metadata={"vectors": True})
     friction_work: Real
+    shear_loss: Real = 0.0
     normal: NormalMotion | Ends | None = None
 
     @classmethod

@@ -43,6 +43,13 @@ class Motions:
         """Magnitude of the slip velocity, in m/s, of the batch shape."""
         return self.size_of(self.slip_velocity)
 
+    @property
+    def rubs(self) -> bool:
+        """True if any impact has friction and slip at first touch."""
+        slip: Any = self.slip_speed
+        friction: Any = self.friction_coefficient
+        return bool(np.any((slip != 0.0) & (friction != 0.0)))
+
     def size_of(self, slip: Any) -> Any:
         """Return the magnitude of slip velocities, of the batch shape.
 

@@ -111,6 +111,7 @@ COLUMNS = (
     Column("contact_time", "s", "motion.duration"),
     Column("normal_loss", "J", "energy.normal_loss"),
     Column("friction_work", "J", "energy.friction_work"),
+    Column("shear_loss", "J", "energy.shear_loss"),
     Column("energy_imbalance", "J", "energy.imbalance"),
     Column("status", "", "status"),
 )  # fmt: skip

@@ -47,11 +47,13 @@ class EnergyLedger:
     friction_work : float or array
         Sum over the steps, computed by the law from traction and slip; where ``checked`` is False
         the energy that the velocities lose.
+    shear_loss : float or array
+        What a viscous contact lost in shear, beside the friction work; 0 in other contacts.
     imbalance : float or array
-        start - end - normal_loss - friction_work: zero in an exact solution. In an axisymmetric
-        law the losses are independent: the normal force does no work in slip, friction none in
-        approach. NaN if friction changed the normal motion and the normal law declares no
-        dissipation.
+        start - end - normal_loss - friction_work - shear_loss: zero in an exact solution. In an
+        axisymmetric law the losses are independent: the normal force does no work in slip,
+        friction none in approach. NaN if friction changed the normal motion and the normal law
+        declares no dissipation.
     checked : bool or array of bool
         False where the books close by construction and the imbalance checks nothing.
     """
@@ -60,6 +62,7 @@ class EnergyLedger:
     end: Real = _energy()
     normal_loss: Real = _energy()
     friction_work: Real = _energy()
+    shear_loss: Real = _energy()
     imbalance: Real = _energy()
     checked: Mask = True
 
@@ -79,23 +82,27 @@ def ledger(scene: Scene, motion: Motion, checked: Mask = True) -> EnergyLedger:
     """Return the energy books of ``motion``, in J, from its velocities and its friction work."""
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         energies = scene.energies(motion.normal_velocity, motion.slip_velocity_change)
-        return books(energies, motion.friction_work, motion.exchange, checked)
+        losses = motion.friction_work, motion.shear_loss
+        return books(energies, losses, motion.exchange, checked)
 
 
 def books(
-    energies: tuple[Real, Real, Real], friction_work: Real, exchange: Real, checked: Mask
+    energies: tuple[Real, Real, Real], losses: tuple[Real, Real], exchange: Real, checked: Mask
 ) -> EnergyLedger:
     """Return the energy books of the energy at the start, and of what approach and slip lose.
 
-    ``exchange`` is the energy in J that friction moved from the normal to the tangential motion.
+    ``losses`` are friction work and loss in shear, ``exchange`` is the energy in J
+    that friction moved from the normal to the tangential motion.
     """
     start, lost, slip = energies
+    friction_work, shear_loss = losses
     return EnergyLedger(
         start=start,
         end=start - lost - slip,
         normal_loss=lost - exchange,
         friction_work=friction_work,
-        imbalance=slip - friction_work + exchange,
+        shear_loss=shear_loss,
+        imbalance=slip - friction_work - shear_loss + exchange,
         checked=checked,
     )
 
@@ -123,7 +130,7 @@ def _balances(motion: Motion, scene: Scene, bound: Any) -> bool:
     bound = LARGEST_UNDECLARED if bound == math.inf else bound
     return not (
         abs(motion.normal_velocity) > LARGEST_RESTITUTION * speed
-        or abs(slip_loss - motion.friction_work) > bound * start
+        or abs(slip_loss - motion.friction_work - motion.shear_loss) > bound * start
         or abs(slip + change) > LARGEST_SLIP * abs(slip)
     )
 

@@ -79,6 +79,7 @@ class Motion(TangentialMotion):
                 maximum_force=float(normal.maximum_force),
                 slip_velocity_change=float(tangential.slip_velocity_change),
                 friction_work=float(tangential.friction_work),
+                shear_loss=float(tangential.shear_loss),
                 status=tangential.status,
                 detail=tangential.detail,
                 counters=tangential.counters,
@@ -88,6 +89,7 @@ class Motion(TangentialMotion):
         if tangential.normal is not None:
             entries |= _coupled(normal, tangential, entries)
         entries["friction_work"] = tangential.friction_work
+        entries["shear_loss"] = tangential.shear_loss
         change = tangential.slip_velocity_change
         return cls(
             **{name: locked(spread(value, shape)) for name, value in entries.items()},
@@ -116,7 +118,7 @@ def _coupled(
 
 
 #: What a law that answers both motions together must know.
-MOVED = ("normal_velocity", "slip_velocity_change", "friction_work")
+MOVED = ("normal_velocity", "slip_velocity_change", "friction_work", "shear_loss")
 #: The numbers of a motion but the exchange, which may be undeclared, and the compressions.
 CHECKED = (*MOVED, *(name for name in ENDS if name != "normal_velocity"))
 _numbers = attrgetter(*CHECKED)

@@ -281,6 +281,7 @@ def _energy(result: ImpactResult) -> list[Row]:
     return [
         *rows,
         ["friction work, added up", energy.friction_work, "J"],
+        *([["loss in shear", energy.shear_loss, "J"]] if energy.shear_loss else []),
         ["imbalance", energy.imbalance, "J"],
         ["imbalance / start", energy.relative_imbalance, "1"],
     ]

@@ -55,7 +55,7 @@ def drift(integrator: Any) -> None:
     normal = normal_motion(REGISTRY.create("normal.hertz"), impact)
     integrator.integrate(normal, law, impact, None)
     apply_if(law.seen, "It did not ask the law.")
-    told = np.array([step[:2] + step[4:] for step in law.seen], dtype=np.float64)
+    told = np.array([(*step[:2], step.drift) for step in law.seen], dtype=np.float64)
     moved, velocity, drifts = told.T
     apply_if(not np.isnan(drifts).all(), "It does not tell the drift.")
     gap = float(np.max(np.abs(moved - velocity * drifts)) / np.max(np.abs(moved)))

@@ -102,6 +102,16 @@ class KuwabaraKono(OfRestitution):
     def __attrs_post_init__(self) -> None:
         one_of_two(self, "restitution", "relaxation_time", default=DEFAULT_RESTITUTION)
 
+    @property
+    def viscous(self) -> bool:
+        """True if there is any loss."""
+        return self.restitution not in (None, 1.0) or bool(self.relaxation_time)
+
+    @property
+    def similar(self) -> bool:
+        """True for a restitution: then motions of all impacts are one but for their scale."""
+        return self.restitution is not None
+
     def start(self, scene: Scene) -> Parts:
         """Return stiffness and relaxation time of the pair; the law has no memory."""
         time: Any = self.relaxation_time

@@ -106,7 +106,7 @@ def test_merging_keeps_the_force_and_loses_energy_and_splitting_changes_neither(
 
     force, energy = force_and_energy(size / springs, held)
     for factor in (1.7, 3.3, 20.0):
-        after, merged, lost = fitted(memory, factor * size, np.ones(items))
+        after, merged, lost = fitted(memory.size, memory.deflection, factor * size, np.ones(items))
         assert ((after / 2.0 < factor * size) & (factor * size <= after)).all()
         new_force, new_energy = force_and_energy(after / springs, merged)
         assert new_force == pytest.approx(force, rel=1e-12, abs=1e-14)
@@ -116,7 +116,7 @@ def test_merging_keeps_the_force_and_loses_energy_and_splitting_changes_neither(
     inner[springs // 2 :] = 0.0  # the outer half is out of contact when cells are split
     force, energy = force_and_energy(size / springs, inner)
     memory = memory._replace(deflection=inner)
-    after, split, lost = fitted(memory, 0.24 * size, np.ones(items))
+    after, split, lost = fitted(memory.size, memory.deflection, 0.24 * size, np.ones(items))
     assert (after == 0.5 * size).all()
     new_force, new_energy = force_and_energy(after / springs, split)
     assert new_force == pytest.approx(force, rel=1e-12, abs=1e-14)

@@ -65,6 +65,11 @@ class Tsuji(OfRestitution, ClosedFormNormalLaw, Tabulated):
 
     restitution: float = restitution(default=0.9)
 
+    @property
+    def viscous(self) -> bool:
+        """True if there is any loss."""
+        return self.restitution < 1.0
+
     def start(self, scene: Scene) -> Parts:
         """Return stiffness and damping of the pair; the law has no memory."""
         pair = scene.pair

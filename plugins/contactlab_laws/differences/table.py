@@ -69,7 +69,7 @@ def rows() -> dict[str, tuple[Row, ...]]:
 
 def springs(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
     """Return the caution that separately limited springs are not Coulomb's law, with its size."""
-    if "elastic_hertz" in normal.offers or not _rubs(scene):
+    if "elastic_hertz" in normal.offers or not scene.rubs:
         return ()
     own, e, chi = rows().get(key(normal.law)), _restitution(normal), np.asarray(scene.chi)
     if own is None or np.min(e) < own[0].restitution - ROUNDED or _beyond(chi):
@@ -104,7 +104,7 @@ def _by_springs(measured: tuple[Row, ...], e: Any, chi: Any) -> float:
 
 def choice(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
     """Return the caution that another normal law of the same e moves psi2, with its size."""
-    if not _rubs(scene):
+    if not scene.rubs:
         return ()
     measured, own = rows(), key(normal.law)
     if own not in measured or "elastic_hertz" in normal.offers:
@@ -143,13 +143,6 @@ def _above(size: float, factor: float = BETWEEN) -> str:
     above = Decimal(factor * size)
     digit = above.quantize(Decimal(1).scaleb(above.adjusted()), ROUND_CEILING)
     return f"{float(digit):.1g}"
-
-
-def _rubs(scene: Scene) -> bool:
-    """Return whether any impact has friction and slip velocity."""
-    slip: Any = scene.slip_velocity
-    friction: Any = scene.friction_coefficient
-    return bool(np.any((slip != 0.0) & (friction != 0.0)))
 
 
 def _largest(normal: NormalMotion, measured: tuple[Row, ...]) -> float:

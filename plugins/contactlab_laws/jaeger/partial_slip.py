@@ -43,7 +43,12 @@ class Scales(NamedTuple):
     @classmethod
     def of(cls, scene: Scene, normal: NormalMotion) -> Scales:
         """Return the scales of the largest contact, theory §1."""
-        pair, radius, friction = scene.pair, normal.maximum_radius, scene.friction_coefficient
+        return cls.at(scene, normal.maximum_radius)
+
+    @classmethod
+    def at(cls, scene: Scene, radius: Real) -> Scales:
+        """Return the scales of a contact of a radius in m."""
+        pair, friction = scene.pair, scene.friction_coefficient
         peak = (4.0 / 3.0) * pair.effective_modulus * radius**3 / pair.radius
         slip = friction * radius**2 / (pair.stiffness_ratio * pair.radius)
         per_slip = (friction > 0.0) / (slip + (friction == 0.0))

@@ -236,5 +236,5 @@ def _march(
 ) -> TangentialMotion:
     """Return the motion in ``count`` steps that are even."""
     with faults.blaming(normal.law):
-        steps = midpoints(normal, count)
+        steps = midpoints(normal, count, graded=law.shares_loss(normal.law))
     return march(normal, law, steps, observer)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -30,6 +31,8 @@ VANISHES = 1e-6
 BLOCK = 4096
 #: More steps are made anew for each impact: these take half a megabyte.
 LONGEST_KEPT = 4000
+#: Parts of a motion from which graded steps are made; least radius in them, over the largest.
+GRADED, LEAST_RADIUS = 512, 1e-6
 
 
 def resolving(radians: Any, law: TangentialLaw) -> Any:
@@ -40,11 +43,16 @@ def resolving(radians: Any, law: TangentialLaw) -> Any:
     return np.ceil(steps)
 
 
-def midpoints(normal: NormalMotion, count: int) -> Steps:
-    """Return ``count`` steps of the contact's duration, each sampled in its middle."""
+def midpoints(normal: NormalMotion, count: int, *, graded: bool = False) -> Steps:
+    """Return ``count`` steps of the contact's duration, each sampled in its middle.
+
+    Steps that are ``graded`` are short at first touch and at separation, where the force of a
+    viscous contact goes as the root of time: they are even in the integral of dt/b.
+    """
     if count > LONGEST_KEPT:
-        return _midpoints(normal, count)
-    return normal.once(("midpoints", count), lambda: _midpoints(normal, count))
+        return _midpoints(normal, count, graded)
+    key = "midpoints", count, graded
+    return normal.once(key, lambda: _midpoints(normal, count, graded))
 
 
 def endpoints(normal: NormalMotion, count: int) -> Steps:
@@ -54,14 +62,48 @@ def endpoints(normal: NormalMotion, count: int) -> Steps:
     return normal.once(("endpoints", count), lambda: _endpoints(normal, count))
 
 
-def _midpoints(normal: NormalMotion, count: int) -> Steps:
-    halves = np.array(normal.phase(np.linspace(0.0, 1.0, 2 * count + 1)))
+def _midpoints(normal: NormalMotion, count: int, graded: bool) -> Steps:
+    fractions = _graded(normal, count) if graded else np.linspace(0.0, 1.0, 2 * count + 1)
+    halves = np.array(normal.phase(fractions))
     halves[-1] = np.pi  # exactly, as the inverse is not
     ends = normal.at(_column(halves[::2], normal))
     times = np.asarray(ends.time)
     kick = times[1:] - times[:-1]
     impulse = np.asarray(ends.load_impulse)
     return _parted(sampled(normal, halves[1::2], kick, impulse[1:] - impulse[:-1]), ends)
+
+
+def _graded(normal: NormalMotion, count: int) -> Any:
+    """Return fractions of the duration at the ends and middles of steps even in dt/b.
+
+    The greatest approach is at an end of a step: the contact radius has a kink there.
+    """
+    shape = normal.scene.shape
+    if normal.alike and shape:
+        normal, shape = normal.take((0,) * len(shape)), ()
+    u = np.linspace(0.0, 1.0, 2 * GRADED + 1)
+    fractions = np.sin(0.5 * math.pi * u) ** 2
+    sample = normal.at(_column(np.asarray(normal.phase(fractions)), normal))
+    columns = np.broadcast_arrays(sample.rate, sample.contact.radius, np.empty((len(u), *shape)))
+    rate, radius = (each.reshape(len(u), -1).T for each in columns[:2])
+    found = [_even(u, fractions, *each, count) for each in zip(rate, radius, strict=True)]
+    return np.stack(found, axis=-1).reshape(-1, *shape)
+
+
+def _even(u: Any, fractions: Any, rate: Any, radius: Any, count: int) -> Any:
+    """Return the fractions of one motion."""
+    inner = np.maximum(radius[1::2], LEAST_RADIUS * radius.max())
+    along = np.concatenate(([0.0], np.cumsum(np.diff(fractions[::2]) / inner)))
+    turn = int(np.argmax(rate <= 0.0))
+    top = np.interp(0.0, -rate[turn - 1 : turn + 1], u[turn - 1 : turn + 1]) if turn else 0.5
+    middle, first = np.interp(top, u[::2], along), count // 2
+    wanted = np.concatenate(
+        (
+            np.linspace(0.0, middle, 2 * first + 1),
+            np.linspace(middle, along[-1], 2 * (count - first) + 1)[1:],
+        )
+    )
+    return np.sin(0.5 * math.pi * np.interp(wanted, along, u[::2])) ** 2
 
 
 def _endpoints(normal: NormalMotion, count: int) -> Steps:

@@ -122,8 +122,8 @@ class FixedSteps(Integrator):
     refine: bool = flag(default=True)
 
     @abstractmethod
-    def divide(self, normal: NormalMotion, count: int) -> Steps:
-        """Return ``count`` steps of a normal motion."""
+    def divide(self, normal: NormalMotion, count: int, *, graded: bool) -> Steps:
+        """Return ``count`` steps of a normal motion, ``graded`` towards its ends or even."""
 
     def _taken(self, needed: Any) -> Any:
         """Return how many steps each impact takes: ``steps``, or more if these are too few."""
@@ -170,7 +170,7 @@ class FixedSteps(Integrator):
 
         def even(normal: NormalMotion, number: int) -> TangentialMotion:
             with faults.blaming(normal.law):
-                steps = self.divide(normal, number)
+                steps = self.divide(normal, number, graded=law.shares_loss(normal.law))
             return march(normal, law, steps, observer)
 
         try:

@@ -17,6 +17,7 @@ from contactlab.contracts import (
     NormalMotion,
     Observer,
     Sample,
+    Sampled,
     SteppedTangentialLaw,
     Steps,
     TangentialMotion,
@@ -74,7 +75,7 @@ def _all_at_once(
         if fault is not None:
             return None  # step by step the observer sees all instants up to the fault
         _show(normal, steps, force, observer)
-    return _ended(normal, law, change, response.friction_work, count, fault)
+    return _ended(normal, law, change, response.friction_work, count, fault, response.shear_loss)
 
 
 def _show(normal: NormalMotion, steps: Steps, force: Any, observer: Observer) -> None:
@@ -94,7 +95,7 @@ def _show(normal: NormalMotion, steps: Steps, force: Any, observer: Observer) ->
 
 def _malformed(response: AllStepsResponse, scene: Scene, steps: int) -> str | None:
     """Return a sentence on an answer of wrong kind or shape, or None."""
-    force, work, settled = response
+    force, work, settled, shear = response
     if not isinstance(force, np.ndarray) or not force.ndim or faults.malformed(force, force.shape):
         return f"the forces {shown(force)}"
     count = len(force)
@@ -102,7 +103,10 @@ def _malformed(response: AllStepsResponse, scene: Scene, steps: int) -> str | No
     if missing or force.shape[1:] != scene.shape:
         wanted = f"for {steps} steps of a scene of shape {scene.shape}"
         return f"forces of shape {force.shape} {wanted}"
-    return f"friction work {shown(work)}" if faults.malformed(work, scene.shape) else None
+    for name, energy in (("friction work", work), ("loss in shear", shear)):
+        if faults.malformed(energy, scene.shape):
+            return f"{name} {shown(energy)}"
+    return None
 
 
 def _one_by_one(
@@ -117,6 +121,9 @@ def _one_by_one(
     change: Real = 0.0 if single else np.zeros(shape)
     work: Real = 0.0 if single else np.zeros(shape)
     zero = 0.0 * change
+    shear: Real = zero
+    slowed, acting = zero, zero
+    shares = law.shares_loss(normal.law)
     before = NormalContact(zero, zero, zero, zero)
     fault, count = None, 0
     velocity: Real = locked(initial)
@@ -129,7 +136,14 @@ def _one_by_one(
             displacement = velocity * step.drift
             if not single:
                 locked(velocity), locked(displacement)
-            increment = Increment(displacement, velocity, step.friction_load, step.kick, step.drift)
+            sampled = None
+            if shares:
+                mobility = 0.5 * step.kick / mass
+                slip = velocity - mobility * acting
+                sampled = Sampled(step.approach, step.rate, slip, acting, mobility)
+            increment = Increment(
+                displacement, velocity, step.friction_load, step.kick, step.drift, sampled
+            )
             response, state = law.advance(state, increment, before, contact)
             force, lost = response.force, response.friction_work
             if not (single and isinstance(force, float) and isinstance(lost, float)):
@@ -139,6 +153,8 @@ def _one_by_one(
             slowed = force * (step.kick / mass)
             change = change - slowed
             work = work + lost
+            shear = shear + response.shear_loss
+            acting = force
             before = contact
             if observer is not None:
                 middle, fields = velocity - 0.5 * slowed, partial(law.fields, state)
@@ -157,7 +173,7 @@ def _one_by_one(
     except BaseException as error:  # a plug-in may not end the process
         sentence = faults.sentence(law, faults.raised(error), count, time)
         fault = faults.LawFaultError(Status.LAW_RAISED, sentence)
-    return _ended(normal, law, change, work, count, fault)
+    return _ended(normal, law, change, work, count, fault, shear)
 
 
 def _ended(
@@ -167,6 +183,7 @@ def _ended(
     work: Real,
     count: int,
     fault: faults.LawFaultError | None,
+    shear_loss: Real = 0.0,
 ) -> TangentialMotion:
     """Return the motion up to ``fault``; friction work that is not finite is a failure too."""
     if fault is None and not _finite(work):
@@ -176,6 +193,7 @@ def _ended(
     return TangentialMotion(
         slip_velocity_change=spread(change, shape),
         friction_work=spread(work, shape),
+        shear_loss=spread(shear_loss, shape),
         status=filled(Status.SUCCESS if fault is None else fault.status, shape),
         detail="" if fault is None else fault.detail,
         counters={"steps": count},

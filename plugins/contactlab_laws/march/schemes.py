@@ -42,8 +42,8 @@ class PaperSteps(FixedSteps):
 
     steps: int = count(default=500, most=MOST_STEPS)
 
-    def divide(self, normal: NormalMotion, count: int) -> Steps:
-        """Return steps sampled at their ends."""
+    def divide(self, normal: NormalMotion, count: int, *, graded: bool) -> Steps:
+        """Return steps sampled at their ends, even whatever the contact."""
         return endpoints(normal, count)
 
 
@@ -65,6 +65,6 @@ class Symplectic(FixedSteps):
 
     api_version: ClassVar[int] = 2
 
-    def divide(self, normal: NormalMotion, count: int) -> Steps:
+    def divide(self, normal: NormalMotion, count: int, *, graded: bool) -> Steps:
         """Return steps sampled in their middles."""
-        return midpoints(normal, count)
+        return midpoints(normal, count, graded=graded)

@@ -20,6 +20,7 @@ from contactlab.contracts import (
     NormalMotion,
     Observer,
     Sample,
+    Sampled,
     Scene,
     SteppedTangentialLaw,
     TangentialMotion,
@@ -32,6 +33,9 @@ from contactlab_laws.march.division import resolving
 
 #: A contact that lasts longer than so many times the approach without friction is given up.
 LONGEST = 100
+#: Turns in which a step solves for rates at which its forces act, where forces depend on rates;
+#: steps that grow evenly at first touch, where such forces go as the root of time.
+TURNS, LEADING = 3, 10
 #: Energy of the deepest contact that is followed, over that of the approach without friction.
 DEEPEST = 1e10
 
@@ -110,7 +114,8 @@ class _March:
         self.change: list[Any] = [0.0 * each for each in self.before]
         zero = self.change[0]
         self.elastic = "elastic_hertz" in normal.law.offers
-        self.work, self.loss, self.duration = zero, zero, zero
+        self.shares = law.shares_loss(normal.law)
+        self.work, self.loss, self.duration, self.shear = zero, zero, zero, zero
         self.greatest: list[Any] = [zero, zero, zero]
         self.compressions: Any = 1 if plain else np.ones(scene.shape, dtype=int)
         self.alive: Any = True if plain else np.ones(scene.shape, dtype=bool)
@@ -146,42 +151,48 @@ class _March:
         zero = self.change[0]
         contact = NormalContact(zero, zero, zero, zero)
         time, approach = zero, zero
-        drift = 0.5 * self.step
+        pressure, force = zero, [zero] * self.axes
+        step = zero  # of the step before
         while True:
+            half, step = 0.5 * step, self._width()
+            drift = half + 0.5 * step
             self.steps += 1
             time = time + drift
             approach = approach + velocity[0] * drift
-            rate, before = velocity[0], contact
-            with faults.blaming(alone) as blamed:
-                blamed.step = self.steps
-                contact, new = alone.respond(memory, approach, rate)
-                contact = contact.complete
-            moved = [each * drift for each in velocity[1:]]
-            load = contact.friction_load
-            increment = Increment(
-                self._joined(moved), self._joined(velocity[1:]), load, self.step, drift
-            )
-            response, state = law.advance(state, increment, before, contact)
-            force = self._components(response.force, response.friction_work)
+            before = contact
+            moved = self._joined([each * drift for each in velocity[1:]])
+            start = self._joined(velocity[1:])
+            # forces that depend on rates act on those in the middle of their kick
+            for _ in range(1 if self.elastic else TURNS):
+                at = velocity
+                if not self.elastic:
+                    kick = self._kick(pressure, force, step)
+                    at = [v - 0.5 * k for v, k in zip(velocity, kick, strict=True)]
+                with faults.blaming(alone) as blamed:
+                    blamed.step = self.steps
+                    contact, new = alone.respond(memory, approach, at[0])
+                    contact = contact.complete
+                load, sampled = contact.friction_load, None
+                if self.shares:
+                    sampled = self._sampled(approach, at, force, step)
+                increment = Increment(moved, start, load, step, drift, sampled)
+                response, after = law.advance(state, increment, before, contact)
+                pressure, force = contact.force, self._components(response)
+            state, memory = after, new
             if response.settled is not True and not np.all(response.settled):
                 force = self._unsettled(response.settled, force)
                 if not np.any(self.alive):
                     return None
-            if not self.elastic:  # a viscous force acts on the rate in the middle of its kick
-                rate = velocity[0] - 0.5 * self._kick(contact.force, force)[0]
-                with faults.blaming(alone):
-                    contact, new = alone.respond(memory, approach, rate)
-                    contact = contact.complete
-            memory = new
             touching = contact.overlap > 0.0
             going = touching & self.alive if self.shape else touching
-            kick = self._kick(contact.force * touching, [each * touching for each in force])
+            kick = self._kick(pressure * touching, [each * touching for each in force], step)
             if self.shape:
                 kick = [each * self.alive for each in kick]
             middle = [v - 0.5 * k for v, k in zip(velocity, kick, strict=True)]
             if not self.elastic:
-                self.loss = self.loss + contact.force * middle[0] * self.step * going
+                self.loss = self.loss + contact.force * middle[0] * step * going
             self.work = self.work + response.friction_work * self.alive
+            self.shear = self.shear + response.shear_loss * self.alive
             if observer is not None:
                 seen = self._joined(middle[1:]), self._joined(force)
                 fields = partial(law.fields, state)
@@ -195,9 +206,8 @@ class _March:
             ]
             again = going & (velocity[0] > 0.0) & (velocity[0] + kick[0] <= 0.0)
             self.compressions = self.compressions + again
-            self.duration = self.duration + self.step * going
+            self.duration = self.duration + step * going
             self.alive = going
-            drift = self.step
             if not (self.alive.any() if self.shape else self.alive):
                 return None
             if not np.isfinite(sum(velocity)).all():
@@ -223,8 +233,23 @@ class _March:
         """Return a displacement or velocity as the law takes it."""
         return components[0] if self.axes == 1 else np.stack(components, axis=-1)
 
-    def _components(self, force: Any, work: Any) -> list[Any]:
+    def _width(self) -> Any:
+        """Return the width of the next step in s."""
+        if self.elastic or self.steps >= LEADING:
+            return self.step
+        return self.step * ((self.steps + 0.5) / LEADING)
+
+    def _sampled(self, approach: Any, at: list[Any], force: list[Any], step: Any) -> Sampled:
+        """Return the motion where the forces act, as far as it is known."""
+        inertia = self.W[1][1]
+        if self.axes == 2:
+            inertia = 0.5 * (inertia + self.W[2][2])
+        slip, acting = self._joined(at[1:]), self._joined(force)
+        return Sampled(approach, at[0], slip, acting, 0.5 * step * inertia)
+
+    def _components(self, response: Any) -> list[Any]:
         """Return the components of a force, or refuse a malformed answer."""
+        force, work = response.force, response.friction_work
         shape = self.shape if self.axes == 1 else (*self.shape, 2)
         for answer, wanted in ((force, shape), (work, self.shape)):
             if not (type(answer) is float and not wanted) and faults.malformed(answer, wanted):
@@ -235,10 +260,10 @@ class _March:
         both = np.broadcast_to(force, shape)
         return [both[..., 0], both[..., 1]] if self.shape else both.tolist()
 
-    def _kick(self, pressure: Any, force: list[Any]) -> list[Any]:
+    def _kick(self, pressure: Any, force: list[Any], step: Any) -> list[Any]:
         """Return W (P, F) dt, the velocities that a step takes."""
         each = [pressure, *force]
-        return [self.step * sum(w * f for w, f in zip(row, each, strict=True)) for row in self.W]
+        return [step * sum(w * f for w, f in zip(row, each, strict=True)) for row in self.W]
 
     def fail(self, status: Status, detail: Any, where: Any) -> None:
         """Mark impacts as failed."""
@@ -256,6 +281,7 @@ class _March:
         return TangentialMotion(
             slip_velocity_change=change if self.axes == 2 else number(self.change[1]),
             friction_work=number(self.work),
+            shear_loss=number(self.shear),
             normal=Ends._make(map(number, ends)),
             status=self.status,
             detail=self.detail,

@@ -141,7 +141,7 @@ def moved(
     """
     radius = radius + 0.0 * (abs(displacement) + limit)  # NaN where any of the three is not finite
     radius = radius * (1.0 - (radius <= TOUCH * unit)) + 0.0 * radius
-    size, held, merged = fitted(before, radius, unit, spans=spans)
+    size, held, merged = fitted(before.size, before.deflection, radius, unit, spans=spans)
     cell = size / len(held)
     places = np.multiply.outer(np.arange(len(held)) + 0.5, cell)
     compression = np.maximum(radius * radius - places * places, 0.0)
@@ -171,10 +171,9 @@ def moved(
 
 
 def fitted(
-    before: Memory, radius: Array, unit: Array, *, spans: bool = False
+    size: Array, held: Array, radius: Array, unit: Real, *, spans: bool = False
 ) -> tuple[Array, Array, Real]:
     """Return A and w with A/4 < b <= A, and the energy lost in merging over 2 G*, in m³."""
-    size, held = before.size, before.deflection
     if not size.all():
         size = np.where(size > 0.0, size, _least_size(radius, unit))
     outgrown, small = radius > size, (radius > 0.0) & (radius <= 0.25 * size) & (not spans)
@@ -218,7 +217,7 @@ def fields(state: State) -> dict[str, Any]:
     return spring_fields(*rows)
 
 
-def _least_size(radius: Array, unit: Array) -> Array:
+def _least_size(radius: Array, unit: Real) -> Array:
     """Return the least power of two times ``unit`` that is at least ``radius``."""
     fraction, exponent = np.frexp(radius / unit)
     least: Array = unit * np.ldexp(1.0, exponent - (fraction == 0.5))

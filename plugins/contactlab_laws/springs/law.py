@@ -2,24 +2,37 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import attrs
+import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import (
     AllStepsResponse,
     Increment,
+    Law,
     NormalContact,
+    NormalLaw,
     NormalMotion,
     Steps,
+    TangentialLaw,
     TangentialResponse,
+    WholeImpact,
+    sliding,
 )
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real, choice, count, refuse
+from contactlab.numeric.checks import Real, Rule, choice, count, quantity, refuse
 from contactlab_laws.jaeger.law import ProfileLaw
-from contactlab_laws.springs import doubling
+from contactlab_laws.springs import doubling, viscous, viscous_steps
+
+#: Error of psi2 of springs that share a loss: the first times chi² over springs², and the second
+#: times 1 + chi² over steps²; measured from so many springs on, up to so large a chi.
+BY_SPRINGS, BY_STEPS, LEAST_MEASURED, LARGEST_CHI = 0.12, 15.0, 8, 6.0
+#: The rule of the loss in shear; the largest measured is that of golf balls, about 4.
+SHEAR_LOSS = Rule(lambda value: (value >= 0.0) & (value <= 8.0), "must be one number from 0 to 8")
 
 
 @attrs.frozen(kw_only=True)
@@ -45,6 +58,10 @@ class Springs(ProfileLaw):
         (theory §13). A doubling grid takes nothing from the normal motion to come, and serves
         where nobody knows this motion, as in discrete-element codes. Between a quarter of its
         springs and all of them carry the contact; it is marched step by step.
+    shear_loss : float
+        Relaxation time in shear over that in pressure, under a viscous normal law: 1, the
+        default, is the theory of one loss for both (theory §15); 0 is shear without loss. Other
+        numbers are for fits. Normal laws that are not viscous have no loss in shear.
 
     References
     ----------
@@ -60,11 +77,16 @@ class Springs(ProfileLaw):
 
     springs: int = count(default=50, most=100_000)
     grid: str = choice("largest", "doubling", default="largest")
+    shear_loss: float = quantity("1", rule=SHEAR_LOSS, default=1.0)
 
     def __attrs_post_init__(self) -> None:
         if self.grid == "doubling" and self.springs % 2:
             rule = 'must be even with grid = "doubling", which merges springs in pairs'
             raise refuse("springs", self.springs, rule, f"take {self.springs + 1}")
+
+    def shares_loss(self, normal: Law) -> bool:
+        """Return whether the normal law is viscous, and shear loses."""
+        return isinstance(normal, NormalLaw) and normal.viscous and self.shear_loss > 0.0
 
     def books_bound(self, scene: Scene) -> Real:
         """Return 0.05 + 0.03/n: the fewest steps leave 0.03, one spring 0.02 whatever the steps.
@@ -73,6 +95,37 @@ class Springs(ProfileLaw):
         """
         return 0.05 + 0.03 / self.springs
 
+    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
+        """Return the whole-impact answers, with those of gross slip throughout."""
+        known = super().whole_impacts(scene, normal)
+        if not self.shares_loss(normal.law) or self.shear_loss != 1.0:
+            return known
+        # a spring slips on while the slip velocity exceeds w' = (l - w)/A, at most the rate
+        friction: Any = scene.friction_coefficient * normal.total_load_impulse
+        slip: Any = abs(scene.slip_velocity)
+        where = (abs(scene.psi1) >= 1.0) & (slip >= friction / scene.pair.tangential_mass)
+        if not scene.shape and not where:
+            return known
+        reason = "the impact slips from start to end"
+        return (*known, sliding(scene, normal, where=where, reason=reason, stops=False))
+
+    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:
+        """Return the error of springs that share a loss, measured for chi up to 6; else NaN."""
+        measured = self.shares_loss(normal.law) and self.shear_loss == 1.0
+        if not measured or self.grid == "doubling" or self.springs < LEAST_MEASURED:
+            return math.nan
+        square = np.square(scene.chi)
+        error = BY_SPRINGS * square / self.springs**2 + (BY_STEPS + BY_STEPS * square) / steps**2
+        return np.where(np.asarray(scene.chi) <= LARGEST_CHI, error, math.nan)
+
+    def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
+        """Return the cautions of springs, or of their loss where they share one."""
+        if not self.shares_loss(normal.law):
+            return super().cautions(scene, normal)
+        from contactlab_laws.viscoelastic import evidence  # springs without loss need none of it
+
+        return (*TangentialLaw.cautions(self, scene, normal), *evidence.cautions(scene, normal))
+
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return 2 G* a, and half a spring more on a doubling grid, whose cells are not a's."""
         half = 2.0 / self.springs if self.grid == "doubling" else 0.0  # over a > A/4
@@ -80,6 +133,12 @@ class Springs(ProfileLaw):
 
     def start(self, scene: Scene, normal: NormalMotion) -> Any:
         """Return contacts without traction."""
+        if self.shares_loss(normal.law):
+            follows = self.grid == "doubling"
+            unit = scene.pair.radius if follows else normal.maximum_radius
+            return self._viscous(
+                scene, normal, unit, spanned=None if follows else 1.0, grows=follows
+            )
         if self.grid == "doubling":
             return doubling.start(scene, self.springs)
         return super().start(scene, normal)
@@ -90,7 +149,17 @@ class Springs(ProfileLaw):
         As ``vectors`` they turn with the slip.
         """
         spanned = normal.maximum_radius
+        if self.shares_loss(normal.law):
+            return self._viscous(
+                scene, normal, spanned, spanned=viscous.SPARE, grows=True, vectors=vectors
+            )
         return doubling.start(scene, self._even(), spanned=spanned, vectors=vectors)
+
+    def _viscous(self, scene: Scene, normal: NormalMotion, unit: Real, **how: Any) -> viscous.State:
+        """Return springs that share the loss of the normal law, lengths in units of ``unit``."""
+        law: Any = normal.law
+        springs = self._even() if how["grows"] else self.springs
+        return viscous.start(scene, law, springs, unit, shear_loss=self.shear_loss, **how)
 
     def _even(self) -> int:
         """Return the number of springs, one more if odd: a doubling grid merges pairs."""
@@ -100,6 +169,8 @@ class Springs(ProfileLaw):
         self, state: Any, increment: Increment, before: NormalContact, after: NormalContact
     ) -> tuple[TangentialResponse, Any]:
         """Return the force after the step."""
+        if isinstance(state, viscous.State):
+            return viscous.advance(state, increment, after)
         if isinstance(state, doubling.State):
             return doubling.advance(state, increment, after)
         return super().advance(state, increment, before, after)
@@ -107,10 +178,16 @@ class Springs(ProfileLaw):
     def advance_all(
         self, scene: Scene, normal: NormalMotion, steps: Steps
     ) -> AllStepsResponse | None:
-        """Return the forces of all steps; None on a doubling grid, which goes step by step."""
-        return None if self.grid == "doubling" else super().advance_all(scene, normal, steps)
+        """Return the forces of all steps; None where springs go step by step."""
+        if self.grid == "doubling":
+            return None
+        if self.shares_loss(normal.law):
+            return viscous_steps.advance_all(self.start(scene, normal), scene, normal, steps)
+        return super().advance_all(scene, normal, steps)
 
     def fields(self, state: Any) -> Mapping[str, NDArray[Any]]:
         """Return radius, displacement and limit (m), stuck and slipping of every spring."""
+        if isinstance(state, viscous.State):
+            return viscous.fields(state)
         own = isinstance(state, doubling.State)
         return doubling.fields(state) if own else super().fields(state)

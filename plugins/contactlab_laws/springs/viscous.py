@@ -1,0 +1,404 @@
+"""Springs that share the loss of a viscous normal law: one relaxation time for both (theory §15).
+
+A spring at distance r has the limit l = b² - r² + j, j the excess by which the viscous pressure
+exceeds Hertz's, and the force f = w + A w' of a Kelvin-Voigt body, abs(f) <= l. It sticks, w' = v,
+or slips, w' = (±l - w)/A. Radius, force, approach and rate of any viscous contact tell b, j and A.
+Lengths along the radius are in units of the grid, w in the units of l.
+
+The springs stand in the middle of cells, as those without loss. The step is of second order: a
+limit that moves evenly is followed exactly, and the slip velocity where the force acts is solved
+for. The force is the share of Coulomb's limit, so that slip throughout is exact.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from contactlab.contracts import Increment, NormalContact, TangentialResponse
+from contactlab.contracts.normal import NormalLaw
+from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import flat
+from contactlab_laws.jaeger.bundle import Array, spring_fields
+from contactlab_laws.jaeger.partial_slip import Scales
+from contactlab_laws.jaeger.step import common
+from contactlab_laws.springs.doubling import fitted
+from contactlab_laws.springs.turning import dragged
+
+#: Rates below this times that at first touch say nothing of A: the law is asked at this one.
+SLOWEST = 1e-3
+#: Turns of Newton's method for the slip velocity where the force acts.
+TURNS = 3
+#: Feedback of the force on the slip velocity in a step, over the force, from which they are taken.
+STIFF = 0.05
+#: A grid that spans a contact known before spans this much more.
+SPARE = 1.05
+#: Rounding errors up to which impacts of a batch count as alike: their contacts come of a table.
+ALIKE = 1e3
+#: Added to numbers that divide, so that none is zero.
+TINY = 1e-300
+
+
+class Contact(NamedTuple):
+    """What a viscous contact tells the springs, each of shape (K,), K the impacts or 1.
+
+    Attributes
+    ----------
+    edge, excess : array
+        b², and j: the limit is b² - r² + j inside b.
+    time : array
+        A times the loss in shear, in s.
+    """
+
+    edge: Any
+    excess: Any
+    time: Any
+
+
+class Memory(NamedTuple):
+    """The springs of a batch in one axis; never changed once made.
+
+    Attributes
+    ----------
+    size : array, shape (K,)
+        What the springs span.
+    edge, excess : array, shape (K,)
+        b² and j at the end of the last step.
+    time : array, shape (items,)
+        A there, in s; 0 before first touch.
+    lead : array, shape (items,)
+        A times the slip velocity there, complex for vectors.
+    share : array, shape (items,)
+        Force over Coulomb's limit, the same.
+    weight : array, shape (items,)
+        Coulomb's limit over the sum of l over the radius.
+    deflection : array, shape (springs, items)
+        w.
+    """
+
+    size: Any
+    edge: Any
+    excess: Any
+    time: Any
+    lead: Array
+    share: Array
+    weight: Array
+    deflection: Array
+
+
+class State(NamedTuple):
+    """The springs of a batch of contacts, and what they need of scene and laws.
+
+    Attributes
+    ----------
+    shape : tuple of int
+        Shape of the batch.
+    scales : Scales
+        Units: floats, or arrays of shape (items,).
+    radius : float or array
+        Radius of the pair in m.
+    speed : float or array
+        Rate at first touch in m/s.
+    law, parts : NormalLaw, object
+        The normal law and its state.
+    shear_loss : float
+    grows, splits : bool
+        True for a grid that doubles where the contact outgrows it, and halves where it is small.
+    memory : Memory
+    """
+
+    shape: tuple[int, ...]
+    scales: Scales
+    radius: Any
+    speed: Any
+    law: NormalLaw
+    parts: Any
+    shear_loss: float
+    grows: bool
+    splits: bool
+    memory: Memory
+
+
+def start(
+    scene: Scene,
+    law: NormalLaw,
+    springs: int,
+    radius: Any,
+    *,
+    shear_loss: float,
+    spanned: float | None = 1.0,
+    grows: bool = False,
+    vectors: bool = False,
+) -> State:
+    """Return contacts without traction, lengths in units of ``radius`` in m.
+
+    ``spanned`` is what the springs span in this unit; None for a grid that follows the contact.
+    """
+    shape = scene.shape
+    items = math.prod(shape)
+    none, one = np.zeros(items), np.zeros(1)
+    rows = np.zeros((springs, items), dtype=complex if vectors else float)
+    size = np.full(items if grows else 1, spanned or 0.0)
+    memory = Memory(size, one, one, none, rows[0], rows[0], none, rows)
+    scales = Scales.at(scene, radius)
+    if shape:
+        scales = Scales._make(flat(each, shape) for each in scales)
+    return State(
+        shape,
+        scales,
+        scene.pair.radius,
+        scene.normal_speed,
+        law,
+        law.start(scene),
+        shear_loss,
+        grows,
+        spanned is None,
+        memory,
+    )
+
+
+def advance(
+    state: State, increment: Increment, after: NormalContact
+) -> tuple[TangentialResponse, State]:
+    """Return force, friction work and loss in shear of the step, and the springs after it."""
+    shape, scales, memory = state.shape, state.scales, state.memory
+    sampled = increment.sampled
+    vectors = memory.deflection.dtype.kind == "c"
+
+    def row(value: Any) -> Any:
+        return flat(value, shape) if shape else np.atleast_1d(np.asarray(value, dtype=float))
+
+    def tangential(value: Any) -> Any:
+        if not vectors:
+            return row(value)
+        value = np.asarray(value)
+        return row(value[..., 0]) + 1j * row(value[..., 1])
+
+    contact = _contact(state, row(after.radius), row(after.friction_load), sampled)
+    limit, acting = (row(each) for each in (after.friction_load, increment.friction_load))
+    friction = scales.force / scales.normal_force
+    still = np.zeros(memory.deflection.shape[1:])
+    rates = still, still, still
+    if sampled is not None:
+        rates = tangential(sampled.slip), tangential(sampled.force), row(sampled.mobility)
+    drive = Drive(
+        tangential(increment.displacement) * scales.displacement,
+        row(increment.drift),
+        *rates,
+        friction * limit,
+        friction * acting,
+        scales.displacement,
+    )
+    force, work, loss, memory = moved(memory, contact, drive, state.grows, state.splits)
+    loss = loss * scales.metres
+    work = work * scales.metres
+    state = state._replace(memory=memory)
+    if vectors:
+        both = np.stack((force.real, force.imag), axis=-1).reshape(*shape, 2)
+        return TangentialResponse(both, _shaped(work, shape), True, _shaped(loss, shape)), state
+    answers = (_shaped(each, shape) for each in (force, work, loss))
+    force, work, loss = answers
+    return TangentialResponse(force, work, True, loss), state
+
+
+def _shaped(values: Array, shape: tuple[int, ...]) -> Any:
+    return values.reshape(shape) if shape else values.item()
+
+
+def _contact(state: State, radius: Array, load: Array, sampled: Any) -> Contact:
+    """Return what the contact tells the springs."""
+    scales, shape = state.scales, state.shape
+    b, excess = limits(radius / scales.radius, load / scales.normal_force)
+    if sampled is None:  # slow
+        return Contact(b * b, 0.0 * excess, 0.0 * excess)
+    # the viscous force over the rate, asked while the surfaces approach: no tension cuts it there
+    rate = np.maximum(np.abs(sampled.rate), SLOWEST * state.speed)
+    asked, _ = state.law.respond(state.parts, sampled.approach, rate)
+    time = relaxation_time(asked, rate, state.radius, scales, shape)
+    return Contact(b * b, excess, state.shear_loss * time)
+
+
+def relaxation_time(
+    contact: NormalContact, rate: Any, radius: Any, scales: Scales, shape: tuple[int, ...]
+) -> Array:
+    """Return A in s from a viscous contact at a rate of approach, shape (items,); 0 out of it."""
+    b = flat(contact.radius, shape) / scales.radius if shape else contact.radius / scales.radius
+    load = flat(contact.force, shape) if shape else contact.force
+    excess = limits(np.atleast_1d(b), np.atleast_1d(load / scales.normal_force))[1]
+    per_rate = np.square(scales.radius) / (
+        (flat(radius, shape) * flat(rate, shape)) if shape else radius * float(rate)
+    )
+    return np.asarray(excess * per_rate)
+
+
+def limits(b: Array, load: Array) -> tuple[Array, Array]:
+    """Return b and j of a contact of radius b under a load, of which Hertz's is b³."""
+    with np.errstate(invalid="ignore"):
+        excess = np.where(b > 0.0, (load - b**3) / (1.5 * (b + TINY)), 0.0)
+    # in unloading the surfaces have parted outside of the radius that carries the load
+    return np.where(excess < 0.0, np.cbrt(load), b), np.maximum(excess, 0.0)
+
+
+class Drive(NamedTuple):
+    """The tangential motion of a step, each of shape (items,); tangential ones may be complex."""
+
+    move: Array
+    drift: Array
+    slip: Array
+    force: Array
+    mobility: Array
+    limit: Array
+    acting: Array
+    scale: Any
+
+
+def moved(
+    before: Memory, contact: Contact, drive: Drive, grows: bool, splits: bool
+) -> tuple[Array, Array, Array, Memory]:
+    """Return force (N), friction work and loss in shear (scaled), and the springs after a step."""
+    items = before.deflection.shape[1:]
+    # A in the middle of the step, and at its end
+    middle = np.where(before.time > 0.0, 0.5 * (before.time + contact.time), contact.time)
+    decay = drive.drift / np.maximum(middle, TINY)
+    edge, excess, decay = (_column(each, items) for each in (contact.edge, contact.excess, decay))
+    held, size = before.deflection, before.size
+    if grows or splits:
+        size, held, _ = fitted(size, held, np.sqrt(edge + 0.0 * size), 1.0, spans=not splits)
+    squares = np.square(np.multiply.outer(np.arange(len(held)) + 0.5, size / len(held)))
+    least = _limit(squares, before.edge, before.excess)
+    most = _limit(squares, edge, excess)
+    part, first = _entered(squares, least, before, edge, excess)
+    lead = contact.time * drive.scale
+    move = part * drive.move
+    deflection = held * np.exp(-decay * (1.0 - part)) if first is not least else held
+    step = dragged if np.iscomplexobj(held) else _slipped
+    deflection = step(deflection, move, drive.move / decay, first, most, part * decay)
+    total = most.sum(axis=0)
+    in_contact = total > 0.0
+    per_total = 1.0 / np.where(in_contact, total, 1.0)
+    weight = drive.limit * per_total
+    share, slip, traction = solved(
+        deflection, most, lead, drive, per_total, out=np.empty_like(deflection)
+    )
+    if not in_contact.all():
+        share = np.where(in_contact, share, alone(lead * drive.slip, excess, before.share))
+    # the work on springs is lost or stored; what is stored is lost when a spring leaves, or after
+    old = _cut(held + before.lead, least)
+    if size is not before.size:  # as many springs over another length
+        old = old * np.where(before.size > 0.0, size / (before.size + TINY), 1.0)
+    mean = 0.5 * (before.weight * old + weight * traction)
+    # springs that entered count as if they had moved all the time: the force is their mean
+    gained = _real(mean, (deflection - held) / np.maximum(part, TINY))
+    work = _real(mean, drive.move) - gained
+    after = Memory(size, edge, excess, contact.time, lead * slip, share, weight, deflection)
+    force = drive.acting * share
+    return force, np.maximum(work.sum(axis=0), 0.0), gained.sum(axis=0), after
+
+
+def solved(
+    deflection: Array, most: Array, lead: Array, drive: Drive, per_total: Array, *, out: Array
+) -> tuple[Array, Array, Array]:
+    """Return share of Coulomb's limit, slip velocity and tractions, which depend on each other.
+
+    From the force of the last step one turn is of second order; where the force moves the slip
+    velocity much, as by a long relaxation in a light body, Newton's method is. ``out`` takes the
+    tractions.
+    """
+    share = np.divide(drive.force, drive.acting, out=0.0 * drive.force, where=drive.acting > 0.0)
+    stiff = lead * drive.mobility * drive.acting * per_total
+    traction = np.add(deflection, lead * drive.slip, out=out)
+    _cut(traction, most)
+    found = np.ones(len(traction)).dot(traction) * per_total
+    slip = drive.slip + (share - found) * (drive.mobility * drive.acting)
+    hard = np.flatnonzero(stiff * len(traction) > STIFF)
+    if not hard.size:
+        return found, slip, traction
+    few = [np.broadcast_to(each, share.shape)[hard] for each in (lead, stiff, per_total)]
+    push = (drive.mobility * drive.acting)[hard]
+    one, at, limits = share[hard], drive.slip[hard], most[:, hard if most.shape[1] > 1 else 0, ...]
+    limits = limits.reshape(len(most), -1)
+    for _ in range(TURNS):
+        pulled = deflection[:, hard] + few[0] * at
+        stuck = (np.abs(pulled) < limits).sum(axis=0)
+        _cut(pulled, limits)
+        new = one + (pulled.sum(axis=0) * few[2] - one) / (1.0 + few[1] * stuck)
+        at, one = at + (one - new) * push, new
+    found[hard], slip[hard], traction[:, hard] = one, at, pulled
+    return found, slip, traction
+
+
+def _real(first: Any, second: Any) -> Any:
+    """Return the products, of complex numbers the inner products."""
+    return (np.conj(first) * second).real if np.iscomplexobj(first) else first * second
+
+
+def _cut(traction: Any, most: Any) -> Any:
+    """Cut tractions to their limit, in place, and return them."""
+    if traction.dtype.kind != "c":
+        np.minimum(traction, most, out=traction)
+        return np.maximum(traction, -most, out=traction)
+    size = np.abs(traction)
+    traction *= np.where(size > most, most / (size + TINY), 1.0)
+    return traction
+
+
+def _column(value: Array, items: tuple[int, ...]) -> Array:
+    """Return one number where all impacts agree, as an array."""
+    return np.atleast_1d(common(value, items))
+
+
+def _limit(squares: Array, edge: Array, excess: Array) -> Array:
+    """Return l of the springs."""
+    inside = edge - squares
+    return np.where(inside > 0.0, inside + excess, 0.0)
+
+
+def _entered(
+    squares: Array, least: Array, before: Memory, edge: Array, excess: Array
+) -> tuple[Any, Array]:
+    """Return the part of the step for which springs move, and their limit at its begin."""
+    growth = edge - before.edge
+    if not (growth > 0.0).any():
+        return 1.0, least
+    inside = edge - squares
+    entering = (inside > 0.0) & (least <= 0.0)
+    part = np.where(entering, inside / np.where(growth > 0.0, growth, 1.0), 1.0)
+    part = np.minimum(part, 1.0)
+    return part, np.where(entering, excess + (before.excess - excess) * part, least)
+
+
+def _slipped(held: Array, move: Any, _: Any, first: Array, most: Array, decay: Any) -> Array:
+    """Return w along one line: held by the limit, which goes evenly from ``first`` to ``most``."""
+    gone = -np.expm1(-decay)
+    free = held * (1.0 - gone)
+    span = first * gone + (most - first) * (1.0 - gone / np.maximum(decay, TINY))
+    return np.asarray(np.minimum(np.maximum(held + move, free - span), free + span))
+
+
+def alone(pull: Array, excess: Array, share: Array) -> Array:
+    """Return the share of a contact that is smaller than a cell: of its edge, or as it was."""
+    begun = excess > 0.0
+    ratio = pull / np.where(begun, excess, 1.0)
+    ratio = ratio / np.maximum(np.abs(ratio), 1.0)
+    return np.asarray(np.where(begun, ratio, share))
+
+
+def fields(state: State) -> dict[str, Any]:
+    """Return radius, displacement and limit (m), stuck and slipping, shape (*shape, springs)."""
+    memory, scales, shape = state.memory, state.scales, state.shape
+    springs, items = memory.deflection.shape
+    places = np.multiply.outer(np.arange(springs) + 0.5, memory.size / springs)
+    limit = _limit(places * places, memory.edge, memory.excess)
+    traction = memory.deflection + memory.lead
+    traction = _cut(traction, limit)
+    rows = (
+        np.broadcast_to(each, (springs, items)).T.reshape(*shape, springs)
+        for each in (places * scales.radius, memory.deflection, traction, limit)
+    )
+    radius, deflection, traction, limit = rows
+    metres = np.asarray(scales.metres).reshape(*shape, 1)
+    told = spring_fields(radius, traction, limit, metres=metres)
+    told["displacement"] = spring_fields(radius, deflection, limit, metres=metres)["displacement"]
+    return told

@@ -1,0 +1,200 @@
+"""All steps of viscous springs at once, of impacts whose contacts differ in scale only (§15)."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from contactlab.contracts import AllStepsResponse, NormalMotion, Steps
+from contactlab.impact.scene import Scene
+from contactlab_laws.jaeger.bundle import Array
+from contactlab_laws.jaeger.step import ROUNDING
+from contactlab_laws.springs import viscous
+from contactlab_laws.springs.viscous import TINY
+
+#: Most springs times steps, or impacts times steps, of a run; longer ones go step by step.
+LARGEST_RUN = 4_000_000
+
+
+class _Grid(NamedTuple):
+    """The springs of every step, arrays (K, springs) unless said otherwise.
+
+    Attributes
+    ----------
+    touching : list of int
+        Innermost springs that touch at the end of a step, or did at its begin.
+    entered : list of int
+        The first of them that entered in the step.
+    gone, span : array
+        Share of w that relaxes, and limit of its change.
+    most : array
+        Limit at the end of the step.
+    part : array
+        Part of the step for which a spring moves.
+    per_total : array, shape (K,)
+        One over the sum of the limits, 0 without springs.
+    excess : array, shape (K,)
+    """
+
+    touching: list[int]
+    entered: list[int]
+    gone: Array
+    span: Array
+    most: Array
+    part: Array
+    per_total: Array
+    excess: Array
+
+
+def advance_all(
+    state: viscous.State, scene: Scene, normal: NormalMotion, steps: Steps
+) -> AllStepsResponse | None:
+    """Return the forces of all steps; None where impacts differ, or there are too many."""
+    shape, count, springs = scene.shape, len(steps.kick), len(state.memory.deflection)
+    items = math.prod(shape)
+    if count * max(items, springs) > LARGEST_RUN:
+        return None
+    if items > 1 and not normal.alike:
+        return None
+    wide = (count, items)
+
+    def rows(column: Any) -> Array:
+        column = np.asarray(column)
+        if column.size == count:
+            return column.reshape(count, 1)
+        return np.asarray(np.broadcast_to(column, (count, *shape)).reshape(wide))
+
+    contact = _contacts(state, steps, rows)
+    drift, kick, acting = (rows(each) for each in (steps.drift, steps.kick, steps.friction_load))
+    time = contact.time
+    middle = np.concatenate((time[:1], 0.5 * (time[1:] + time[:-1])))
+    decay = drift / np.maximum(middle, TINY)
+    columns = contact.edge, contact.excess, decay
+    if not all(map(_alike, columns)):
+        return None
+    grid = _grid(springs, *(each[:, 0] for each in columns))
+    if grid is None:
+        return None
+    return _march(state, scene, grid, steps, (drift, kick, acting, time, rows), items)
+
+
+def _contacts(state: viscous.State, steps: Steps, rows: Any) -> viscous.Contact:
+    """Return what the contacts tell the springs, arrays (K, items) or (K, 1)."""
+    scales, speed = state.scales, state.speed
+    own = [np.asarray(each).reshape(1, -1) for each in (scales.radius, scales.normal_force)]
+    b, excess = viscous.limits(
+        rows(steps.contact.radius) / own[0], rows(steps.contact.friction_load) / own[1]
+    )
+    rate = np.maximum(np.abs(steps.rate), viscous.SLOWEST * speed)
+    asked, _ = state.law.respond(state.parts, steps.approach, rate)
+    _, push = viscous.limits(rows(asked.radius) / own[0], rows(asked.force) / own[1])
+    shape = np.shape(state.radius)
+    radius = np.reshape(state.radius, (1, -1)) if shape else state.radius
+    time = push * np.square(own[0]) / (radius * rows(rate))
+    return viscous.Contact(b * b, excess, state.shear_loss * time)
+
+
+def _alike(rows: Array) -> bool:
+    """Return whether all impacts agree, to rounding, in each row."""
+    first = rows[:, :1]
+    near = np.abs(rows - first) <= viscous.ALIKE * ROUNDING * np.abs(rows).max()
+    return rows.shape[1] == 1 or bool(near.all())
+
+
+def _grid(springs: int, edge: Array, excess: Array, decay: Array) -> _Grid | None:
+    """Return the springs of every step; None if springs leave and come again."""
+    squares = np.square((np.arange(springs) + 0.5) / springs)
+    before = np.concatenate(([0.0], edge[:-1]))
+    inside = edge[:, None] - squares
+    most = np.where(inside > 0.0, inside + excess[:, None], 0.0)
+    least = np.concatenate((np.zeros((1, springs)), most[:-1]))
+    touching = (most > 0.0).sum(axis=1)
+    top = int(touching.argmax())
+    if (np.diff(touching[: top + 1]) < 0).any() or (np.diff(touching[top:]) > 0).any():
+        return None
+    growth = np.where(edge > before, edge - before, 1.0)[:, None]
+    entering = (inside > 0.0) & (least <= 0.0)
+    part = np.where(entering, np.minimum(inside / growth, 1.0), 1.0)
+    born = np.concatenate(([0.0], excess[:-1]))[:, None]
+    first = np.where(entering, excess[:, None] + (born - excess[:, None]) * part, least)
+    relaxing = part * decay[:, None]
+    gone = -np.expm1(-relaxing)
+    span = first * gone + (most - first) * (1.0 - gone / np.maximum(relaxing, TINY))
+    total = most.sum(axis=1)
+    earlier = np.concatenate(([0], touching[:-1]))
+    return _Grid(
+        np.maximum(touching, earlier).tolist(),
+        np.where(touching > earlier, earlier, np.maximum(touching, earlier)).tolist(),
+        gone,
+        span,
+        most,
+        part,
+        np.divide(1.0, total, out=np.zeros_like(total), where=total > 0.0),
+        excess,
+    )
+
+
+def _march(
+    state: viscous.State, scene: Scene, grid: _Grid, steps: Steps, columns: Any, items: int
+) -> AllStepsResponse:
+    """Return the forces of all steps, a few passes over the springs for each."""
+    drift, kick, acting, time, rows = columns
+    scales, shape = state.scales, scene.shape
+    friction = np.reshape(scales.force / scales.normal_force, (1, -1))
+    scale = np.reshape(scales.displacement, (1, -1))
+    mass = np.reshape(np.asarray(scene.pair.tangential_mass, dtype=float), (1, -1))
+    velocity = np.broadcast_to(np.asarray(scene.slip_velocity, dtype=float), shape).reshape(-1)
+    acting, limit = friction * acting, friction * rows(steps.contact.friction_load)
+    mobility, drift, lead = 0.5 * kick / mass, drift * scale, time * scale
+    springs = len(state.memory.deflection)
+    w, moved, traction, before = np.zeros((4, springs, items))
+    force, earlier, last_share = np.zeros((3, items))
+    change, gained, work = np.zeros((3, items))
+    weight, ones, last = np.zeros(1), np.ones(springs), 0
+    forces = np.empty((len(kick), items))
+    for k, (now, entered) in enumerate(zip(grid.touching, grid.entered, strict=True)):
+        held, step, f = w[:now], moved[:now], traction[:now]
+        slip = velocity + change
+        move = slip * drift[k]
+        relaxed = np.multiply(held, grid.gone[k, :now, None], out=f)
+        np.add(relaxed, move, out=step)
+        if entered < now:
+            np.multiply(grid.part[k, entered:now, None], move, out=step[entered:])
+        span = grid.span[k, :now, None]
+        np.minimum(step, span, out=step)
+        np.maximum(step, -span, out=step)
+        step -= relaxed
+        held += step
+        if entered < now:  # as if they had moved all the time: the force is the mean of the step
+            step[entered:] /= grid.part[k, entered:now, None]
+        both = min(last, now)  # the others had no traction
+        energy = np.einsum("ij,ij->j", before[:both], step[:both])
+        energy *= weight
+        slip = slip - mobility[k] * force
+        drive = viscous.Drive(move, drift[k], slip, force, mobility[k], limit[k], acting[k], scale)
+        most = grid.most[k, :now, None]
+        share, slip, f = viscous.solved(held, most, lead[k], drive, grid.per_total[k], out=f)
+        if grid.per_total[k] == 0.0:
+            share = viscous.alone(lead[k] * drive.slip, grid.excess[k], last_share)
+        last_share = share
+        weight = limit[k] * grid.per_total[k]
+        total = np.einsum("ij,ij->j", f, step)
+        energy += weight * total
+        passed = earlier * move
+        earlier = weight * ones[:now].dot(f)
+        gained += energy
+        work += np.maximum(passed + earlier * move - energy, 0.0)
+        force = acting[k] * share
+        forces[k] = force
+        change = change - 2.0 * mobility[k] * force
+        traction, before, last = before, traction, now
+    metres = 0.5 * np.reshape(scales.metres, -1)
+    work, gained = work * metres, gained * metres
+    if not shape:
+        return AllStepsResponse(forces[:, 0], work.item(), True, gained.item())
+    spread = (len(kick), *shape)
+    return AllStepsResponse(
+        forces.reshape(spread), work.reshape(shape), True, gained.reshape(shape)
+    )

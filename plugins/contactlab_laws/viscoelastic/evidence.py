@@ -1,0 +1,71 @@
+"""How far one loss for pressure and shear is trusted: cautions with sizes (theory §15)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from contactlab.contracts.motion import NormalMotion
+from contactlab.impact.scene import Scene
+
+#: Largest change of e_T = -psi2/psi1 from half the loss in shear to twice as much, by restitution,
+#: for solid spheres and shells; below 0.9 it is at least the rms of eight measured balls.
+RESTITUTIONS = (0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 1.0)
+SIZES = (0.19, 0.16, 0.16, 0.16, 0.04, 0.02, 0.0)
+#: A ball whose approach is deep gains so much e_T for each z/R, least and most, from a depth on.
+LEAST_GAIN, MOST_GAIN, DEEP = 1.2, 1.9, 0.02
+#: Young's modulus in Pa from which a restitution is that of a metal, which loses by yield.
+METAL = 2e10
+#: Restitutions closer to 1 than this need no caution.
+ELASTIC = 0.995
+
+
+def cautions(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
+    """Return how far the tangential rebound is trusted; nothing where all impacts slip through."""
+    if not scene.rubs:
+        return ()
+    e = -np.asarray(normal.final_rate) / np.asarray(scene.normal_speed)
+    grips = np.broadcast_to(np.abs(scene.psi1) < slips_throughout_from(scene.chi, e), scene.shape)
+    grips = grips & (e < ELASTIC)
+    if not np.any(grips):
+        return ()
+    least = float(np.min(e, where=grips, initial=1.0))
+    size = float(np.interp(least, RESTITUTIONS, SIZES))
+    said = (
+        f"one loss for pressure and shear: e_T = -psi2/psi1 is trusted to {size:.2g} at "
+        f"e = {least:.2g}, by eight measured balls (model; shear_loss fits it)"
+    )
+    return (said, *_deep(scene, normal), *_metal(scene))
+
+
+def slips_throughout_from(chi: Any, e: Any) -> Any:
+    """Return the psi1 from which an impact slips from start to end."""
+    return np.maximum(1.0, 2.0 * chi * (1.0 + e) - e)
+
+
+def _deep(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
+    """Return the caution of a contact whose depth moves the point of the force."""
+    if scene.sphere is None and scene.encounter is None:
+        return ()
+    depth = float(np.nanmax(np.asarray(normal.maximum_approach / scene.pair.radius)))
+    if not depth > DEEP:
+        return ()
+    low, high = LEAST_GAIN * depth, MOST_GAIN * depth
+    return (
+        f"deep contact, z/R = {depth:.2g}: measured e_T are higher by about {low:.2g} to "
+        f"{high:.2g} (model)",
+    )
+
+
+def _metal(scene: Scene) -> tuple[str, ...]:
+    """Return the caution of a restitution of metals."""
+    if scene.sphere is None and scene.encounter is None:
+        return ()
+    stiff = np.min(np.asarray(scene.pair.effective_modulus)) >= 0.5 * METAL
+    if not stiff:
+        return ()
+    return (
+        "metals lose by yield, which is no loss in shear: no measurement of their e_T below "
+        "e = 1 was found (model)",
+    )
