@@ -371,7 +371,10 @@ const LOSSY = [
  *   contact, 1 stuck, 2 and 3 slipping forth, back
  */
 export function impact(psi1, chi, springs = 120, steps = 600, restitution = 1) {
-  if (restitution < 1) return lossyImpact(psi1, chi, springs, Math.ceil(steps / 2), Math.max(restitution, LEAST));
+  if (restitution !== 1) {
+    const e = restitution >= 0 && restitution < 1 ? Math.max(restitution, LEAST) : NaN;
+    return lossyImpact(psi1, chi, springs, Math.ceil(steps / 2), e);
+  }
   const squares = Float64Array.from({length: springs}, (_, i) => ((i + 0.5) / springs) ** 2);
   const w = new Float64Array(springs);
   const time = [0], force = [0], limit = [0], radius = [0], states = [];

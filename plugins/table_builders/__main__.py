@@ -13,6 +13,9 @@ def main() -> int:
     tables = parser.add_subparsers(dest="table", required=True)
     elastic = tables.add_parser("elastic", help="the elastic rebound")
     damped = tables.add_parser("damped", help="the rebound with a restitution, by Tsuji's law")
+    restituted = tables.add_parser("restituted", help="the rebound with a restitution, by one loss")
+    writing = restituted.add_subparsers(dest="command", required=True)
+    writing.add_parser("thin", help="write it, thinned, into the kernels for games: minutes")
     unlike = tables.add_parser("coupling", help="the size of elastic coupling of unlike bodies")
     built = unlike.add_subparsers(dest="command", required=True)
     built.add_parser("build", help="build the table: four minutes of processor time")
@@ -35,6 +38,12 @@ def main() -> int:
         from table_builders.coupling.build import build
 
         build(FILE)
+        return 0
+    if asked.table == "restituted":
+        from table_builders.restituted import thin
+
+        for file in thin.write():
+            print(file)
         return 0
     return (_elastic if asked.table == "elastic" else _damped)(asked)
 
