@@ -21,8 +21,8 @@ FILES = {"contactlab_bounce.mjs": "const LOSSY = [", "contactlab_bounce.h": "_lo
 SPRINGS, STEPS = 300, 1500
 #: Sum of the terms left out of a leaf, and the unit of those that stay.
 LEFT_OUT, UNIT = 4e-5, 1e-6
-#: Numbers of a leaf, above which it is split, and those along an axis: the kernels' room.
-LARGEST, LONGEST = 220, 16
+#: Numbers of a leaf above which it is split: fewer take less time, and more room.
+LARGEST = 220
 #: Word of a leaf where a fork has its axis.
 LEAF = 3
 
@@ -60,10 +60,10 @@ def thinned() -> list[str]:
     """Return the numbers of the table.
 
     First where the tree of each piece begins. A fork is its axis, how many numbers its lower half
-    has, the lower half, the upper. A leaf is LEAF; how many powers of u it has; the most of chi
-    and of e; for each power of u how many of chi, for each of these how many of e, and the terms
-    by Chebyshev polynomials of 2x - 1 on the leaf, in units of UNIT. The value is psi2/psi1, or
-    where psi1 > 1 psi2 less that of slip throughout.
+    has, the lower half, the upper. A leaf is LEAF; how many powers of u it has; for each of them
+    how many of chi; and for each of these how many of e, and the terms by Chebyshev polynomials of
+    2x - 1 on the leaf, in units of UNIT. The value is psi2/psi1, or where psi1 > 1 psi2 less that
+    of slip throughout.
     """
     trees = [tree(piece) for piece in PIECES]
     starts = len(PIECES) + np.cumsum([0, *map(len, trees[:-1])])
@@ -128,7 +128,7 @@ def _halves(terms: Array, axis: int) -> list[Array]:
 def _tree(terms: Array) -> Iterator[int]:
     """Yield the numbers of a box: a leaf, or two halves along the axis that leaves the fewest."""
     leaf = _leaf(terms)
-    if len(leaf) <= LARGEST and max(leaf[1:4]) <= LONGEST:
+    if len(leaf) <= LARGEST:
         yield from leaf
         return
     options = [_halves(terms, axis) for axis in range(3)]
@@ -145,7 +145,7 @@ def _leaf(terms: Array) -> list[int]:
     units = np.where(np.abs(terms) < least, 0.0, np.rint(terms / UNIT)).astype(int)
     depths, columns = _last(units), _last(_last(units))
     rows = int(_last(columns))
-    numbers = [LEAF, rows, int(columns.max()), int(depths.max())]
+    numbers = [LEAF, rows]
     for i in range(rows):
         numbers.append(int(columns[i]))
         for j in range(columns[i]):
