@@ -5,6 +5,7 @@ import json
 import re
 import shutil
 import subprocess
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -115,6 +116,16 @@ def test_from_the_table_it_is_collide_to_a_millionth(bounced, wall, gyration):
     assert 0.2 < made.collided.mean() < 0.8
     assert gaps(answers, met, made).max() < 1e-6
     assert (answers[~made.collided, 1:] == rows[~made.collided, VECTORS]).all()
+
+
+@pytest.mark.parametrize("wall", [False, True])
+def test_with_a_restitution_it_is_collide_to_a_ten_thousandth(bounced, wall):
+    rows, met, _ = rows_and_laws(12, wall, (2.0 / 3.0) ** 0.5, FEW)
+    e = np.random.default_rng(12).uniform(0.0, 1.0, FEW)
+    made = collide(met, separating="pass", restitution=e)
+    answers = bounced(np.insert(np.delete(rows, RESTITUTION, axis=1), RESTITUTION, e, axis=1))
+    assert (answers[:, 0] == made.collided).all()
+    assert gaps(answers, met, made).max() < 5e-5
 
 
 def test_a_dense_core_is_left_to_sixteen_springs(bounced):
@@ -397,6 +408,25 @@ def test_in_javascript_one_sentence_says_what_is_wrong(tmp_path):
     )
     for sentence, (given, words) in zip(answered(script, tmp_path), SENTENCES, strict=True):
         assert re.match(f"RangeError: bounce: .*{words}", str(sentence)), given
+
+
+@needs_node
+def test_the_notes_tell_the_balls_of_the_module(tmp_path):
+    module = json.dumps((KERNELS / "contactlab_bounce.mjs").as_uri())
+    balls = answered(
+        f"import {{BALLS}} from {module}; console.log(JSON.stringify(BALLS))", tmp_path
+    )
+    rows = [
+        [word.strip() for word in line.strip("|").split("|")]
+        for line in (KERNELS / "README.md").read_text("utf-8").splitlines()
+    ]
+    told = {row[0]: [float(Fraction(word)) for word in row[1:]] for row in rows if row[0] in balls}
+    assert set(told) == set(balls) == {"football", "tennisBall", "billiardBall", "superball"}
+    for name, ball in balls.items():
+        radius, mass = ball["body"]["radius"], ball["body"]["mass"]
+        ratio = ball["body"].get("inertia", 0.4 * mass * radius**2) / (mass * radius**2)
+        numbers = radius, mass, ratio, ball["body"]["poisson"], *ball["contact"].values()
+        assert told[name] == pytest.approx(numbers, rel=1e-12)
 
 
 @needs_node
