@@ -266,7 +266,7 @@ static inline double contactlab_bounce_followed(double psi1, double chi, double 
   at[0] = at[2] = 0;
   at[1] = 1;
   for (k = 1; k <= 2 * steps; ++k) {
-    double b, v, edge, h, decay, kick, half, rest;
+    double b, v, edge, h, decay, kick, half, rest, change;
     loads = k <= steps;
     if (k == steps + 1) whole = contactlab_bounce_reach(a, 0, at);
     contactlab_bounce_move(a, loads, loads ? whole / steps : whole * (2 * (k - steps) - 1) / steps / steps, at, next);
@@ -296,15 +296,19 @@ static inline double contactlab_bounce_followed(double psi1, double chi, double 
     }
     rest = (b - (count - 1) * gap) / 2;
     psi = half - kick * share;
-    for (pass = 0; pass < 2 && b > 0; ++pass) {
-      double sum = rest * contactlab_bounce_bound(a * psi, edge), full = rest * edge;
+    for (pass = 0, change = 1; b > 0 && pass < 9 && fabs(change) > 1e-9; ++pass) { /* Newton's method */
+      const double outer = a * psi;
+      double sum = rest * contactlab_bounce_bound(outer, edge), full = rest * edge, slope = 0;
+      if (fabs(outer) < edge) slope = rest * a;
       for (i = 0; i < count; ++i) {
-        const double weight = (i > 0 ? gap / 2 : 0) + (i < count - 1 ? gap / 2 : rest);
-        sum += weight * contactlab_bounce_bound(w[i] + a * psi, most[i]);
+        const double weight = (i > 0 ? gap / 2 : 0) + (i < count - 1 ? gap / 2 : rest), tried = w[i] + outer;
+        sum += weight * contactlab_bounce_bound(tried, most[i]);
         full += weight * most[i];
+        if (fabs(tried) < most[i]) slope += weight * a;
       }
-      share = sum / full;
-      psi = half - kick * share;
+      change = (half - psi - kick * sum / full) / (1 + kick * slope / full);
+      psi += change;
+      share = (sum + slope * change) / full;
     }
     for (i = 0; i < 3; ++i) at[i] = next[i];
   }

@@ -473,15 +473,18 @@ function lossyImpact(psi1, chi, springs, steps, e) {
     }
     const rest = (b - (count - 1) * gap) / 2, load = loads ? b * (b * b + 1.5 * a * V) : b * b * b;
     psi = half - kick * share;
-    for (let pass = 0; pass < 2 && b > 0; pass++) {
-      let sum = rest * bound(a * psi, edge), full = rest * edge;
+    for (let turn = 0, change = 1; b > 0 && turn < 9 && Math.abs(change) > 1e-9; turn++) {  // Newton's method
+      const outer = a * psi;
+      let sum = rest * bound(outer, edge), full = rest * edge, slope = Math.abs(outer) < edge ? rest * a : 0;
       for (let i = 0; i < count; i++) {
-        const weight = (i > 0 ? gap / 2 : 0) + (i < count - 1 ? gap / 2 : rest);
-        sum += weight * bound(w[i] + a * psi, most[i]);
+        const weight = (i > 0 ? gap / 2 : 0) + (i < count - 1 ? gap / 2 : rest), tried = w[i] + outer;
+        sum += weight * bound(tried, most[i]);
         full += weight * most[i];
+        if (Math.abs(tried) < most[i]) slope += weight * a;
       }
-      share = sum / full;
-      psi = half - kick * share;
+      change = (half - psi - kick * sum / full) / (1 + kick * slope / full);
+      psi += change;
+      share = (sum + slope * change) / full;
     }
     time.push(T);
     force.push(share * load);
