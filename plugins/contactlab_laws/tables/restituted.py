@@ -222,8 +222,8 @@ def _by_blocks(speed: Array, chi: Array, restitution: Real) -> Array:
 
 def _together(speed: Array, chi: Array, e: Real) -> Array:
     """Return psi2 of a block of impacts."""
-    psi2 = _full_slip(speed, chi, e)
-    who = np.flatnonzero(_sticks(speed, chi, e))
+    psi2 = full_slip(speed, chi, e)
+    who = np.flatnonzero(sticks(speed, chi, e))
     if not who.size:
         return psi2
     p, x, own = speed[who], chi[who], e if isinstance(e, float) else e[who]
@@ -234,19 +234,19 @@ def _together(speed: Array, chi: Array, e: Real) -> Array:
         own = own if isinstance(own, float) else own[rows]
         found[rows] += _share(own) * _step(p[rows], x[rows])
     if np.any(own == 0.0):
-        found = np.where(own == 0.0, _without_rebound(p, x), found)
+        found = np.where(own == 0.0, without_rebound(p, x), found)
     # no impact gains energy, nor more impulse than full slip gives: not even by an error
     found = np.maximum(found, psi2[who])
     psi2[who] = np.clip(found, -p, p)
     return psi2
 
 
-def _full_slip(speed: Any, chi: Any, e: Any) -> Any:
+def full_slip(speed: Any, chi: Any, e: Any) -> Any:
     """Return psi2 of slip throughout."""
     return speed - 2.0 * chi * (1.0 + e)
 
 
-def _sticks(speed: Any, chi: Any, e: Any) -> Any:
+def sticks(speed: Any, chi: Any, e: Any) -> Any:
     """Return whether impacts do not slip throughout."""
     return speed < np.maximum(border(chi, e), 1.0)
 
@@ -275,11 +275,10 @@ def _step(speed: Array, chi: Array) -> Array:
     return np.asarray(elastic.values(elastic.shipped(), speed, chi) - _partial(speed, chi, 1.0))
 
 
-def _without_rebound(speed: Any, chi: Any) -> Any:
+def without_rebound(speed: Array, chi: Array) -> Array:
     """Return psi2 of e = 0 where an impact does not slip throughout."""
-    rest = np.maximum(1.0 - 2.0 * chi, 0.0)
-    with np.errstate(divide="ignore"):
-        return rest * speed ** (1.0 / rest)
+    rest = np.maximum(1.0 - 2.0 * chi, np.finfo(float).tiny)
+    return np.asarray(rest * np.minimum(speed, 1.0) ** (1.0 / rest))
 
 
 @np.errstate(under="ignore")
@@ -289,7 +288,7 @@ def gradient(speed: Array, chi: Array, e: Array) -> tuple[Array, Array, Array]:
     By a complex step: the imaginary part of psi2 at psi1 + ih over h, and so on.
     """
     by_psi1, by_chi, by_e = np.ones_like(speed), -2.0 * (1.0 + e), -2.0 * chi
-    who = np.flatnonzero(_sticks(speed, chi, e))
+    who = np.flatnonzero(sticks(speed, chi, e))
     p, x, own = (np.concatenate((each[who],) * 3).astype(complex) for each in (speed, chi, e))
     for k, each in enumerate((p, x, own)):
         each[k * who.size : (k + 1) * who.size] += 1j * STEP
@@ -309,7 +308,7 @@ def gradient(speed: Array, chi: Array, e: Array) -> tuple[Array, Array, Array]:
 
 
 @lru_cache(maxsize=64)
-def _kept(e: float) -> dict[int, Callable[[float, float], float]]:
+def _kept(_: float) -> dict[int, Callable[[float, float], float]]:
     """Return the patches at one restitution in plain numbers, those that were asked for."""
     return {}
 
@@ -324,7 +323,7 @@ def _plain() -> tuple[list[int], list[list[int]], list[int]]:
 def single(psi1: float, chi: float, e: float) -> float:
     """Return psi2 of one impact, in plain floats."""
     speed = abs(psi1)
-    least = _full_slip(speed, chi, e)
+    least = full_slip(speed, chi, e)
     end = border(chi, e)
     if speed >= 1.0 and speed >= end:
         return float(least if psi1 >= 0.0 else -least)

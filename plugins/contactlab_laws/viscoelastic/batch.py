@@ -92,7 +92,8 @@ def _followed(psi1: Array, chi: Array, number: Array, path: Course, springs: int
     decays = np.exp(-path.duration / number)
     means = -np.expm1(-path.duration / number) * (number / path.duration)
     gains = path.rate[:-1] - path.rate[1:]
-    stiff = 1.9 * chi.max() * np.max(number * path.duration * path.radius[1:], axis=1) > STIFF
+    stiffness = 1.9 * number * path.duration * path.radius[1:]
+    stiff = chi.max() * stiffness.max(axis=1) > STIFF
     psi, share, w = psi1.copy(), np.minimum(psi1, 1.0), np.zeros((springs + 1, psi1.size))
     rooms, limits, past = np.empty((2, *w.shape)), np.zeros(squares.shape), np.zeros(squares.shape)
     for step, duration in enumerate(path.duration[:-1], start=1):
@@ -115,16 +116,26 @@ def _followed(psi1: Array, chi: Array, number: Array, path: Course, springs: int
         np.minimum(now, np.add(held, room, out=bound), out=now)
         edge = np.maximum(number * path.rate[step], 0.0)
         contact = Contact(limit, edge, outer, spacing, 0.5 * (b - outer * spacing))
-        solve = _settled if stiff[step - 1] else _once
-        psi, share = solve(contact, now, number, ahead, kick, share, bound)
+        known = contact, now, number, ahead, kick, share, bound
+        psi, share = _once(*known)
+        if stiff[step - 1]:
+            settled = chi * stiffness[step - 1] > STIFF
+            for each, other in zip((psi, share), _settled(*known), strict=True):
+                np.copyto(each, other, where=settled)
     return np.asarray(psi - chi * gains[-1] * 2.0 * share)
 
 
 def _enter(
-    w: Array, room: Array, limit: Array, inside: Array, drift: Array, number: Array, path: Course,
+    w: Array,
+    room: Array,
+    limit: Array,
+    inside: Array,
+    drift: Array,
+    number: Array,
+    path: Course,
     step: int,
 ) -> None:
-    """Set displacement and room of springs that come into contact within a step."""  # each for its share of it
+    """Set displacement and room of springs that enter within a step, each for its share of it."""
     before, after = path.radius[step - 1 : step + 1] ** 2
     enters = (inside >= before) & (inside < after)
     part = np.where(enters, (after - inside) / (after - before), 1.0)

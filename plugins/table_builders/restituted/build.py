@@ -1,4 +1,4 @@
-"""Building the table: cells are split along the coordinate of the longest tail of their series."""
+"""Building the table: cells are split along the longest tail until they hold psi2."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebvander
 
 from contactlab_laws.tables.file import Stored, write
 from contactlab_laws.tables.patches import Array, chebyshev_of_values, nodes
@@ -15,12 +16,22 @@ from contactlab_laws.tables.restituted import NODES, REGIONS, border
 from contactlab_laws.viscoelastic.batch import extrapolated
 from contactlab_laws.viscoelastic.relaxation import number_of
 
-#: Largest sum of the last terms along a coordinate, in psi2, by region.
-TOLERANCES = (8e-5, 5e-5, 4e-5, 5e-5, 2e-4)
-#: Springs, extrapolated from half as many, with five steps each; fewer suffice below ``DAMPED``,
-#: and below chi = 1/2 (theory §15: psi2 to 2e-5 up to chi = 3).
-SPRINGS, FEWER, FEWEST = 300, 200, 100
-DAMPED = 0.3
+#: Largest error of psi2 between the nodes of a cell, by region; it is looked for where the sum of
+#: the last terms along each coordinate is less than ``CLOSE`` times as much.
+TOLERANCES = (3.5e-5, 3.5e-5, 3.5e-5, 3.5e-5, 1.1e-4)
+CLOSE = 8.0
+#: Where it is looked for, as shares of a cell along each coordinate.
+BETWEEN = (
+    np.array([0.02, 0.12, 0.6, 1.0]),
+    np.array([0.02, 0.38, 0.98]),
+    np.array([0.02, 0.98]),
+)
+#: Springs, and steps from an e on, extrapolated from half as many of both: psi2 to 2e-5 up to
+#: chi = 3, 1e-5 up to 2. Below chi = 1/2 the least steps suffice.
+SPRINGS, STEPS = 100, ((0.0, 600), (0.2, 1000), (0.5, 1600))
+
+#: Shares of a cell along its three coordinates.
+Places = tuple[Array, ...]
 
 
 class Cell(NamedTuple):
@@ -30,14 +41,15 @@ class Cell(NamedTuple):
     levels: tuple[int, int, int]
     places: tuple[int, int, int]
 
-    def nodes(self, axis: int) -> Array:
-        """Return Chebyshev's nodes along a coordinate, as a share of the region."""
-        return (self.places[axis] + nodes(NODES[axis])) * 0.5 ** self.levels[axis]
+    def shares(self, axis: int, inner: Array) -> Array:
+        """Return places along a coordinate, as shares of the region, of shares of the cell."""
+        return (self.places[axis] + inner) * 0.5 ** self.levels[axis]
 
-    def impacts(self, e: float) -> tuple[Array, Array]:
-        """Return psi1 and chi at the nodes of one e, shape (8, 6)."""
+    def impacts(self, inner: Places, e: float) -> tuple[Array, Array]:
+        """Return psi1 and chi at places of one e, shape (shares of u, shares of chi)."""
         slips, low, high = REGIONS[self.region]
-        u, chi = np.meshgrid(self.nodes(0), low + (high - low) * self.nodes(1), indexing="ij")
+        chi = low + (high - low) * self.shares(1, inner[1])
+        u, chi = np.meshgrid(self.shares(0, inner[0]), chi, indexing="ij")
         if slips:
             end = border(chi, e)
             return end - (end - 1.0) * (1.0 - u) ** 2, chi
@@ -56,32 +68,50 @@ class Cell(NamedTuple):
 
 def solve(psi1: Array, chi: Array, e: float) -> Array:
     """Return psi2 of impacts of one restitution, shape (impacts,)."""
-    low = chi < REGIONS[0].high
-    psi2 = np.empty_like(psi1)
-    for where, springs in ((low, FEWEST), (~low, FEWER if e < DAMPED else SPRINGS)):
+    low, psi2 = chi < REGIONS[0].high, np.empty_like(psi1)
+    most = max(steps for least, steps in STEPS if e >= least)
+    for where, steps in ((low, STEPS[0][1]), (~low, most)):
         if where.any():
             psi2[where] = extrapolated(
-                psi1[where], chi[where], number_of(e), springs=springs, steps=5 * springs
+                psi1[where], chi[where], number_of(e), springs=SPRINGS, steps=steps
             )
     return psi2
 
 
-def terms_of(cells: list[Cell]) -> list[Array]:
-    """Return the Chebyshev terms of cells; all nodes of one e are solved together."""
-    values = [np.empty(NODES) for _ in cells]
-    layers = defaultdict(list)
+def values_at(cells: list[Cell], inner: Places) -> list[Array]:
+    """Return the tabulated quantity of cells at shares of each; one e after another."""
+    shape = (*map(len, inner),)
+    values, layers = [np.empty(shape) for _ in cells], defaultdict(list)
     for number, cell in enumerate(cells):
-        for layer, e in enumerate(cell.nodes(2).tolist()):
+        for layer, e in enumerate(cell.shares(2, inner[2]).tolist()):
             layers[e].append((number, layer))
     for e, members in layers.items():
-        impacts = np.stack([cells[number].impacts(e) for number, _ in members])
+        impacts = np.stack([cells[number].impacts(inner, e) for number, _ in members])
         psi1, chi = impacts.swapaxes(0, 1).reshape(2, -1)
-        psi2 = solve(psi1, chi, e).reshape(len(members), *NODES[:2])
+        psi2 = solve(psi1, chi, e).reshape(len(members), *shape[:2])
         for (number, layer), (own, _), found in zip(members, impacts, psi2, strict=True):
             slips = REGIONS[cells[number].region].slips
             values[number][:, :, layer] = found if slips else found / own
+    return values
+
+
+def terms_of(cells: list[Cell]) -> list[Array]:
+    """Return the Chebyshev terms of cells, of ``NODES`` each."""
     forth = [chebyshev_of_values(count) for count in NODES]
-    return [np.einsum("ai,bj,ck,ijk->abc", *forth, each, optimize=True) for each in values]
+    at_nodes = values_at(cells, (*map(nodes, NODES),))
+    return [np.einsum("ai,bj,ck,ijk->abc", *forth, each, optimize=True) for each in at_nodes]
+
+
+def errors(cells: list[Cell], terms: list[Array]) -> list[float]:
+    """Return the largest errors of psi2 between the nodes of cells."""
+    basis = [chebvander(2.0 * x - 1.0, n - 1) for x, n in zip(BETWEEN, NODES, strict=True)]
+    found = []
+    for cell, own, exact in zip(cells, terms, values_at(cells, BETWEEN), strict=True):
+        off = np.abs(np.einsum("ia,jb,kc,abc->ijk", *basis, own, optimize=True) - exact)
+        if not REGIONS[cell.region].slips:
+            off *= cell.shares(0, BETWEEN[0])[:, None, None]
+        found.append(float(off.max()))
+    return found
 
 
 def tails(cell: Cell, terms: Array) -> Array:
@@ -92,21 +122,34 @@ def tails(cell: Cell, terms: Array) -> Array:
     return unit * np.array([size[-1].sum(), size[:, -1].sum(), size[:, :, -1].sum()])
 
 
+def holding(cells: list[Cell], terms: list[Array]) -> list[bool]:
+    """Return whether cells hold psi2 to their tolerance."""
+    aims = [TOLERANCES[cell.region] for cell in cells]
+    holds = [
+        bool(tails(cell, own).max() <= CLOSE * aim)
+        for cell, own, aim in zip(cells, terms, aims, strict=True)
+    ]
+    near = [k for k, each in enumerate(holds) if each]
+    off = errors([cells[k] for k in near], [terms[k] for k in near])
+    for k, error in zip(near, off, strict=True):
+        holds[k] = error <= aims[k]
+    return holds
+
+
 def build(path: Path) -> None:
     """Build the table and write it; progress goes to stderr."""
     todo = [Cell(region, (0, 0, 0), (0, 0, 0)) for region in range(len(REGIONS))]
     done: list[tuple[Cell, Array]] = []
     while todo:
-        pairs = list(zip(todo, terms_of(todo), strict=True))
-        todo = []
-        for cell, terms in pairs:
-            tail = tails(cell, terms)
-            if tail.max() <= TOLERANCES[cell.region]:
-                done.append((cell, terms))
+        terms = terms_of(todo)
+        cells, todo = todo, []
+        for cell, own, holds in zip(cells, terms, holding(cells, terms), strict=True):
+            if holds:
+                done.append((cell, own))
             else:
-                todo += cell.split(int(tail.argmax()))
+                todo += cell.split(int(tails(cell, own).argmax()))
         print(f"{len(done)} patches, {len(todo)} cells left", file=sys.stderr, flush=True)
     done.sort(key=lambda each: each[0])
-    cells = [(cell.region, *cell.levels, *cell.places) for cell, _ in done]
-    terms = np.array([each for _, each in done], dtype=np.float32)
-    write(path, Stored.today(cells=np.array(cells, dtype=np.int16), terms=terms))
+    places = [(cell.region, *cell.levels, *cell.places) for cell, _ in done]
+    table = np.array([own for _, own in done], dtype=np.float32)
+    write(path, Stored.today(cells=np.array(places, dtype=np.int16), terms=table))
