@@ -22,8 +22,6 @@ from contactlab import (
     shapes,
 )
 from contactlab.pages.explore import explore_page
-from contactlab_laws.viscoelastic.batch import extrapolated
-from contactlab_laws.viscoelastic.relaxation import number_of
 
 pytestmark = pytest.mark.browser
 
@@ -160,13 +158,6 @@ def results(throw):
     }
 
 
-def one_loss(psi1, chi, restitution):
-    """Return psi2 by springs that lose, extrapolated."""
-    psi1, chi = np.array([psi1]), np.array([chi])
-    found = extrapolated(np.abs(psi1), chi, number_of(restitution), springs=200, steps=1000)
-    return float(np.sign(psi1[0]) * found[0])
-
-
 def one_loss_angle(throw, psi2):
     """Return the rebound angle in degrees of a throw with a restitution."""
     met, share = scene(throw), 1.0 - 1.0 / (1.0 + throw.get("inertia", 0.4))
@@ -214,7 +205,7 @@ def test_with_losses_the_answer_is_that_of_one_loss(page, angle, restitution):
     link(page, **throw)
     told = page.execute_script("return found.exact")
     met = scene(throw)
-    exact = one_loss(met.psi1, met.chi, restitution)
+    exact = rebound(met.psi1, met.chi, restitution=restitution)
     assert told["psi2"] == pytest.approx(exact, abs=1e-4)
     assert told["angle"] == pytest.approx(one_loss_angle(throw, exact), abs=0.01)
     slides = exact <= met.psi1 - 2.0 * met.chi * (1.0 + restitution) + 1e-6
@@ -251,7 +242,7 @@ def test_under_losses_the_contact_of_the_page_is_that_of_one_loss(page, chi, res
             "return impact(arguments[0], arguments[1], SPRINGS, STEPS, arguments[2])",
             psi1, chi, restitution,
         )  # fmt: skip
-        assert found["psi2"] == pytest.approx(one_loss(psi1, chi, restitution), abs=5e-4)
+        assert found["psi2"] == pytest.approx(rebound(psi1, chi, restitution=restitution), abs=5e-4)
         assert max(found["limit"]) == pytest.approx(1.0, abs=1e-12)
         limits = zip(found["force"], found["limit"], strict=True)
         assert all(abs(force) <= limit + 1e-9 for force, limit in limits)
@@ -572,7 +563,7 @@ def test_the_sheet_tells_how_a_ball_with_losses_leaves(page):
     told = page.find_elements(CSS, "#solutions li")[3].text
     throw = STEEL | {"restitution": 0.7}
     met = scene(throw)
-    angle = one_loss_angle(throw, one_loss(met.psi1, met.chi, 0.7))
+    angle = one_loss_angle(throw, rebound(met.psi1, met.chi, restitution=0.7))
     elastic = math.degrees(results(STEEL)["exact"].rebound_angle)
     assert told.startswith(f"Flatter, at {angle:.1f}° in place of {elastic:.1f}°")
     assert angle > elastic
