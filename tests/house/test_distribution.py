@@ -3,11 +3,11 @@
 import os
 import re
 import tomllib
-from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests.present import ROOT, needs_sources
+
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 GITHUB = ROOT / ".github"
 
@@ -17,6 +17,7 @@ def built(builder):
     return {each.distribution_path for each in builder(str(ROOT)).recurse_included_files()}
 
 
+@needs_sources
 def test_the_wheel_installs_contactlab_and_its_laws_only():
     wheel = pytest.importorskip("hatchling.builders.wheel", reason="needs hatchling (extra dev)")
     paths = built(wheel.WheelBuilder)
@@ -24,6 +25,7 @@ def test_the_wheel_installs_contactlab_and_its_laws_only():
     assert {"contactlab/py.typed", "contactlab/kernels/package.json"} <= paths
 
 
+@needs_sources
 def test_the_source_archive_has_what_its_tests_read():
     sdist = pytest.importorskip("hatchling.builders.sdist", reason="needs hatchling (extra dev)")
     paths = built(sdist.SdistBuilder)
@@ -62,6 +64,7 @@ def test_an_issue_begins_with_questions(name):
     assert len(re.findall(r"^\*\*.+\.\*\* ", body, re.MULTILINE)) >= 3
 
 
+@needs_sources
 def test_whoever_contributes_finds_a_word_on_each_step():
     text = (GITHUB / "CONTRIBUTING.md").read_text("utf-8")
     headings = re.findall(r"^## (.*)$", text, re.MULTILINE)

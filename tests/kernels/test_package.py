@@ -4,13 +4,13 @@ import json
 import re
 import shutil
 import subprocess
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import contactlab
 from tests.kernels.test_kernels import HERE, KERNELS, NODE, needs_node
+from tests.present import ROOT
 
 PACKAGE = json.loads((KERNELS / "package.json").read_text("utf-8"))
 NPM = shutil.which("npm")
@@ -30,8 +30,7 @@ def test_what_the_package_lists_is_there():
 
 
 def test_the_license_is_that_of_the_repository():
-    root = Path(__file__).parents[2]
-    assert (KERNELS / "LICENSE").read_text("utf-8") == (root / "LICENSE").read_text("utf-8")
+    assert (KERNELS / "LICENSE").read_text("utf-8") == (ROOT / "LICENSE").read_text("utf-8")
 
 
 def declared(module):

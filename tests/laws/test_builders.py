@@ -24,6 +24,9 @@ from contactlab_laws.tables.regions import (
     STUCK_ON,
     Cuts,
 )
+
+pytest.importorskip("table_builders", reason="table_builders is not in the wheel")
+
 from table_builders import __main__ as command
 from table_builders.coupling import build as unlike
 from table_builders.damped import build
