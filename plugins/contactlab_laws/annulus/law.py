@@ -44,7 +44,8 @@ class Annulus(PartialSlip):
 
     The pressures in the middles of (34) carry the load P to within about n^-1.5. Under Hertz's
     law they are those of the paper; under any other law they are scaled to carry P, so that gross
-    slip is exact.
+    slip is exact. Shear is elastic: under a viscous normal law the loss is in pressure alone, where
+    springs share it (theory §15).
 
     Parameters
     ----------
