@@ -13,10 +13,8 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.compose.rebound import DAMPED_RESTITUTION
 from contactlab.compose.registry import KINDS, REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
-from contactlab.fitting import tabulated
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, Rule
@@ -195,22 +193,20 @@ def _choices(setup: Setup) -> dict[str, Callable[[], Parameter]]:
             value = getattr(law, field.name)
             if field.init and isinstance(value, float) and kind != "integrator":
                 full = f"{kind}.{field.name}"
-                tabled = tabulated.holds(setup.simulation)
-                choices[full] = partial(_option, kind, field, value, tabled=tabled)
+                choices[full] = partial(_option, kind, field, value)
     return choices
 
 
-def _option(kind: str, field: attrs.Attribute[Any], value: float, *, tabled: bool) -> LawOption:
-    """Return the parameter of an option; searches begin where the table, if used, holds."""
+def _option(kind: str, field: attrs.Attribute[Any], value: float) -> LawOption:
+    """Return the parameter of an option."""
     least, most = _range(field.metadata.get("rule"), value)
     finite = math.isfinite(least) and math.isfinite(most)
-    first = max(least, DAMPED_RESTITUTION) if tabled and field.name == "restitution" else least
     return LawOption(
         name=f"{kind}.{field.name}",
         unit=field.metadata.get("unit", "1"),
         least=least,
         most=most,
-        starts=(value, *(_evenly(first, most) if finite else ())),
+        starts=(value, *(_evenly(least, most) if finite else ())),
         kind=kind,
         option=field.name,
     )

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose.names import short_name
-from contactlab.compose.rebound import DAMPED_ERROR, DAMPED_RESTITUTION, damped, damped_error
+from contactlab.compose.rebound import RESTITUTED_CHI, laws_of
 from contactlab.compose.simulation import Simulation
 from contactlab.fitting import tabulated
 from contactlab.fitting.f_test import SPARE, chance_of
@@ -251,7 +251,7 @@ def _tilted(problem: Problem, given: Collection[str], values: Array) -> Wider:
 def _restituted(problem: Problem) -> Wider:
     """Return the problem with a restitution to fit; None without a table of such impacts."""
     setup, parameters = problem.model.setup, problem.model.parameters
-    laws: Any = setup.simulation or Simulation(normal=damped(1.0).normal)
+    laws: Any = setup.simulation or Simulation(normal=laws_of(1.0).normal)
     own = getattr(laws.normal, "restitution", 1.0)
 
     def words(restitution: float) -> str:
@@ -262,11 +262,12 @@ def _restituted(problem: Problem) -> Wider:
         )
 
     names = [parameter.name for parameter in parameters]
-    error = damped_error(setup.scene.chi, DAMPED_RESTITUTION)
-    if RESTITUTION in names or not tabulated.holds(laws) or not np.all(error <= DAMPED_ERROR):
+    chi: Any = setup.scene.chi
+    inside = np.all((chi >= RESTITUTED_CHI[0]) & (chi <= RESTITUTED_CHI[1]))
+    if RESTITUTION in names or not tabulated.holds(laws) or not inside:
         return None, own, words
     wider = setup._replace(simulation=laws)
-    more = attrs.evolve(parameter_named(RESTITUTION, wider), least=DAMPED_RESTITUTION)
+    more = parameter_named(RESTITUTION, wider)
     model = Model(setup=wider, parameters=(*parameters, more))
     return attrs.evolve(problem, model=model), SOME_LOSS, words
 

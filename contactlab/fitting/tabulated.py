@@ -1,4 +1,4 @@
-"""Impacts with a tabulated rebound: elastic, or with one restitution by Tsuji's law."""
+"""Impacts with a tabulated rebound: elastic, or with one restitution."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.compose.rebound import damped, rebound
+from contactlab.compose.rebound import laws_of, rebound
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.status import Status
 from contactlab.impact.cautions import unit_slips
@@ -26,15 +26,16 @@ def holds(simulation: Simulation | None) -> bool:
     """
     if simulation is None:
         return True
-    return type(simulation.normal) is _normal_law() and simulation == Simulation(
-        normal=simulation.normal
-    )
+    normal: Any = simulation.normal
+    if type(normal) is not _normal_law() or normal.restitution is None:
+        return False
+    return simulation == Simulation(normal=normal)
 
 
 @cache
 def _normal_law() -> type:
     """Return the class of the normal law behind ``rebound(restitution=)``."""
-    return type(damped(0.9).normal)
+    return type(laws_of(0.9).normal)
 
 
 def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:

@@ -11,7 +11,7 @@ from contactlab.cli.guide import text
 
 PAGE = text("theory-loss")
 ROW = re.compile(
-    r"^\| ([^|]+?) \| (0\.\d\d) \| (0\.\d+) ± 0\.\d+ \| ([^|]+) \| ([^|]+) \| ([^|]+) \| ([^|]+) \|$",
+    r"^\| ([^|]+?) \| (0\.\d\d) \| (0\.\d+) ± 0\.\d+ \|" + 4 * r" ([^|]+) \|" + "$",
     re.MULTILINE,
 )
 NUMBERS = re.compile(r"-?\d\.\d+")
