@@ -25,6 +25,7 @@ from contactlab.contracts import (
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, Rule, choice, count, flag, quantity, refuse
+from contactlab_laws.differences import table as differences
 from contactlab_laws.jaeger.law import ProfileLaw
 from contactlab_laws.springs import doubling, viscous, viscous_steps
 
@@ -141,7 +142,8 @@ class Springs(ProfileLaw):
             return super().cautions(scene, normal)
         from contactlab_laws.viscoelastic import evidence  # springs without loss need none of it
 
-        return (*TangentialLaw.cautions(self, scene, normal), *evidence.cautions(scene, normal))
+        own = (*differences.choice(scene, normal, shared=True), *evidence.cautions(scene, normal))
+        return (*TangentialLaw.cautions(self, scene, normal), *own)
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return 2 G* a, and half a spring more on a doubling grid, whose cells are not a's."""
