@@ -25,9 +25,8 @@ def cautions(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
     """Return how far the tangential rebound is trusted; nothing where all impacts slip through."""
     if not scene.rubs:
         return ()
-    e = -np.asarray(normal.final_rate) / np.asarray(scene.normal_speed)
-    grips = np.broadcast_to(np.abs(scene.psi1) < slips_throughout_from(scene.chi, e), scene.shape)
-    grips = grips & (e < ELASTIC)
+    e = np.broadcast_to(-np.asarray(normal.final_rate) / scene.normal_speed, scene.shape)
+    grips = (np.abs(scene.psi1) < slips_throughout_from(scene.chi, e)) & (e < ELASTIC)
     if not np.any(grips):
         return ()
     least = float(np.min(e, where=grips, initial=1.0))
