@@ -1,4 +1,4 @@
-"""Residuals that follow a column, and single numbers that determine a parameter."""
+"""Residuals that climb with a column or follow it, and numbers that decide alone."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from contactlab.fitting.f_test import NUMERICAL, SPARE, chance_of, orthonormal
 from contactlab.fitting.problem import Problem
+from contactlab.outcome.columns import QUANTITIES
 
 Array = NDArray[np.float64]
 
@@ -41,8 +42,8 @@ def pattern(
 
     Notes
     -----
-    F tests, beside the parameters, of a polynomial of third degree in the rank of the column, for
-    each quantity, and of a parameter that changes between two rows. A test of runs of signs would
+    F tests, beside the parameters, of a line and of a polynomial of third degree in the rank of the
+    column, for each quantity, and of a parameter that changes between two rows. A test of runs of signs would
     be too weak: no run in ten impacts is improbable enough. The chance is multiplied by the number
     of tests (Bonferroni).
     """
@@ -56,18 +57,33 @@ def pattern(
         for column, rank in ranks.items():
             x = rank[np.isfinite(numbers)]
             terms = legendre.legvander(2.0 * (x - x.min()) / max(np.ptp(x), 1.0) - 1.0, DEGREE)
-            words = (
-                f"{name}: residuals follow {column}: look at that column, at what else has changed "
-                "with it, and at other laws"
-            )
-            chance = chance_of(residuals[name], slopes[name], terms[:, 1:], least[name])
-            tests.append(Pattern(chance, words))
+            look = "look at that column, at what else has changed with it, and at other laws"
+            climb = _climb(problem, values, name, columns, column)
+            ways = {f"{climb}: {look}": 2, f"residuals follow {column}: {look}": DEGREE + 1}
+            for words, end in ways.items():
+                chance = chance_of(residuals[name], slopes[name], terms[:, 1:end], least[name])
+                tests.append(Pattern(chance, f"{name}: {words}"))
     same = [name for name in ranks if ORDER not in ranks and _in_order(ranks[name])]
     tests += _changes(problem, weighted, jacobian, max(least.values()), same)
     if not tests:
         return NO_PATTERN
     clearest = min(tests)
     return clearest._replace(chance=clearest.chance * len(tests))
+
+
+def _climb(
+    problem: Problem, values: Array, name: str, columns: Mapping[str, Array], column: str
+) -> str:
+    """Return how residuals grow with a column: the ends of the line through them."""
+    residuals = problem.residuals(values[None])[name][0]
+    x = columns.get(column, np.arange(1.0, len(residuals) + 1.0))
+    present = np.isfinite(residuals)
+    first, last = float(x[present].min()), float(x[present].max())
+    low, high = np.polyval(np.polyfit(x[present], residuals[present], 1), [first, last])
+    unit = QUANTITIES[name].unit if name in QUANTITIES else "1"
+    ends = f"from {low:+.2g} to {high:+.2g}{'' if unit == '1' else ' ' + unit}"
+    way = "climb" if high > low else "fall"
+    return f"residuals {way} with {column}, {ends} between {first:.3g} and {last:.3g}"
 
 
 def _changes(
