@@ -26,6 +26,8 @@ SOME_FRICTION = 0.1
 #: Points whose predictions are kept: those of a search and its diagnosis, not of a bootstrap.
 REMEMBERED = 1000
 TABULATED = "exact elastic law (tabulated rebound)"
+#: Digits of an option of a law: within them impacts run once, and normal motions are kept.
+DIGITS = 7
 #: The quantity that takes the course of the normal motion, not its restitution alone.
 CONTACT_TIME = "contact_time"
 POLAR, CARTESIAN = ("speed", "angle_deg"), ("normal_speed", "tangential_velocity")
@@ -53,6 +55,7 @@ class Model:
         Points with equal options of laws run together in one batch. A point seen before
         is not run again.
         """
+        points = self._near(points)
         if len(self._known) > REMEMBERED:
             self._known.clear()
         keys = [point.tobytes() for point in points]
@@ -64,6 +67,14 @@ class Model:
         if fresh:
             self._run(points[fresh], [keys[row] for row in fresh], quantities)
         return {name: np.array([self._known[key][name] for key in keys]) for name in quantities}
+
+    def _near(self, points: Array) -> Array:
+        """Return points, shape (m, parameters), with rounded options of laws."""
+        near = points.copy()
+        for place, parameter in enumerate(self.parameters):
+            if not parameter.batched:
+                near[:, place] = [float(f"{v:.{DIGITS}g}") for v in points[:, place].tolist()]
+        return near
 
     def _run(self, points: Array, keys: Sequence[bytes], quantities: Sequence[str]) -> None:
         """Run the impacts at some points and keep the quantities under their keys."""
@@ -109,7 +120,7 @@ class Model:
 
     def impacts(self, values: Array) -> ImpactResult:
         """Return the impacts, shape (n,), at values of the parameters, shape (parameters,)."""
-        return self._impacts(self._setup(values.tolist()))
+        return self._impacts(self._setup(self._near(values[None])[0].tolist()))
 
     def _setup(self, values: Sequence[float]) -> Setup:
         """Return scene and laws at values of the parameters."""

@@ -177,7 +177,8 @@ def _sentence(problem: Problem, values: Array, better: list[Read], *, more: int 
     parameters = best.reading.problem.model.parameters
     kept = len(parameters) - more  # without what was tried
     estimates = in_words(parameters[:kept], best.values[:kept])
-    return f"{listed}: read so, residuals are {times:.2g} times smaller, and {estimates}"
+    told = f"{listed}: read so, residuals are {times:.2g} times smaller"
+    return f"{told}, and {estimates}" if kept else told
 
 
 class AngleOffset(Parameter):

@@ -10,6 +10,7 @@ from tests.cli.conftest import EXAMPLES
 from tests.longer import longer
 
 KHARAZ = EXAMPLES / "kharaz2001.toml"
+VISCOELASTIC = "Viscoelastic(restitution=%s, relaxation_time=None)"
 HALF = "options = { normal = { restitution = 0.5 } }"
 E_T = ("--quantity", "tangential_restitution")
 
@@ -87,8 +88,8 @@ def test_a_parameter_has_a_row_with_its_intervals(run, impacts):
         ("", (), "exact elastic law (tabulated rebound)"),
         ("", ("--normal", "hertz"), "exact elastic law (tabulated rebound)"),
         ('normal = "hertz"\ntangential = "springs"', (), "exact elastic law (tabulated rebound)"),
-        ('normal = "tsuji"', (), "Tsuji(restitution=0.9), partial slip (tabulated rebound)"),
-        (f'normal = "tsuji"\n{HALF}', (), "Tsuji(restitution=0.5)"),
+        ('normal = "viscoelastic"', (), f"{VISCOELASTIC % 0.9}, partial slip (tabulated rebound)"),
+        (f'normal = "viscoelastic"\n{HALF}', (), VISCOELASTIC % 0.5),
         pytest.param(f'normal = "tsuji"\n{HALF}',
                      ("--normal", "hunt_crossley", "--laws", "coulomb"),
                      "HuntCrossley(restitution=0.9, damping=None), Coulomb(), Events",
@@ -115,22 +116,22 @@ def test_cautions_are_told_of_every_law(run):
     content = json.loads(run(*options, "--json").out)
     exact, coulomb = (one["fit"]["cautions"] for one in content["ranking"])
     assert content["cautions"] == exact
-    assert any("this moves friction_coefficient by up to" in text for text in exact)
+    assert any("moves friction_coefficient by up to" in text for text in exact)
     text = run(*options).out
     assert all(f"caution: {one}" in text for one in exact)
-    assert all(f"caution of coulomb: {one}" in text for one in coulomb)
+    assert all(text.count(one) == 1 for one in [*exact, *coulomb])
 
 
-def test_restitution_of_a_damped_law_comes_out_of_kharaz(run):
+def test_restitution_comes_out_of_kharaz(run):
     """Of e_t and the rebound angle: nearer to 1 than the 0.98 that is quoted beside them."""
-    ran = run("fit", KHARAZ, "--normal", "tsuji", "--fit", "friction_coefficient,restitution",
+    ran = run("fit", KHARAZ, "--fit", "friction_coefficient,restitution",
               "--quantity", "tangential_restitution,rebound_angle_deg",
               "--bootstrap", 0, "--json")  # fmt: skip
     content = json.loads(ran.out)
     found = content["parameters"]["normal.restitution"]
     assert found["value"] == pytest.approx(0.994, abs=0.002)
     assert found["interval_95"] == pytest.approx([0.984, 1.0], abs=0.002)
-    assert content["laws"].startswith("Tsuji(restitution=0.99")
+    assert content["laws"].startswith("Viscoelastic(restitution=0.99")
 
 
 @pytest.mark.parametrize(

@@ -128,7 +128,9 @@ class Springs(ProfileLaw):
             return super().cautions(scene, normal)
         from contactlab_laws.viscoelastic import evidence  # springs without loss need none of it
 
-        return (*TangentialLaw.cautions(self, scene, normal), *evidence.cautions(scene, normal))
+        fitted = self.shear_loss != 1.0
+        own = evidence.cautions(scene, normal, fitted=fitted)
+        return (*TangentialLaw.cautions(self, scene, normal), *own)
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return 2 G* a, and half a spring more on a doubling grid, whose cells are not a's."""
