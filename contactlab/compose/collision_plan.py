@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.compose.rebound import damped_error
+from contactlab.compose.rebound import restituted_error
 from contactlab.impact.cautions import contact_vectors
 from contactlab.impact.encounter import Encounter
 from contactlab.numeric.arrays import some
@@ -15,8 +15,8 @@ from contactlab.outcome.plan import PSI2_ERROR, TANGENTIAL_MOTION, Clause, Plan
 
 PARTED = "collision: the bodies separate, they pass through untouched"
 STANDS_FOR = (
-    "restitution {}: of a frictionless impact on the mass 1/W_nn, Tsuji's law; a body's own V2 "
-    "follows from it"
+    "restitution {}: of a frictionless impact on the mass 1/W_nn, normal.viscoelastic; a body's "
+    "own V2 follows from it"
 )
 
 
@@ -44,28 +44,22 @@ def collision_plan(plan: Plan, met: Encounter | None, passed: Any, restitution: 
 
 def by_rebound(plan: Plan, chi: Any, restitution: Real) -> Plan:
     """Return the plan of laws that answer as ``rebound`` does, with the words of ``rebound``."""
-    unknown = np.isnan(plan.psi2_error)
-    bound = np.broadcast_to(damped_error(chi, restitution), unknown.shape)
-    error_words = "none was measured beyond chi = 10, of contactlab.rebound"
-    if not np.isnan(bound[unknown]).all():
-        error_words = "at most {:g} beside Coulomb's law at every point, of contactlab.rebound"
+    marched = plan.columns.marched
+    error = np.where(marched, restituted_error(chi, restitution), plan.psi2_error)
     low, high = float(np.min(restitution)), float(np.max(restitution))
     told = f"{low:g}" if low == high else f"{low:.4g}..{high:.4g}"
     said: dict[str, tuple[str, tuple[Any, ...] | None]] = {
         TANGENTIAL_MOTION: (
-            f"tangential motion: contactlab.rebound with restitution={told}",
+            f"tangential motion: contactlab.rebound with restitution={told}, one loss for pressure "
+            "and shear",
             None,
         ),
-        PSI2_ERROR: (
-            f"numerical error of psi2: {error_words}",
-            (np.where(unknown, bound, np.nan),),
-        ),
+        PSI2_ERROR: ("numerical error of psi2: at most {:.2g}, of contactlab.rebound", (error,)),
     }
     computed = []
     for clause in plan.computed:
-        if clause.code in said and some(clause.where & unknown):
+        if clause.code in said and some(clause.where & marched):
             text, values = said[clause.code]
             clause = clause._replace(text=text, values=values)
         computed.append(clause)
-    error = np.where(unknown, bound, plan.psi2_error)
     return plan.changed(computed=tuple(computed), psi2_error=error if error.ndim else float(error))

@@ -18,8 +18,6 @@ from contactlab.numeric.vectors import LEAST, components, three
 
 Array = NDArray[np.float64]
 
-#: Beyond this psi1 the change of psi under a restitution equals its limit to 1e-4.
-END_OF_DAMPED = 1e4
 #: Velocities and spins of both bodies.
 VELOCITIES = ("velocity", "spin", "target_velocity", "target_spin")
 #: Attributes of a ``Collision``, by name.
@@ -43,12 +41,10 @@ def rebounding(
     part: Encounter, contact: Contact, pair: Pair, restitution: Real
 ) -> tuple[Any, Any, Any]:
     """Return rebound rate (m/s), slip change (m/s) and friction work (J) by ``rebound``."""
-    # From psi1 = 4 chi + 1 on elastic bodies slip throughout, eq. (46), and the change of psi is
+    # From psi1 = 4 chi + 1 on bodies slip throughout, eq. (46), and the change of psi is
     # constant. So psi1 is cut there: it stays finite, with all digits, at any slip and friction.
-    # With a restitution the change of psi tends to -2 chi (1 + e) as 1/psi1.
     chi = pair.inertia_ratio
-    elastic: Any = restitution == 1.0
-    end: Any = chosen(elastic, 4.0 * chi + 1.0, END_OF_DAMPED)
+    end: Any = 4.0 * chi + 1.0
     with np.errstate(all="ignore"):
         # m/s for each unit of psi, eq. (29)
         unit: Any = part.friction_coefficient * contact.approach / pair.stiffness_ratio
@@ -132,7 +128,7 @@ def _alone(encounter: Encounter, restitution: Any, strict: bool) -> Moved:
     if collided:
         chi, unit = pair.inertia_ratio, encounter.friction_coefficient * approach
         unit /= pair.stiffness_ratio
-        end = 4.0 * chi + 1.0 if restitution == 1.0 else END_OF_DAMPED
+        end = 4.0 * chi + 1.0
         psi1 = end if slip >= end * unit else slip / unit
         change = (rebound(psi1, chi, restitution=restitution) - psi1) * unit
         work = max(-tangential_mass * change * (slip + 0.5 * change), 0.0)

@@ -22,14 +22,13 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-#: Largest chi of the law for a restitution below 1; the range of chi and the least restitution of
-#: its table, and the largest errors of psi2 in the table and outside, against Coulomb's law at
-#: every point: ``tests/laws/test_damped_table.py``.
-DAMPED_LARGEST_CHI = 10.0
-DAMPED_CHI, DAMPED_RESTITUTION = (0.8, 1.8), 0.5
-DAMPED_ERROR, BEYOND_ERROR = 1e-3, 4e-3
-#: Number of annuli beyond the largest chi; the steps are four times as many.
-ANNULI = 100
+#: Range of chi in the table of restitutions below 1. Largest errors of psi2: in the table up to chi
+#: ``NEARER``, and up to its end; and of springs beyond it over sqrt(chi/3):
+#: ``tests/laws/test_restituted_table.py``.
+RESTITUTED_CHI, NEARER = (0.3, 3.0), 2.0
+RESTITUTED_ERROR, WIDER_ERROR, BEYOND_ERROR = 5e-5, 1.5e-4, 3e-4
+#: Springs of the laws for a restitution; the steps are four times as many.
+SPRINGS = 100
 #: The table answers up to this chi and for tolerances above this: it holds psi2 to 1e-9.
 TABULATED_CHI, TABULATED = 2.5, 1e-9
 #: Tolerance of every solution: an answer in an array then equals a single one to 1e-10.
@@ -42,6 +41,8 @@ CHI = Rule(
     lambda value: POSITIVE.holds(value) & (value <= LARGEST_CHI),
     "must be positive and at most 1e4, the range over which answers were checked",
 )
+#: Range of chi in the table of elastic impacts.
+ELASTIC_CHI = (math.ulp(0.0), TABULATED_CHI)
 #: From this psi1 on every impact with chi in range slips throughout, and psi falls by 4 chi.
 SLIPS_THROUGHOUT = 1e5
 
@@ -65,6 +66,15 @@ def rebound(
 def rebound(
     psi1: object, chi: object, *, tolerance: float = USUAL, derivatives: Literal[True]
 ) -> tuple[Real, Real, Real]: ...
+@overload
+def rebound(
+    psi1: object,
+    chi: object,
+    *,
+    tolerance: float = USUAL,
+    derivatives: Literal[True],
+    restitution: Real,
+) -> tuple[Real, Real, Real, Real]: ...
 def rebound(
     psi1: object,
     chi: object,
@@ -72,12 +82,14 @@ def rebound(
     tolerance: float = USUAL,
     derivatives: bool = False,
     restitution: Real = ELASTIC,
-) -> Real | tuple[Real, Real, Real]:
+) -> Real | tuple[Real, ...]:
     """Return the dimensionless rebound psi2 of spheres, a float or an array of the inputs' shape.
 
-    The model is the paper's in its continuum limit: elastic Hertz contact, Coulomb friction. Up to
-    chi = 2.5, which covers all spheres except those with a dense core, psi2 is tabulated to 1e-9,
-    at about 0.1 us per impact in a large array. Above, impacts are solved, at about 2 ms each.
+    The model is the paper's in its continuum limit: Hertz contact, Coulomb friction. Elastic
+    impacts are tabulated to 1e-9 up to chi = 2.5, which covers all spheres except those with a
+    dense core. With a restitution below 1 the bodies lose in shear as they lose in pressure, and
+    psi2 is tabulated for chi from 0.3 to 3. An impact takes about 0.1 us in a large array, and 0.5
+    us with a restitution of its own. Out of the tables impacts are followed, at about 2 ms each.
     ``contactlab.Simulation`` gives everything else.
 
     Parameters
@@ -89,19 +101,18 @@ def rebound(
         Eq. (38), broadcast against ``psi1``; positive, at most 1e4.
     tolerance : float
         Largest error over max(1, abs(psi1)), from 1e-9. Answers with
-        restitution 1 are within 1e-9 at any tolerance.
+        restitution 1 are within 1e-9 at any tolerance; below 1 it has no effect.
     derivatives : bool
-        Return d psi2/d psi1 and d psi2/d chi too, for chi up to 2.5. Both are tabulated to 1e-6 at
-        any tolerance (5e-5 for psi1 just above 1, chi 1.83 to 1.92).
+        Return d psi2/d psi1 and d psi2/d chi too, and with ``restitution`` d psi2/d e. Elastic
+        ones are tabulated up to chi = 2.5, to 1e-6 (5e-5 for psi1 just above 1, chi 1.83 to 1.92);
+        with a restitution below 1 they are tabulated for chi from 0.3 to 3, to 0.01.
     restitution : float or array_like
-        e of the normal motion, from 0.01 to 1, broadcast against ``psi1``. Below 1 the law is
-        Tsuji's (``normal.tsuji``) with Coulomb's law at every point, and ``tolerance`` has no
-        effect. For chi from 0.8 to 1.8 and e from 0.5 a table holds psi2 to 1e-3, whether all
-        impacts have one e or each its own; elsewhere up to chi = 10 rings give psi2 to 4e-3, in
-        three to seven milliseconds per impact of an array, 50 alone; beyond, annuli answer,
-        with an error that is not declared. The choice of law is a model error: at the same e other
-        laws differ in psi2, for chi up to 1.8 at e = 0.9 the viscoelastic law by up to 0.021, Hunt
-        and Crossley's by 0.11, a linear spring by 0.62.
+        e of the normal motion, from 0 (clay) to 1, broadcast against ``psi1``. Below 1 the law is
+        ``normal.viscoelastic``: one relaxation time for pressure and shear. In the table psi2 holds
+        to 5e-5 up to chi = 2, and to 1.5e-4 up to 3. Below chi = 0.3 springs give psi2 to 5e-5,
+        above 3 to 3e-4 sqrt(chi/3). Impacts that slip throughout, psi1 >= max(1, 2 chi (1 + e) -
+        e), and those of e = 0, are exact. Loss by yield, and in shear alone, is not in this law:
+        its size as a model error is ``contactlab guide theory-loss``.
 
     Returns
     -------
@@ -109,8 +120,9 @@ def rebound(
         Tangential velocity of the contact after the impact, scaled and signed as ``psi1``: if
         psi1 and psi2 differ in sign, the slip velocity is reversed. Odd in psi1 to the last bit. A
         float if psi1 and chi are scalars. With ``derivatives`` a tuple (psi2, d psi2/d psi1,
-        d psi2/d chi). Other impacts in an array change an answer by less than 1e-10. Arrays are
-        float64 and new; inputs of other types are converted.
+        d psi2/d chi), and d psi2/d e after them if ``restitution`` is given. Other impacts in an
+        array change an answer by less than 1e-10. Arrays are float64 and new; inputs of other types
+        are converted.
 
     Raises
     ------
@@ -118,8 +130,8 @@ def rebound(
         For bad input, with the argument, its value, the index of the first bad number, the rule
         and the remedy.
     ValueError, PluginError
-        If ``tangential.fronts``, or ``normal.tsuji`` below a restitution of 1, is blocked or cannot
-        be imported.
+        If ``tangential.fronts``, or ``normal.viscoelastic`` below a restitution of 1, is blocked or
+        cannot be imported.
     ImpactError
         If an impact cannot be solved; no such impact has been found.
 
@@ -132,13 +144,13 @@ def rebound(
     >>> round(rebound(1.2, 49 / 34), 6)
     -0.180519
     """
-    if (
-        not derivatives
-        and (restitution is ELASTIC or (type(restitution) is float and restitution == 1.0))
-        and (tolerance is USUAL or (isinstance(tolerance, float) and TABULATED < tolerance < 1.0))
-        and _in_table(psi1, chi)
-    ):
-        return _table("tangential")(psi1, chi)  # type: ignore[no-any-return]
+    usual = tolerance is USUAL or (isinstance(tolerance, float) and TABULATED < tolerance < 1.0)
+    if usual and not derivatives:
+        if restitution is ELASTIC or (type(restitution) is float and restitution == 1.0):
+            if _within(psi1, chi, *ELASTIC_CHI):
+                return _table("tangential")(psi1, chi)  # type: ignore[no-any-return]
+        elif _below_one(restitution, psi1) and _within(psi1, chi, *RESTITUTED_CHI):
+            return _by_table(psi1, chi, restitution)
     incidence = real(
         "psi1",
         psi1,
@@ -158,52 +170,85 @@ def rebound(
     if not isinstance(aim, float):
         raise refuse("tolerance", tolerance, "must be one number", "leave it out for 1e-5")
     e = real("restitution", restitution, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
+    three = derivatives and restitution is not ELASTIC
     velocity, ratio = paired("psi1", "chi", (incidence, inertia))
     if not isinstance(e, float):
         velocity, each = paired("psi1", "restitution", (velocity, e))
         velocity, ratio = paired("psi1", "chi", (velocity, ratio))
-    if derivatives and np.any(e != 1.0):
-        remedy = "take differences of psi2, or leave one of the two out"
-        raise refuse("derivatives", derivatives, "are available for restitution = 1 only", remedy)
     flat, ratios = velocity.ravel(), ratio.ravel()
     if not flat.size:
-        nothing = (np.empty(velocity.shape), np.empty(velocity.shape), np.empty(velocity.shape))
+        count = 1 + (2 + three) * derivatives
+        nothing = tuple(np.empty(velocity.shape) for _ in range(count))
         return nothing if derivatives else nothing[0]
     if not isinstance(e, float):
-        psi2 = _each(flat, ratios, np.broadcast_to(each, velocity.shape).ravel(), aim)
+        e = np.broadcast_to(each, velocity.shape).ravel()
+        psi2 = _each(flat, ratios, e, aim)
     elif e != 1.0:
-        psi2 = _damped(flat, ratios, e)
+        psi2 = np.asarray(_table("normal")(flat, ratios, e))
     else:
         psi2 = _solve(flat, ratios, aim)
-    psi2 = psi2.reshape(velocity.shape)
-    answer = float(psi2) if psi2.ndim == 0 else psi2
-    if not derivatives:
-        return answer
-    if not (ratios <= TABULATED_CHI).all():
-        rule = f"derivatives are tabulated up to chi = {TABULATED_CHI}"
-        raise refuse("chi", float(ratios.max()), rule, "take differences of psi2 beyond")
-    _, by_psi1, by_chi = _table("tangential")(velocity, ratio, derivatives=True)
-    if psi2.ndim == 0:
-        return answer, float(by_psi1), float(by_chi)
-    return answer, by_psi1, by_chi
+    slopes = _slopes(flat, ratios, e if three else None) if derivatives else ()
+    answers = tuple(each.reshape(velocity.shape) for each in (psi2, *slopes))
+    if not velocity.ndim:
+        answers = tuple(float(each) for each in answers)
+    return answers if derivatives else answers[0]
 
 
-def _in_table(psi1: Any, chi: Any) -> bool:
-    """Return whether arguments are two floats or two equal arrays of floats in the table's range.
+def _slopes(psi1: Array, chi: Array, restitution: Real | None) -> tuple[Array, ...]:
+    """Return d psi2/d psi1, d psi2/d chi, and d psi2/d e unless the restitution is left out."""
+    if restitution is None:
+        _tabulated(chi, *ELASTIC_CHI)
+        return _table("tangential")(psi1, chi, derivatives=True)[1:]  # type: ignore[no-any-return]
+    _tabulated(chi, *RESTITUTED_CHI)
+    _tabulated(chi[np.broadcast_to(np.equal(restitution, 1.0), chi.shape)], *ELASTIC_CHI)
+    return _table("normal")(psi1, chi, restitution, derivatives=True)[1:]  # type: ignore[no-any-return]
+
+
+def _tabulated(chi: Array, low: float, high: float) -> None:
+    """Refuse chi out of the range of a table of derivatives."""
+    out = chi[(chi < low) | (chi > high)]
+    if out.size:
+        least = f"from {low} " if low > ELASTIC_CHI[0] else ""
+        rule = f"derivatives are tabulated {least}up to chi = {high}"
+        raise refuse("chi", float(out[0]), rule, "take differences of psi2 beyond")
+
+
+def _by_table(psi1: Any, chi: Any, restitution: Real) -> Any:
+    """Return psi2 of checked floats or arrays in the table of restitutions."""
+    table = _table("normal")
+    if isinstance(psi1, float):
+        return table(float(psi1), float(chi), restitution)  # NumPy's floats are slow
+    e = restitution if isinstance(restitution, float) else restitution.ravel()
+    return table(psi1.ravel(), chi.ravel(), e).reshape(psi1.shape)
+
+
+def _below_one(restitution: Any, psi1: Any) -> bool:
+    """Return whether a restitution is a float from 0 to 1, 1 excluded, or an array like psi1."""
+    if type(restitution) is float:
+        return 0.0 <= restitution < 1.0
+    if not type(restitution) is type(psi1) is np.ndarray or restitution.shape != psi1.shape:
+        return False
+    if restitution.dtype != np.float64 or not restitution.size:
+        return False
+    return bool(restitution.min() >= 0.0 and restitution.max() < 1.0)
+
+
+def _within(psi1: Any, chi: Any, low: float, high: float) -> bool:
+    """Return whether arguments are two floats or two equal arrays of floats, chi in a range.
 
     A quick look: arguments of other kinds, and bad ones, are False.
     """
     if isinstance(psi1, float):
-        return isinstance(chi, float) and -math.inf < psi1 < math.inf and 0.0 < chi <= TABULATED_CHI
+        return isinstance(chi, float) and -math.inf < psi1 < math.inf and low <= chi <= high
     if not type(psi1) is type(chi) is np.ndarray or psi1.shape != chi.shape or not psi1.ndim:
         return False
     if not psi1.dtype == chi.dtype == np.float64 or not psi1.size:
         return False
     if psi1.size > FEW_NUMBERS:  # comparisons with NaN are False
-        inside = chi.min() > 0.0 and chi.max() <= TABULATED_CHI
+        inside = chi.min() >= low and chi.max() <= high
         return bool(inside and -math.inf < psi1.min() and psi1.max() < math.inf)
     speeds, ratios = psi1.ravel().tolist(), chi.ravel().tolist()
-    return all(map(math.isfinite, speeds)) and all(0.0 < one <= TABULATED_CHI for one in ratios)
+    return all(map(math.isfinite, speeds)) and all(low <= one <= high for one in ratios)
 
 
 def _parted(
@@ -231,33 +276,10 @@ def _each(psi1: Array, chi: Array, restitution: Array, tolerance: float) -> Arra
     def elastic(psi1: Array, chi: Array, _: Array) -> Array:
         return _solve(psi1, chi, tolerance)
 
-    return _parted(restitution == 1.0, elastic, _damped, psi1, chi, restitution)
+    return _parted(restitution == 1.0, elastic, _table("normal"), psi1, chi, restitution)
 
 
-def _damped(psi1: Array, chi: Array, restitution: Real) -> Array:
-    """Return psi2, shape (impacts,), under Tsuji's law; by annuli beyond the largest chi."""
-    table = _table("normal")
-    if not (chi > DAMPED_LARGEST_CHI).any():
-        return np.asarray(table(psi1, chi, restitution=restitution))
-
-    def tabulated(psi1: Array, chi: Array, each: Array) -> Any:
-        return table(psi1, chi, restitution=each)
-
-    each = np.array(np.broadcast_to(restitution, psi1.shape))
-    return _parted(chi <= DAMPED_LARGEST_CHI, tabulated, _annuli, psi1, chi, each)
-
-
-def _annuli(psi1: Array, chi: Array, restitution: Array) -> Array:
-    """Return psi2, shape (impacts,), under Tsuji's law by annuli, for one e after another."""
-    psi2 = np.empty_like(psi1)
-    for value in np.unique(restitution).tolist():
-        part = restitution == value
-        change = _change(damped(value), psi1[part], chi[part])
-        psi2[part] = np.copysign(1.0, psi1[part]) * (np.abs(psi1[part]) + change)
-    return psi2
-
-
-def damped(restitution: float) -> Simulation:
+def laws_of(restitution: float) -> Simulation:
     """Return the laws for a restitution below 1: ``composition.RESTITUTION``, in fixed steps.
 
     Where friction changes the approach, others stand in for all but the normal law.
@@ -268,17 +290,18 @@ def damped(restitution: float) -> Simulation:
     tangential = composition.law("tangential", composition.RESTITUTION["tangential"])
     laws = composition.compose(
         composition.law("normal", composition.RESTITUTION["normal"], restitution=restitution),
-        attrs.evolve(tangential, **{str(tangential.resolution): ANNULI}),
-        composition.fixed_steps(4 * ANNULI),
+        attrs.evolve(tangential, **{str(tangential.resolution): SPRINGS}),
+        composition.fixed_steps(4 * SPRINGS),
     )
     return Simulation.of(laws.changed(named=frozenset({"normal"})))
 
 
-def damped_error(chi: Real, restitution: Real) -> Any:
-    """Return the bound of the error of psi2 below a restitution of 1; NaN if not measured."""
-    inside = (chi >= DAMPED_CHI[0]) & (chi <= DAMPED_CHI[1]) & (restitution >= DAMPED_RESTITUTION)
-    measured = np.asarray(chi) <= DAMPED_LARGEST_CHI
-    return np.where(inside, DAMPED_ERROR, np.where(measured, BEYOND_ERROR, np.nan))
+def restituted_error(chi: Real, restitution: Real) -> Any:
+    """Return the bound of the error of psi2 below a restitution of 1; 0 at e = 0."""
+    far = BEYOND_ERROR * np.sqrt(np.asarray(chi) / RESTITUTED_CHI[1])
+    wide = np.where(chi <= RESTITUTED_CHI[1], WIDER_ERROR, far)
+    near = np.where(np.asarray(chi) <= NEARER, RESTITUTED_ERROR, wide)
+    return np.where(np.equal(restitution, 0.0), 0.0, near)
 
 
 def _table(kind: str) -> Callable[..., Any]:

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from contactlab.compose.collision_plan import by_rebound
 from contactlab.compose.normal_spin_words import with_normal_spin
-from contactlab.compose.rebound import damped
+from contactlab.compose.rebound import laws_of
 from contactlab.compose.simulation import Simulation
+from contactlab.contracts.restitution import LEAST_RESTITUTION
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 from contactlab.outcome.motion import Motion
@@ -21,7 +22,7 @@ from contactlab.outcome.result import ImpactResult
 Array = NDArray[np.float64]
 
 #: Different restitutions beyond which a plan has one statement, and the cautions of the least, for
-#: all damped impacts.
+#: all impacts with loss.
 MOST_STATEMENTS = 20
 
 
@@ -70,13 +71,13 @@ def _of_groups(scene: Scene, restitution: Any) -> Plan:
 
 def _planned(scene: Scene, restitution: float, each: Real) -> Plan:
     """Return the plan of impacts, with the cautions of one restitution and the errors of each."""
-    plan = _simulation(restitution).plan(scene)
+    plan = _simulation(max(restitution, LEAST_RESTITUTION)).plan(scene)
     return plan if restitution == 1.0 else by_rebound(plan, scene.chi, each)
 
 
 def _simulation(restitution: float) -> Simulation:
     """Return laws with the answers of ``contactlab.rebound``."""
-    return Simulation() if restitution == 1.0 else damped(restitution)
+    return Simulation() if restitution == 1.0 else laws_of(restitution)
 
 
 def _alike(restitution: Any) -> list[tuple[Any, float]]:

@@ -9,16 +9,16 @@ import numpy as np
 
 from contactlab.numeric.checks import Rule, quantity, refuse
 
-#: Least coefficient of restitution: below it no law of dissipation is meaningful.
+#: Least coefficient of restitution of a law of dissipation.
 LEAST_RESTITUTION = 0.01
 RESTITUTION = Rule(
     lambda value: np.ndim(value) == 0 and LEAST_RESTITUTION <= value <= 1.0,
     f"must be one number from {LEAST_RESTITUTION} to 1: rebound over approach velocity",
 )
-#: The rule of a coefficient for each impact.
+#: The rule of a coefficient for each impact, without a law.
 RESTITUTIONS = Rule(
-    lambda value: (value >= LEAST_RESTITUTION) & (value <= 1.0),
-    f"must be from {LEAST_RESTITUTION} to 1: rebound over approach velocity",
+    lambda value: (value >= 0.0) & (value <= 1.0),
+    "must be from 0 to 1: rebound over approach velocity",
 )
 
 

@@ -86,10 +86,11 @@ class Tabulated(ABC):
         Parameters
         ----------
         *impact : float or array
-            psi1 and chi: checked numbers of one shape within the range of the law.
+            psi1 and chi: checked numbers of one shape within the range of the law; of a law that
+            takes them, restitutions from 0 to 1, 1 excluded: a float, or an array of that shape.
         **options
-            ``restitution`` of a damped law, below 1, a float or an array of that shape;
-            ``derivatives`` of an elastic law: True for (psi2, d psi2/d psi1, d psi2/d chi).
+            ``derivatives``: True for (psi2, d psi2/d psi1, d psi2/d chi), and d psi2/d e after
+            them of a law that takes restitutions; arrays only.
         """
 
 

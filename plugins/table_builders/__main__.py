@@ -12,14 +12,15 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m table_builders", description=__doc__)
     tables = parser.add_subparsers(dest="table", required=True)
     elastic = tables.add_parser("elastic", help="the elastic rebound")
-    damped = tables.add_parser("damped", help="the rebound with a restitution, by Tsuji's law")
+    restituted = tables.add_parser("restituted", help="the rebound with a restitution")
     unlike = tables.add_parser("coupling", help="the size of elastic coupling of unlike bodies")
     built = unlike.add_subparsers(dest="command", required=True)
     built.add_parser("build", help="build the table: four minutes of processor time")
-    commands = {}
-    for table, count in ((elastic, 10_000), (damped, 480)):
+    sizes = tables.add_parser("differences", help="the sizes in cautions of laws of equal e")
+    measured = sizes.add_subparsers(dest="command", required=True)
+    measured.add_parser("build", help="measure springs and normal laws: minutes")
+    for table, count in ((elastic, 10_000), (restituted, 1_000)):
         these = table.add_subparsers(dest="command", required=True)
-        commands[table] = these
         building = these.add_parser("build", help="build the table: minutes")
         verifying = these.add_parser("verify", help="compare with fresh impacts")
         verifying.add_argument("--count", type=int, default=count, help=f"impacts ({count})")
@@ -28,7 +29,6 @@ def main() -> int:
         if table is elastic:
             these.add_parser("thin", help="write it, thinned, into the kernels for games")
             _options(building, verifying)
-    commands[damped].add_parser("differences", help="measure springs and normal laws: minutes")
     asked = parser.parse_args()
     if asked.table == "coupling":
         from contactlab.impact.coupling import FILE
@@ -36,7 +36,12 @@ def main() -> int:
 
         build(FILE)
         return 0
-    return (_elastic if asked.table == "elastic" else _damped)(asked)
+    if asked.table == "differences":
+        from table_builders.differences.build import write
+
+        write()
+        return 0
+    return (_elastic if asked.table == "elastic" else _restituted)(asked)
 
 
 def _options(building: argparse.ArgumentParser, verifying: argparse.ArgumentParser) -> None:
@@ -92,20 +97,15 @@ def _elastic(asked: argparse.Namespace) -> int:
     return 0 if rows[-1].largest <= asked.bound else 1
 
 
-def _damped(asked: argparse.Namespace) -> int:
-    from contactlab_laws.tables.damped import SHIPPED
+def _restituted(asked: argparse.Namespace) -> int:
+    from contactlab_laws.tables.restituted import SHIPPED
 
     if asked.command == "build":
-        from table_builders.damped.build import build
+        from table_builders.restituted.build import build
 
         build(SHIPPED)
         return 0
-    if asked.command == "differences":
-        from table_builders.damped import differences
-
-        differences.write()
-        return 0
-    from table_builders.damped.checks import bench, verify
+    from table_builders.restituted.checks import bench, verify
 
     return verify(asked.count, asked.seed) if asked.command == "verify" else bench()
 

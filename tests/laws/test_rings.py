@@ -5,9 +5,9 @@ import pytest
 from scipy.integrate import quad
 
 import contactlab
-from contactlab_laws.halfspace.axisymmetric import rebound
 from contactlab_laws.halfspace.rings import rings, settle
 from tests.laws import other_march
+from tests.laws.by_rings import rebound
 from tests.laws.other_march import motion
 
 CHI = 49 / 34

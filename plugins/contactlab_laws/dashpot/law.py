@@ -10,7 +10,6 @@ from contactlab.contracts import (
     ClosedFormMotion,
     ClosedFormNormalLaw,
     NormalContact,
-    Tabulated,
     without_tension,
 )
 from contactlab.contracts.restitution import restitution
@@ -41,7 +40,7 @@ def pressed(parts: Parts, approach: Real, rate: Real, powers: tuple[float, float
 
 
 @attrs.frozen(kw_only=True)
-class Tsuji(OfRestitution, ClosedFormNormalLaw, Tabulated):
+class Tsuji(OfRestitution, ClosedFormNormalLaw):
     """Hertz's spring with a dashpot that gives the same restitution at any speed.
 
     P = k z^1.5 + 2 beta sqrt(1.25 M k) z^0.25 z', k = (4/3) E* sqrt(R), in N, positive in
@@ -87,13 +86,6 @@ class Tsuji(OfRestitution, ClosedFormNormalLaw, Tabulated):
             return HertzMotion.of(self, scene)
         scaled = ScaledMotion(damping_of(self.restitution), 1.25)
         return DashpotMotion.of(self, scene, scaled, hertz_scales(scene).approach)
-
-    @staticmethod
-    def rebound(*impact: Any, **options: Any) -> Any:
-        """Return psi2 with Coulomb's law at every point, for chi up to 10."""
-        from contactlab_laws.tables import damped  # not for a normal motion
-
-        return damped.rebound(*impact, **options)
 
 
 @attrs.frozen(kw_only=True)

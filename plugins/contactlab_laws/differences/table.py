@@ -1,4 +1,4 @@
-"""Cautions with sizes from ``differences.csv``, which ``table_builders.damped`` measures."""
+"""Cautions with sizes from ``differences.csv``, which ``table_builders.differences`` measures."""
 
 from __future__ import annotations
 

@@ -5,16 +5,13 @@ This is the paper's axisymmetric problem with Coulomb's law at every point. Scal
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-from contactlab.contracts import NormalMotion
 from contactlab_laws.halfspace.basis import basis
 from contactlab_laws.halfspace.hemispheres import Array
-from contactlab_laws.halfspace.instants import Instants, instants
+from contactlab_laws.halfspace.instants import Instants
 from contactlab_laws.halfspace.march import Followed
 from contactlab_laws.halfspace.rings import Rings, rings, settle
 from contactlab_laws.halfspace.slips import begun, moved, rest
@@ -104,29 +101,3 @@ def follow_all(
     impulse = np.broadcast_to(course.impulse, shares.shape)
     works, residual = 6.0 * chi * stiffness * work, np.zeros(impacts)
     return Followed(change, shares, impulse, works, residual, kept)
-
-
-def rebound(
-    motions: Sequence[NormalMotion], which: NDArray[np.intp], psi1: Array, chi: Array, count: int
-) -> Array:
-    """Return psi2, extrapolated from ``count`` rings and half as many, shape (impacts,).
-
-    Parameters
-    ----------
-    motions : sequence of NormalMotion
-        Motions of one impact, which in units of their own are those of many.
-    which : array of int, shape (impacts,)
-        The motion of each impact.
-    psi1, chi : array, shape (impacts,)
-    count : int
-        Rings, an even number.
-    """
-    changes = []
-    for number in (count, count // 2):
-        paths = [instants(motion, number, STEPS) for motion in motions]
-        path = paths[0]
-        if len(paths) > 1:
-            both = zip(*(each[3:] for each in paths), strict=True)
-            path = Instants(*path[:3], *map(np.hstack, both)).take(which)
-        changes.append(follow_all(number, path, psi1, chi, np.ones(psi1.shape)).change[-1])
-    return np.asarray(psi1 + changes[0] + (changes[0] - changes[1]) / 3.0)

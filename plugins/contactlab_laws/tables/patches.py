@@ -1,7 +1,7 @@
-"""The evaluator of tables: a polynomial of two coordinates on each patch.
+"""The evaluator of tables: a polynomial of two or three coordinates on each patch.
 
-A patch is a polynomial by powers of (a, b) less an origin of its own. Which patch a place is in,
-and its coordinates there, the table knows.
+A patch is a polynomial by powers of its coordinates less an origin of its own. Which patch a place
+is in, and its coordinates there, the table knows.
 """
 
 from __future__ import annotations
@@ -32,42 +32,48 @@ class Patches:
 
     Attributes
     ----------
-    origins : array, shape (2, patches)
-    terms : array, shape (patches, n, m)
-        By powers of a (rows) and b; 0 where they are left out.
+    origins : array, shape (coordinates, patches)
+    terms : array, shape (patches, n, m) or (patches, n, m, l)
+        By powers of a (rows), b and c; 0 where they are left out.
     needed : list of list of int
-        Powers of a and of b that are left in each patch.
+        Powers of a that are left in each patch, and products of powers of the others.
     """
 
     origins: Array
     terms: Array
     needed: list[list[int]]
 
-    def values(self, patch: Numbers, a: Array, b: Array) -> Array:
-        """Return the values at places, shape (places,)."""
-        return self._sorted(patch, a, b) if patch.size >= FEW else self._gathered(patch, a, b)
+    @cached_property
+    def table(self) -> Array:
+        """The terms as matrices, shape (patches, n, products of powers of the others)."""
+        return self.terms.reshape(*self.terms.shape[:2], -1)
 
-    def _sorted(self, patch: Numbers, a: Array, b: Array) -> Array:
+    def values(self, patch: Numbers, a: Array, *others: Array) -> Array:
+        """Return the values at places, shape (places,)."""
+        by = self._sorted if patch.size >= FEW else self._gathered
+        return by(patch, a, *others)
+
+    def _sorted(self, patch: Numbers, *at: Array) -> Array:
         """Return values, patch by patch: a product for each, the rest for whole stretches."""
         order = np.argsort(patch, kind="stable")
         counts = np.bincount(patch, minlength=len(self.terms))
         stops = counts.cumsum()
-        origin_a, origin_b = (np.repeat(origin, counts) for origin in self.origins)
-        g = np.empty_like(a)
+        origins = [np.repeat(origin, counts) for origin in self.origins]
+        g = np.empty_like(at[0])
         # room for all stretches: new memory for each would take longer than the rest
-        room = np.empty((2, max(self.terms.shape[1:]), min(STRETCH, g.size)), a.dtype)
+        room = np.empty((2, max(self.table.shape[1:]), min(STRETCH, g.size)), g.dtype)
         for first in range(0, g.size, STRETCH):
             stretch = slice(first, first + STRETCH)
             who = order[stretch]
-            x, y = a[who], b[who]
-            x -= origin_a[stretch]
-            y -= origin_b[stretch]
+            x, *others = (each[who] for each in at)
+            for each, origin in zip((x, *others), origins, strict=True):
+                each -= origin[stretch]
             run = slice(patch[who[0]], patch[who[-1]] + 1)
             rows, columns = (max(needed[run]) for needed in self.needed)
-            y_powers, sums = powers(y, room[0, :columns, : x.size]), room[1, :rows, : x.size]
-            start = 0
+            y_powers = self._products(others, room[0, :columns, : x.size])
+            sums, start = room[1, :rows, : x.size], 0
             for terms, stop in zip(
-                self.terms[run, :rows, :columns],
+                self.table[run, :rows, :columns],
                 np.minimum(stops[run] - first, x.size).tolist(),
                 strict=True,
             ):
@@ -77,36 +83,57 @@ class Patches:
             g[who] = _horner(sums, x)
         return g
 
-    def _gathered(self, patch: Numbers, a: Array, b: Array) -> Array:
+    def _products(self, others: Sequence[Array], out: Array) -> Array:
+        """Return the products of powers of the coordinates but the first, in ``out``."""
+        if len(others) == 1:
+            return powers(others[0], out)
+        shape = *self.terms.shape[2:], others[0].size
+        y, z = (
+            powers(each, np.empty((count, each.size), each.dtype))
+            for each, count in zip(others, shape[:2], strict=True)
+        )
+        np.multiply(y[:, None], z, out=out.reshape(shape))
+        return out
+
+    def _gathered(self, patch: Numbers, *at: Array) -> Array:
         """Return values at places in any order."""
-        at = np.concatenate((a, b))
-        at -= self.origins.take(patch, axis=1).reshape(-1)
-        rows, columns = self.terms.shape[1:]
-        room = np.empty((max(rows, columns), at.size), at.dtype)
-        x_powers, y_powers = powers(at, room).reshape(-1, 2, a.size).swapaxes(0, 1)
-        y_powers = y_powers[:columns].T.copy()[..., None]
-        sums = np.empty((a.size, rows, 1), at.dtype)
-        for first in range(0, a.size, GATHERED):
+        local = np.stack(at)
+        local -= self.origins.take(patch, axis=1)
+        (rows, columns), size = self.table.shape[1:], patch.size
+        x_powers = powers(local[0], np.empty((rows, size), local.dtype))
+        y_powers = self._products(local[1:], np.empty((columns, size), local.dtype))
+        y_powers = y_powers.T.copy()[..., None]
+        sums = np.empty((size, rows, 1), local.dtype)
+        for first in range(0, size, GATHERED):
             part = slice(first, first + GATHERED)
-            np.matmul(self.terms.take(patch[part], axis=0), y_powers[part], out=sums[part])
-        return np.asarray(np.einsum("nk,kn->n", sums[..., 0], x_powers[:rows]))
+            np.matmul(self.table.take(patch[part], axis=0), y_powers[part], out=sums[part])
+        return np.asarray(np.einsum("nk,kn->n", sums[..., 0], x_powers))
 
     @cached_property
     def single(self) -> list[Callable[[float, float], float]]:
         """The value of each patch as a function of plain floats a and b."""
         single: list[Callable[[float, float], float]] = []
-        single += (_Rows(self, patch, single) for patch in range(len(self.terms)))
+        for patch, (origin, terms) in enumerate(zip(self.origins.T, self.terms, strict=True)):
+            rows, columns = (needed[patch] for needed in self.needed)
+            single.append(Single(origin, terms[:rows, :columns], single, patch))
         return single
 
 
-class _Rows:
-    """A patch in plain numbers, until it is worth compiling."""
+class Single:
+    """A patch of two coordinates in plain numbers, until it is worth compiling.
 
-    def __init__(self, patches: Patches, patch: int, all_of_them: list[Any]) -> None:
-        rows, columns = (needed[patch] for needed in patches.needed)
-        self.left, self.low = patches.origins[:, patch].tolist()
-        # rows and terms from the highest power down
-        self.rows = patches.terms[patch, rows - 1 :: -1, columns - 1 :: -1].tolist()
+    Parameters
+    ----------
+    origin : array, shape (2,)
+    terms : array, shape (n, m)
+    all_of_them : list or dict
+        Where it stands at ``patch``, and where its compiled form will.
+    patch : int
+    """
+
+    def __init__(self, origin: Array, terms: Array, all_of_them: Any, patch: int) -> None:
+        self.left, self.low = origin.tolist()
+        self.rows = terms[::-1, ::-1].tolist()  # from the highest power down
         self.patch, self.all_of_them, self.calls = patch, all_of_them, 0
 
     def __call__(self, a: float, b: float) -> float:

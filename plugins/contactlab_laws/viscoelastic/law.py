@@ -6,7 +6,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import attrs
 
-from contactlab.contracts import NormalContact, NormalLaw, without_tension
+from contactlab.contracts import NormalContact, NormalLaw, Tabulated, without_tension
 from contactlab.contracts.restitution import one_of_two, restitution
 from contactlab.impact.hertz import hertz_scales, hertz_stiffness
 from contactlab.impact.scene import Scene
@@ -26,7 +26,7 @@ class Parts(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class Viscoelastic(NormalLaw):
+class Viscoelastic(NormalLaw, Tabulated):
     """A contact of Kelvin-Voigt bodies, whose loss in shear springs share.
 
     In loading P = k z^0.5 (z + 1.5 A z') over b² = R z, k = (4/3) E* sqrt(R), P in N, positive in
@@ -86,3 +86,10 @@ class Viscoelastic(NormalLaw):
         edge = edge * (edge > 0.0)
         force = state.stiffness * edge**0.5 * (1.5 * (inside + lead) - 0.5 * edge)
         return without_tension(force, (state.radius * edge) ** 0.5, approach), state
+
+    @staticmethod
+    def rebound(*impact: Any, **options: Any) -> Any:
+        """Return psi2 with the same loss in shear, by the table or by springs."""
+        from contactlab_laws.viscoelastic.rebound import rebound  # not for a normal motion
+
+        return rebound(*impact, **options)

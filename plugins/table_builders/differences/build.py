@@ -1,6 +1,6 @@
 """Differences of psi2: of springs from Coulomb's law, of normal laws from Tsuji's.
 
-``python -m table_builders damped differences`` writes ``differences.csv`` of the package
+``python -m table_builders differences build`` writes ``differences.csv`` of the package
 ``contactlab_laws.differences``: minutes.
 """
 
@@ -21,7 +21,6 @@ from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.scene import Scene
 from contactlab_laws.differences.table import FILE, NODES, key
 from contactlab_laws.tables.patches import Array
-from table_builders.damped.build import by_half_space
 
 #: The impacts of the choice of a law: least and number of psi1, up to slip throughout and 1 more,
 #: at each chi; as many again in ``NARROW``.
@@ -31,6 +30,8 @@ NARROW = (0.7, 2.0)
 SPEEDS = 40
 #: Springs, extrapolated from this number and half of it, with four steps each.
 SPRINGS = 120
+#: Rings of the half-space.
+RINGS = 96
 #: Laws whose restitution is an option, and its values.
 CALIBRATED = ("tsuji", "hunt_crossley", "kuwabara_kono", "linear", "walton_braun")
 RESTITUTION = (1.0, 0.99, 0.95, 0.9, 0.8, 0.65, 0.5, 0.4, 0.3, 0.2, 0.1)
@@ -66,7 +67,9 @@ def springs(law: NormalLaw, psi1: Array, chi: Array) -> Array:
 
 def pointwise(law: NormalLaw, psi1: Array, chi: Array) -> Array:
     """Return psi2 with Coulomb's law at every point, shape (impacts,), by the half-space."""
-    return by_half_space(normal_motion(law, Scene.nondimensional(psi1=1.0, chi=1.0)), psi1, chi)
+    half_space = REGISTRY.create("tangential.halfspace", angles=1, rings=RINGS)
+    scene = Scene.nondimensional(psi1=psi1, chi=chi)
+    return np.asarray(Simulation(normal=law, tangential=half_space).sweep(scene).check().psi2)
 
 
 @cache

@@ -1,0 +1,74 @@
+"""psi2 with one loss for pressure and shear: by the table, and by springs beyond it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from contactlab.compose.rebound import RESTITUTED_CHI
+from contactlab_laws.tables import restituted
+from contactlab_laws.viscoelastic.batch import rebound as springs_of
+from contactlab_laws.viscoelastic.motion import Array
+from contactlab_laws.viscoelastic.relaxation import number_of
+
+#: Springs and steps up to the largest chi of the table; beyond it as its fourth and square root.
+SPRINGS, STEPS = 100, 800
+#: Below this e psi2 is linear in e to 1e-4: a slower rebound takes more steps than it is worth.
+LEAST = 1e-3
+
+
+def rebound(psi1: Any, chi: Any, restitution: Any, *, derivatives: bool = False) -> Any:
+    """Return psi2, odd in psi1 to the last bit, abs(psi2) <= abs(psi1).
+
+    Parameters
+    ----------
+    psi1, chi, restitution : float, or array of shape (impacts,)
+        Any psi1, chi > 0, and e from 0 to 1, 1 excluded; psi1 and chi both floats or both arrays.
+    derivatives : bool
+        As of ``restituted.rebound``, for arrays in the table.
+    """
+    low, high = RESTITUTED_CHI
+    if isinstance(psi1, float):
+        if low <= chi <= high:
+            return restituted.single(psi1, chi, restitution)
+        return rebound(np.array([psi1]), np.array([chi]), restitution).item()
+    known = (chi >= low) & (chi <= high)
+    if known.all():
+        return restituted.rebound(psi1, chi, restitution, derivatives=derivatives)
+    e = np.broadcast_to(restitution, psi1.shape)
+    psi2 = np.empty_like(psi1)
+    if known.any():
+        own = restitution if isinstance(restitution, float) else e[known]
+        psi2[known] = restituted.rebound(psi1[known], chi[known], own)
+    far = ~known
+    found = beyond(np.abs(psi1[far]), chi[far], e[far])
+    psi2[far] = np.where(psi1[far] < 0.0, -found, found)
+    return psi2
+
+
+def beyond(speed: Array, chi: Array, e: Array) -> Array:
+    """Return psi2 of psi1 = speed >= 0 without the table, shape (impacts,)."""
+    psi2 = restituted.full_slip(speed, chi, e)
+    who = np.flatnonzero(restituted.sticks(speed, chi, e))
+    p, x, own = speed[who], chi[who], e[who]
+    found, share = restituted.without_rebound(p, x), np.minimum(own / LEAST, 1.0)
+    where = np.flatnonzero(own > 0.0)
+    by_springs = _followed(p[where], x[where], np.maximum(own[where], LEAST))
+    found[where] += share[where] * (by_springs - found[where])
+    psi2[who] = np.clip(np.maximum(found, psi2[who]), -p, p)
+    return np.asarray(psi2)
+
+
+def _followed(speed: Array, chi: Array, e: Array) -> Array:
+    """Return psi2 by springs, those together whose chi lie within a factor of two."""
+    psi2 = np.empty_like(speed)
+    octave = np.ceil(np.log2(np.maximum(chi / RESTITUTED_CHI[1], 1.0)))
+    for level in np.unique(octave).tolist():
+        part = octave == level
+        grid = {
+            "springs": round(SPRINGS * 2.0 ** (level / 4)),
+            "steps": 2 * round(STEPS * 2.0 ** (level / 2 - 1)),
+        }
+        psi2[part] = springs_of(speed[part], chi[part], number_of(e[part]), **grid)
+    return psi2
