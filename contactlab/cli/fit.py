@@ -182,9 +182,9 @@ def _simulations(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Si
             simulations[" ".join(told)] = None
             continue
         options = {k: v for k, v in file.laws.options.items() if k.startswith("normal")}
-        choice = LawChoice(
-            normal=own, integrator=arguments.integrator, options=options
-        ).choose(normal=normal, tangential=None if exact else name)
+        choice = LawChoice(normal=own, integrator=arguments.integrator, options=options).choose(
+            normal=normal, tangential=None if exact else name
+        )
         simulations[" ".join(told)] = choice.set(settings).simulation()
     return simulations
 

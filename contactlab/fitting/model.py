@@ -91,7 +91,10 @@ class Model:
     def _together(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
         """Return the quantities, shape (m, n), at points with equal laws, from one batch."""
         many, count = len(points), self.setup.scene.shape[0]
-        setup, restituted = self.setup._replace(scene=self._times(many)), self._restituted(quantities)
+        setup, restituted = (
+            self.setup._replace(scene=self._times(many)),
+            self._restituted(quantities),
+        )
         restitution: Any = None
         for parameter, column in zip(self.parameters, points.T, strict=True):
             each = many > 1 and (parameter.batched or parameter is restituted)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.fitting import tabulated
-from contactlab.fitting.f_test import CHANCE, NUMERICAL
+from contactlab.fitting.f_test import NUMERICAL
 from contactlab.fitting.measurements import Measurements
 from contactlab.fitting.problem import Problem
 
@@ -30,6 +30,8 @@ RADIUS = (1e-6, 0.5)
 RADIANS = 1.58
 #: Possible restitutions with a margin for scatter, and the share outside that is reported.
 BOUNDS, SHARE = {"normal_restitution": (-0.1, 1.1), "slip_restitution": (-1.1, 1.1)}, 1 / 3
+#: A mean restitution lies above or below 1 if scatter makes that with less than this chance.
+DOUBT = 0.01
 #: Additional bounds without spin before the impact.
 WITHOUT_SPIN = {"tangential_restitution": (-0.1, 1.1)}
 
@@ -88,7 +90,9 @@ def restitutions(problem: Problem, table: Measurements) -> list[str]:
         ]
     lossless = laws is None or "elastic_hertz" in laws.normal.offers
     if off < 0.0 and mean > 0.0 and lossless:
-        return [f"{name}: a restitution of {mean:.3g}, under laws that lose nothing: {tabulated.TOO}"]
+        return [
+            f"{name}: a restitution of {mean:.3g}, under laws that lose nothing: {tabulated.TOO}"
+        ]
     return []
 
 
@@ -102,9 +106,9 @@ def _mean(e: Array, error: Array | None) -> tuple[float, float]:
     if error is not None:
         weights = error[present] ** -2.0
         mean = float(np.average(e, weights=weights))
-        reach = float(ndtri(1.0 - CHANCE) / math.sqrt(weights.sum()))
+        reach = float(ndtri(1.0 - DOUBT) / math.sqrt(weights.sum()))
     elif number > 1:
-        reach = float(stdtrit(number - 1, 1.0 - CHANCE) * e.std(ddof=1) / math.sqrt(number))
+        reach = float(stdtrit(number - 1, 1.0 - DOUBT) * e.std(ddof=1) / math.sqrt(number))
     off = mean - 1.0
     return mean, off if abs(off) > max(reach, NUMERICAL) else 0.0
 

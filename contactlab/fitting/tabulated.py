@@ -53,7 +53,8 @@ def with_loss(restitution: float) -> Simulation:
 
 def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
     """Return the impacts of a batch by the table of psi2; friction work is NaN."""
-    laws: Any = simulation or Simulation()
+    lossy = simulation is not None and simulation.normal.viscous
+    laws: Any = simulation if lossy else Simulation()
     course = laws.normal_motion(scene)
     numbers = {
         "duration": course.duration,
@@ -65,11 +66,11 @@ def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
 
     def clauses() -> Words:
         said = (*unit_slips(scene), *laws.normal.cautions(scene, course), *coupling(scene))
-        if simulation is not None:
+        if lossy:
             said += laws.tangential.cautions(scene, course)
         return (), (), tuple(Clause(text, everywhere) for text in said)
 
-    restitution = 1.0 if simulation is None else laws.normal.restitution
+    restitution = laws.normal.restitution if lossy else 1.0
     return _result(scene, restitution, course.final_rate, numbers, clauses)
 
 
