@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-import contactlab
 from contactlab import rebound
 from contactlab.compose.rebound import BEYOND_ERROR, RESTITUTED_ERROR, WIDER_ERROR
 from contactlab_laws.tables import restituted
@@ -253,8 +252,3 @@ def test_the_table_is_finer_springs():
     from table_builders.restituted.checks import verify
 
     assert verify(600, 11) == 0
-
-
-def test_the_plan_of_a_heavy_core_has_its_error():
-    error = contactlab.compose.rebound.restituted_error(np.array([0.2, 2.0, 2.5, 12.0]), 0.9)
-    assert error == pytest.approx([5e-5, 5e-5, 1.5e-4, 6e-4])

@@ -231,8 +231,8 @@ def _together(speed: Array, chi: Array, e: Real) -> Array:
     near = np.asarray(own > JOINED)
     if near.any():
         rows = np.flatnonzero(np.broadcast_to(near, p.shape) & (x <= TABULATED_CHI))
-        own = own if isinstance(own, float) else own[rows]
-        found[rows] += _share(own) * _step(p[rows], x[rows])
+        here = own if isinstance(own, float) else own[rows]
+        found[rows] += _share(here) * _step(p[rows], x[rows])
     if np.any(own == 0.0):
         found = np.where(own == 0.0, without_rebound(p, x), found)
     # no impact gains energy, nor more impulse than full slip gives: not even by an error
