@@ -91,7 +91,7 @@ class Table:
         low = np.array([(0.0, each.low, 0.0) for each in REGIONS])[region]
         width = np.array([(1.0, each.high - each.low, 1.0) for each in REGIONS])[region]
         half = 0.5 * width * 0.5**level
-        origins = low + (2 * place + 1) * half
+        origins: Array = low + (2 * place + 1) * half
         by_powers = terms.astype(np.float64)
         for axis, count in enumerate(NODES):
             matrix = powers_of_chebyshev(count, stretch=1.0, shift=0.0)
@@ -238,12 +238,12 @@ def _together(speed: Array, chi: Array, e: Real) -> Array:
     # no impact gains energy, nor more impulse than full slip gives: not even by an error
     found = np.maximum(found, psi2[who])
     psi2[who] = np.clip(found, -p, p)
-    return psi2
+    return np.asarray(psi2)
 
 
-def full_slip(speed: Any, chi: Any, e: Any) -> Any:
+def full_slip(speed: Array, chi: Array, e: Real) -> Array:
     """Return psi2 of slip throughout."""
-    return speed - 2.0 * chi * (1.0 + e)
+    return np.asarray(speed - 2.0 * chi * (1.0 + e))
 
 
 def sticks(speed: Any, chi: Any, e: Any) -> Any:
@@ -323,10 +323,10 @@ def _plain() -> tuple[list[int], list[list[int]], list[int]]:
 def single(psi1: float, chi: float, e: float) -> float:
     """Return psi2 of one impact, in plain floats."""
     speed = abs(psi1)
-    least = full_slip(speed, chi, e)
+    least = speed - 2.0 * chi * (1.0 + e)
     end = border(chi, e)
     if speed >= 1.0 and speed >= end:
-        return float(least if psi1 >= 0.0 else -least)
+        return least if psi1 >= 0.0 else -least
     if e == 0.0:
         psi2 = (1.0 - 2.0 * chi) * speed ** (1.0 / (1.0 - 2.0 * chi)) if chi < 0.5 else 0.0
     else:

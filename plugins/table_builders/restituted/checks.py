@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from typing import Any
 
 import numpy as np
 
@@ -28,7 +29,7 @@ def verify(count: int, seed: int) -> int:
     draw, good = np.random.default_rng(seed), True
     size = max(count // DRAWS // len(REGIONS), 1)
     for region in REGIONS:
-        rows = []
+        rows: list[Any] = []
         for number in range(DRAWS):
             e = draw.uniform(0.001, 0.99)
             if number % 3 == 0:
