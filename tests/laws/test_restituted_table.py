@@ -180,8 +180,6 @@ def test_the_join_moves_psi2_by_the_error_of_the_table():
     assert above == pytest.approx(here, abs=2e-8)
     size, error = np.abs(psi1), np.where(chi <= 2.0, RESTITUTED_ERROR, WIDER_ERROR)
     who = size < np.maximum(1.0, 4.0 * chi - 1.0) - 1e-9
-    table = restituted.section(1.0)
-    assert table.patches.terms.shape[1:] == restituted.NODES[:2]
     off = np.abs(restituted._step(size[who], chi[who]))
     assert (off <= error[who]).all()
 
