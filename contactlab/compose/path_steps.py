@@ -128,7 +128,9 @@ def _steps(
     for blamed.step, (by, speed, time, place, after) in enumerate(rows, 1):
         # The force acts on no body: the path is prescribed.
         # A path without times is slow: rates say nothing.
-        sampled = Sampled(*place, speed, 0.0 * speed, 0.0 * speed) if np.any(time) else None
+        sampled = (
+            Sampled(place[0], place[1], speed, 0.0 * speed, 0.0 * speed) if np.any(time) else None
+        )
         moved_by = locked(by), locked(speed)
         yield Increment(*moved_by, after.friction_load, 0.0 * time, time, sampled), after
 

@@ -289,7 +289,7 @@ def laws_of(restitution: float) -> Simulation:
     tangential = composition.law("tangential", composition.RESTITUTION["tangential"])
     laws = composition.compose(
         composition.law("normal", composition.RESTITUTION["normal"], restitution=restitution),
-        attrs.evolve(tangential, **{str(tangential.resolution): SPRINGS}),
+        attrs.evolve(tangential, table=True, **{str(tangential.resolution): SPRINGS}),
         composition.fixed_steps(4 * SPRINGS),
     )
     return Simulation.of(laws.changed(named=frozenset({"normal"})))

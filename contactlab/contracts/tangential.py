@@ -331,10 +331,10 @@ class SteppedTangentialLaw(TangentialLaw):
     8. ``shares_loss(normal_law)`` is True if the force depends on the slip velocity too, through
        the loss of a viscous normal law. Increments then have ``sampled``, and integrators
        grade their steps at first touch, where such a force grows as the root of time.
-    9. With the word ``vectors`` a law without future takes displacements and slip velocities of shape
-       (..., 2) from the state of ``begin(..., vectors=True)``, and returns a force of this shape;
-       friction work has the batch shape. A rotation of all vectors rotates the forces; the length
-       of the force does not exceed mu times the friction load.
+    9. With the word ``vectors`` a law without future takes displacements and slip velocities of
+       shape (..., 2) from the state of ``begin(..., vectors=True)``, and returns a force of this
+       shape; friction work has the batch shape. A rotation of all vectors rotates the forces; the
+       length of the force does not exceed mu times the friction load.
 
     Parameters of methods
     ---------------------

@@ -1,6 +1,7 @@
 """Checks of ``mindlin_springs`` in LAMMPS: restart in mid-contact, newton, swapped grains, touch.
 
-Each check prints the largest difference of two runs that must agree, over the largest speed.
+Each check prints the largest difference of two runs that must agree, over the largest speed, for
+elastic springs and for springs with loss.
 
 Examples
 --------
@@ -43,7 +44,7 @@ def script(
     lammps: Engine,
     *,
     newton: str = "off",
-    law: str = "springs8",
+    law: str,
     coefficients: str = "",
     sort: bool = True,
     wall: str = "zplane 0 NULL",
@@ -91,19 +92,21 @@ def whole(lammps: Engine, **options: object) -> Array:
     return run(lammps, text, grains, low, high)
 
 
-def unlike(mixed: bool) -> str:
+def unlike(law: str, mixed: bool) -> str:
     """Return lines for two unlike materials; their pair is mixed, or has its stiffnesses."""
     lines = [
         f"pair_coeff {kind} {kind} hertz/material {young:g} 0.8 {poisson} "
-        f"{friction('springs8', MU)} damping tsuji"
+        f"{friction(law, MU)} damping tsuji"
         for kind, (young, poisson) in enumerate(UNLIKE, 1)
     ]
     if not mixed:
         normal = 4.0 / 3.0 / sum((1.0 - poisson**2) / young for young, poisson in UNLIKE)
         shear = sum(2.0 * (2.0 - poisson) * (1.0 + poisson) / young for young, poisson in UNLIKE)
+        stiff = 8.0 / shear
+        loss = stiff / (1.5 * normal) if law.startswith("lossy") else 0.0  # over 2 E*
         lines.append(
             f"pair_coeff 1 2 hertz {normal:.17g} 0.8 "
-            f"tangential mindlin_springs {8.0 / shear:.17g} 0 {MU} 8 damping tsuji"
+            f"tangential mindlin_springs {stiff:.17g} {loss:.17g} {MU} 8 damping tsuji"
         )
     return "\n".join(lines)
 
@@ -117,7 +120,7 @@ def refused(what: Callable[[], object], word: str) -> bool:
     return False
 
 
-def restarted(lammps: Engine, at: int, first: str = "springs8", then: str = "springs8") -> Array:
+def restarted(lammps: Engine, at: int, first: str, then: str) -> Array:
     """Return the answers of a run that is stopped while grains touch, and begun again."""
     grains, low, high = cluster()
     low = np.array([low[0], low[1], 0.0])
@@ -130,58 +133,78 @@ def restarted(lammps: Engine, at: int, first: str = "springs8", then: str = "spr
         return read(Path(name) / "out")
 
 
-def swapped(lammps: Engine) -> Array:
+def swapped(lammps: Engine, law: str) -> Array:
     """Return the answers of the same grains numbered backwards, in the order of the first run."""
     grains, low, high = cluster()
     backwards = Grains(*(column[::-1] for column in grains))
-    text = script(lammps, sort=False) + DUMP.format(every=STEPS) + f"run {STEPS}\n"
+    text = script(lammps, law=law, sort=False) + DUMP.format(every=STEPS) + f"run {STEPS}\n"
     return run(lammps, text, backwards, low, high)[::-1]
 
 
-def touching(lammps: Engine) -> Array:
+def touching(lammps: Engine, law: str) -> Array:
     """Return velocities of two grains at exact touch that slide on each other: no force, no NaN."""
     place = np.array([[0.0, 0.0, 0.1], [2.0 * RADIUS, 0.0, 0.1]])
     velocity = np.array([[0.0, 0.3, 0.0], [0.0, -0.3, 0.0]])
     numbers = np.full(2, 2.0 * RADIUS), np.full(2, 2500.0)
     grains = Grains(np.ones(2, int), *numbers, place, velocity, np.zeros((2, 3)))
-    text = script(lammps, wall="") + DUMP.format(every=1) + "run 0\n"
+    text = script(lammps, law=law, wall="") + DUMP.format(every=1) + "run 0\n"
     return run(lammps, text, grains, np.full(3, -0.1), np.full(3, 0.2))
 
 
 def main() -> int:
-    """Print each check; return 1 if one fails."""
+    """Print each check for elastic springs and for springs with loss; return 1 if one fails."""
     parser = arguments(__doc__.splitlines()[0])
     parser.add_argument("--two", help="the command with two processes")
     given = parser.parse_args()
     lammps = engine(given)
-    base = whole(lammps)
+    two = given.two and Engine(given.two, lammps.plugin)
+    failed = [checked(lammps, two, law) for law in ("springs8", "lossy8")]
+    return int(any(failed) | refusing(lammps))
+
+
+def checked(lammps: Engine, two: Engine | None, law: str) -> bool:
+    """Print what must agree under a law; return whether it does not."""
+    base = whole(lammps, law=law)
     scale = np.abs(base[:, :3]).max()
-    other = whole(lammps, law="mindlin/force")
-    moved = np.abs(other[:, :3] - base[:, :3]).max() / scale
-    print(
-        f"mindlin/force instead moves velocities by {moved:.2g} of the largest: so checks can tell"
-    )
-    failed = moved < 1e-3
+    failed = False
 
-    def hold(what: str, answers: Array, bound: float) -> None:
+    def hold(what: str, answers: Array, bound: float, of: Array = base) -> None:
         nonlocal failed
-        gap = np.abs(answers[:, :3] - base[:, :3]).max() / scale
+        gap = np.abs(answers[:, :3] - of[:, :3]).max() / scale
         failed |= not gap <= bound
-        print(f"{what:50} {gap:9.1e}  {'ok' if gap <= bound else f'above {bound:g}'}")
+        print(f"{law:10}{what:50} {gap:9.1e}  {'ok' if gap <= bound else f'above {bound:g}'}")
 
-    hold("restart in mid-contact (damping at whole steps)", restarted(lammps, STEPS // 8), 1e-3)
-    hold("the wall as a region", whole(lammps, wall="region floor"), 1e-9)
-    hold("newton on", whole(lammps, newton="on"), 1e-9)
-    hold("grains numbered backwards", swapped(lammps), 1e-9)
-    model = MODEL.format(friction("springs8", MU))
+    for other in ("mindlin/force", "springs8"):
+        if other == law:
+            continue
+        moved = np.abs(whole(lammps, law=other)[:, :3] - base[:, :3]).max() / scale
+        print(f"{law:10}{f'for comparison: {other} instead':50} {moved:9.1e}")
+        failed |= moved < 1e-3
+    half = restarted(lammps, STEPS // 8, law, law)
+    hold("restart in mid-contact (damping at whole steps)", half, 1e-3)
+    hold("the wall as a region", whole(lammps, law=law, wall="region floor"), 1e-9)
+    hold("newton on", whole(lammps, law=law, newton="on"), 1e-9)
+    hold("grains numbered backwards", swapped(lammps, law), 1e-9)
+    model = MODEL.format(friction(law, MU))
     pairs = "\n".join(f"pair_coeff {pair} {model}" for pair in ("1 1", "1 2", "2 2"))
     mixed = "\n".join(f"pair_coeff {pair} {model}" for pair in ("1 1", "2 2"))
-    hold("unlike types left to mixing, like materials", whole(lammps, coefficients=mixed), 1e-9)
-    hold("a line of coefficients for every pair of types", whole(lammps, coefficients=pairs), 1e-12)
-    apart = whole(lammps, coefficients=unlike(mixed=False))
-    gap = np.abs(whole(lammps, coefficients=unlike(mixed=True)) - apart)[:, :3].max() / scale
-    failed |= not gap <= 1e-9
-    print(f"{'unlike materials left to mixing':50} {gap:9.1e}  {'ok' if gap <= 1e-9 else 'above'}")
+    like = whole(lammps, law=law, coefficients=mixed)
+    hold("unlike types left to mixing, like materials", like, 1e-9)
+    every = whole(lammps, law=law, coefficients=pairs)
+    hold("a line of coefficients for every pair of types", every, 1e-12)
+    apart, left = (whole(lammps, law=law, coefficients=unlike(law, each)) for each in (False, True))
+    hold("unlike materials left to mixing", left, 1e-9, of=apart)
+    if two:
+        hold("two processes, newton off", whole(two, law=law), 1e-9)
+        hold("two processes, newton on", whole(two, law=law, newton="on"), 1e-9)
+    kept = touching(lammps, law)
+    still = np.isfinite(kept).all() and np.allclose(np.abs(kept[:, 1]), 0.3)
+    print(f"{law:10}{'grains that just touch':50} {'ok' if still else kept}")
+    return failed or not still
+
+
+def refusing(lammps: Engine) -> bool:
+    """Print what must be refused; return whether something is not."""
     model = MODEL.format("tangential mindlin_springs {}")
     refusals: dict[str, tuple[Callable[[], object], str]] = {
         f"restart of {first} with {then}": (
@@ -193,26 +216,22 @@ def main() -> int:
         )
     } | {
         f"coefficients {words}": (
-            partial(whole, lammps, coefficients=f"pair_coeff * * {model.format(words)}"), told
+            partial(
+                whole, lammps, law="springs8", coefficients=f"pair_coeff * * {model.format(words)}"
+            ),
+            told,
         )
         for words, told in (
             ("NULL 0 0.4 1e300", "must be even"), ("NULL 0 0.4 7", "must be even"),
-            ("0 0 0.4 8", "kt must be positive"), ("NULL -1 0.4 8", "must not be negative"),
+            ("0 0 0.4 8", "kt must be positive"), ("NULL -2 0.4 8", "must not be negative"),
         )
     }  # fmt: skip
+    failed = False
     for what, (act, word) in refusals.items():
         stopped = refused(act, word)
         failed |= not stopped
         print(f"{what:50} {'refused: ok' if stopped else 'not refused'}")
-    if given.two:
-        two = Engine(given.two, lammps.plugin)
-        hold("two processes, newton off", whole(two), 1e-9)
-        hold("two processes, newton on", whole(two, newton="on"), 1e-9)
-    kept = touching(lammps)
-    still = np.isfinite(kept).all() and np.allclose(np.abs(kept[:, 1]), 0.3)
-    failed |= not still
-    print(f"{'grains that just touch':50} {'ok' if still else kept}")
-    return int(failed)
+    return failed
 
 
 if __name__ == "__main__":

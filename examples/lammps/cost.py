@@ -14,7 +14,7 @@ import re
 from pathlib import Path
 
 import numpy as np
-from engine import Engine, Grains, arguments, engine, folder, friction, write
+from engine import SPRINGS, Engine, Grains, arguments, engine, folder, friction, write
 
 YOUNG, MU, RADIUS, FILLED = 1e8, 0.5, 0.01, 0.6
 DENSITY, TIME_STEP = 2500.0, 2e-6
@@ -71,7 +71,7 @@ write_data pack nocoeff
 
 def seconds(lammps: Engine, law: str, steps: int, place: Path) -> tuple[float, float]:
     """Return processor seconds of the loop on each process, and contacts a grain."""
-    style = lammps.pair if law.startswith("springs") else "granular"
+    style = lammps.pair if law.startswith(SPRINGS) else "granular"
     # A data file has no history: grains begin without a memory.
     script = settings(style, law, "read_data pack\nchange_box all triclinic")
     script += f"""

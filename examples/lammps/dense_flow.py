@@ -15,7 +15,7 @@ import re
 from pathlib import Path
 
 import numpy as np
-from engine import Array, Engine, Grains, arguments, engine, folder, friction, write
+from engine import SPRINGS, Array, Engine, Grains, arguments, engine, folder, friction, write
 
 YOUNG, POISSON, DENSITY, RADIUS = 1e8, 0.3, 2500.0, 0.01
 SHEAR_RATE = 5.0
@@ -42,7 +42,7 @@ def sheared(lammps: Engine, law: str, mu: float, count: int, seed: int, filled: 
     )  # fmt: skip
     final = (np.sum(np.pi / 6.0 * diameter**3) / filled) ** (1.0 / 3.0)
     steps = [round(strain / SHEAR_RATE / TIME_STEP) for strain in (BEGUN, SHEARED)]
-    style = lammps.pair if law.startswith("springs") else "granular"
+    style = lammps.pair if law.startswith(SPRINGS) else "granular"
     script = f"""
 units si
 atom_style sphere

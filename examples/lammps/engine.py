@@ -16,6 +16,8 @@ Array = NDArray[np.float64]
 
 #: Tangential sub-models of LAMMPS with a memory of the displacement or the force.
 OWN = ("mindlin", "mindlin/force", "mindlin_rescale", "mindlin_rescale/force")
+#: How the names of laws by springs begin.
+SPRINGS = ("springs", "lossy")
 
 
 class Grains(NamedTuple):
@@ -80,9 +82,13 @@ def engine(given: argparse.Namespace) -> Engine:
 
 
 def friction(law: str, mu: float) -> str:
-    """Return the words of a tangential sub-model: a name of ``OWN``, or ``springs8``."""
-    if law.startswith("springs"):
-        return f"tangential mindlin_springs NULL 0 {mu:.17g} {int(law.removeprefix('springs'))}"
+    """Return the words of a tangential sub-model: of ``OWN``, ``springs8``, or ``lossy8``.
+
+    Springs are elastic, or share the loss of the normal force.
+    """
+    if law.startswith(SPRINGS):
+        loss, springs = ("NULL", law[5:]) if law.startswith("lossy") else ("0", law[7:])
+        return f"tangential mindlin_springs NULL {loss} {mu:.17g} {springs}"
     return f"tangential {law} NULL 0 {mu:.17g}"
 
 

@@ -15,7 +15,7 @@ import re
 from pathlib import Path
 
 import numpy as np
-from engine import Array, Engine, Grains, arguments, engine, folder, friction, write
+from engine import SPRINGS, Array, Engine, Grains, arguments, engine, folder, friction, write
 
 import contactlab
 from contactlab import Encounter, Material, Sphere
@@ -59,7 +59,7 @@ def in_lammps(lammps: Engine, law: str, mu: float, count: int, seed: int) -> flo
     )
     mass = DENSITY * 4.0 / 3.0 * np.pi * RADIUS**3
     first = 0.5 * mass * np.sum(velocity**2)
-    style = lammps.pair if law.startswith("springs") else "granular"
+    style = lammps.pair if law.startswith(SPRINGS) else "granular"
     script = f"""
 units si
 atom_style sphere

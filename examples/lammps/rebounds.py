@@ -19,6 +19,7 @@ import numpy as np
 from engine import (
     DUMP,
     OWN,
+    SPRINGS,
     Array,
     Engine,
     Grains,
@@ -94,7 +95,7 @@ def solved(
     lammps: Engine, law: str, grains: Grains, poisson: float, wall: str, steps: int, newton: str
 ) -> Array:
     """Return velocities and spins after the impacts, shape (n, 6)."""
-    style = lammps.pair if law.startswith("springs") else "granular"
+    style = lammps.pair if law.startswith(SPRINGS) else "granular"
     low, high = grains.position.min(axis=0) - 0.1, grains.position.max(axis=0) + 0.1
     if wall:
         low[2] = 0.0
@@ -123,7 +124,7 @@ def on_a_wall(
     density = mass / (4.0 / 3.0 * np.pi * radius**3)
     kind = np.ones(count, int)
     grains = Grains(kind, np.full(count, 2.0 * radius), density, place, velocity, spin)
-    wall = lammps.wall if law.startswith("springs") else "wall/gran"
+    wall = lammps.wall if law.startswith(SPRINGS) else "wall/gran"
     after = solved(lammps, law, grains, poisson, wall, steps, newton)
     assert np.allclose(after[:, 2], speed, rtol=5e-3), "an impact is not over, or lost energy"
     psi2 = kappa * (after[:, 0] - after[:, 4] * radius) / (MU * speed)

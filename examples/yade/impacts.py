@@ -41,7 +41,7 @@ O.engines = [
     yade.InsertionSortCollider([yade.Bo1_Sphere_Aabb()]),
     yade.InteractionLoop(
         [yade.Ig2_Sphere_Sphere_ScGeom()],
-        [yade.Ip2_FrictMat_FrictMat_MindlinPhys()],
+        [yade.Ip2_FrictMat_FrictMat_MindlinPhys(betan=given["betan"], betas=given["betan"])],
         [yade.Law2_ScGeom_MindlinPhys_Mindlin()],
     ),
     yade.PyRunner(command="friction.step()", iterPeriod=1, dead=not springs),

@@ -5,6 +5,9 @@ Law2_ScGeom_MindlinPhys_Mindlin makes the normal force only, and put after the i
 
     friction = Springs("build/libspringskernel.so", mu=0.3, springs=8)
     O.engines = [..., PyRunner(command="friction.step()", iterPeriod=1), NewtonIntegrator(...)]
+
+Where the normal force is damped (``en`` or ``betan`` of Ip2_FrictMat_FrictMat_MindlinPhys), shear
+shares the loss.
 """
 
 import ctypes
@@ -16,14 +19,18 @@ Numbers = ctypes.POINTER(ctypes.c_double)
 
 
 class Springs:
-    """Friction of all contacts of spheres: a state of 2 + 3 N numbers for each."""
+    """Friction of all contacts of spheres: a state of 2 + 3 N numbers for each, and a velocity.
 
-    def __init__(self, library, mu, springs=8):
+    ``shear_loss`` is the relaxation time in shear over that in pressure: 1 the theory, 0 elastic.
+    """
+
+    def __init__(self, library, mu, springs=8, shear_loss=1.0):
         self._take = ctypes.CDLL(library).springs_step
         self._take.restype = ctypes.c_double
         self._take.argtypes = [Numbers, ctypes.c_int, Numbers, Numbers, *[ctypes.c_double] * 4]
-        self._take.argtypes += [Numbers]
-        self.mu, self.springs, self.states, self.work = mu, springs, {}, 0.0
+        self._take.argtypes += [Numbers, ctypes.c_double, ctypes.c_double, Numbers, ctypes.c_double]
+        self.mu, self.springs, self.shear_loss = mu, springs, shear_loss
+        self.states, self.work = {}, 0.0
 
     def step(self):
         """Add the friction of every contact to the forces of this step."""
@@ -32,13 +39,16 @@ class Springs:
             if not contact.isReal:
                 continue
             both = min(contact.id1, contact.id2), max(contact.id1, contact.id2)
-            new = np.zeros(2 + 3 * self.springs)
             # A contact that is over is forgotten here.
-            state = self.states[both] = states.get(both, new)
-            self._one(*both, contact, state)
+            state, before = states.get(both, (np.zeros(2 + 3 * self.springs), None))
+            self.states[both] = state, self._one(*both, contact, state, before)
 
-    def _one(self, first, second, contact, state):
-        """Add the friction of one contact; the body of the smaller number comes first."""
+    def _one(self, first, second, contact, state, before):
+        """Add the friction of one contact, and return its slip velocity.
+
+        The body of the smaller number comes first. Velocities are those of half a step ago: the
+        slip is continued from that of the step before.
+        """
         one, other = yade.O.bodies[first], yade.O.bodies[second]
         place = contact.geom.contactPoint
         arms = place - one.state.pos, place - other.state.pos
@@ -50,19 +60,34 @@ class Springs:
         soft = sum(
             2.0 * (2.0 - m.poisson) * (1.0 + m.poisson) / m.young for m in (one.mat, other.mat)
         )
-        moved, normal, force = (
-            np.array(slip * yade.O.dt),
-            np.array(contact.geom.normal),
-            np.zeros(3),
-        )
+        hard = 1.0 / sum((1.0 - m.poisson**2) / m.young for m in (one.mat, other.mat))
+        modulus, phys = 8.0 / soft, contact.phys
+        viscous = 2.0 * phys.betan * (_mass(one, other) * phys.kn) ** 0.5
+        damping = self.shear_loss * modulus / (2.0 * hard) * viscous
+        elastic = (phys.normalForce + phys.normalViscous).norm()
+        slip = np.array(slip)
+        velocity = slip if before is None or state[0] == 0.0 else 1.5 * slip - 0.5 * before
+        moved, normal, force = slip * yade.O.dt, np.array(contact.geom.normal), np.zeros(3)
         self.work += self._take(
             _numbers(state), self.springs, _numbers(moved), _numbers(normal), size,
-            self.mu * contact.phys.normalForce.norm(), radius, 8.0 / soft, _numbers(force),
+            self.mu * phys.normalForce.norm(), radius, modulus, _numbers(force),
+            self.mu * elastic, damping, _numbers(velocity), yade.O.dt,
         )  # fmt: skip
         force = yade.Vector3(*force.tolist())
         for number, sign, arm in ((first, 1.0, arms[0]), (second, -1.0, arms[1])):
             yade.O.forces.addF(number, sign * force)
             yade.O.forces.addT(number, arm.cross(sign * force))
+        return slip
+
+
+def _mass(one, other):
+    """Return the mass of the pair, as YADE's damping takes it."""
+    masses = [body.state.mass for body in (one, other) if body.dynamic]
+    return (
+        masses[0]
+        if len(masses) == 1
+        else one.state.mass * other.state.mass / (one.state.mass + other.state.mass)
+    )
 
 
 def _numbers(array):

@@ -1,10 +1,11 @@
 """Motions of one contact for the kernels, and what the law in Python answers along them."""
 
 import numpy as np
+from scipy.integrate import quad
 
 from contactlab_laws.springs.doubling import Memory, moved
 
-UNIT, MODULUS = 0.7, 3.0e4
+UNIT, MODULUS, TIME = 0.7, 3.0e4, 0.02
 
 
 def sliding(seed, steps=600):
@@ -39,6 +40,26 @@ def wandering(seed, steps=600):
     return rows
 
 
+def damped(rows, seed):
+    """A motion with the columns of loss: elastic part, damping and slip velocity, steps of TIME.
+
+    Damping presses, pulls and pulls the contact apart; the relaxation time goes from a hundredth
+    of a step to a hundred steps, and is zero now and then.
+    """
+    random, steps = np.random.default_rng(seed + 2000), len(rows)
+    shares = np.exp(random.normal(0.0, 0.7, steps))  # of the limit that is elastic
+    shares[150:155] = 0.0  # a contact that damping alone presses
+    elastic = rows[:, 7] * shares
+    limit = np.where(random.uniform(size=steps) < 0.02, 0.0, rows[:, 7])
+    lag = TIME * 10.0 ** np.repeat(random.uniform(-2.0, 2.0, steps // 20 + 1), 20)[:steps]
+    lag[random.uniform(size=steps) < 0.02] = 0.0
+    sizes = np.repeat(10.0 ** random.uniform(-3.0, 0.0, steps // 20 + 1), 20)[:steps]
+    moved = rows[:, :3] * sizes[:, None]
+    velocity = moved / TIME * random.uniform(0.5, 1.5, (steps, 1))
+    damping = lag * MODULUS * rows[:, 6]
+    return np.column_stack([moved, rows[:, 3:7], limit, elastic, damping, velocity])
+
+
 def by_the_law(springs, rows, sizes):
     """Force along the line and work of each step, shape (K, 2), by ``grid="doubling"``."""
     none, places = np.zeros(1), np.zeros((springs, 1))
@@ -62,6 +83,10 @@ def by_vectors(springs, rows):
     size, before, w, forces = 0.0, 0.0, np.zeros((springs, 3)), []
     for row in rows:
         step, normal, radius, limit = row[:3], row[3:6], row[6], row[7]
+        elastic, damping, *velocity = row[8:] if len(row) > 8 else (limit, 0.0, *step)
+        lag = damping / (MODULUS * radius) if radius > 0.0 else 0.0
+        if lag > 0.0 and limit < elastic:
+            radius *= (limit / elastic) ** (1.0 / 3.0)
         if radius <= 0.0:
             size, before, w = 0.0, 0.0, np.zeros((springs, 3))
             forces.append(np.zeros(3))
@@ -79,20 +104,48 @@ def by_vectors(springs, rows):
         w = w - np.outer(w @ normal, normal)
         w *= length / np.linalg.norm(w) if length > 0.0 else 1.0  # a turn keeps the energy
         step = step - (step @ normal) * normal
-        compression = np.maximum(radius**2 - places**2, 0.0)
-        most = limit * compression / (MODULUS * size / springs * compression.sum())
+        velocity = velocity - (velocity @ normal) * normal
+        jump = 0.0
+        if lag > 0.0 and limit > elastic:
+            jump = 2.0 / 3.0 * radius**2 * min(limit / elastic - 1.0 if elastic else 1e9, 1e9)
+        compression = np.where(places < radius, radius**2 - places**2 + jump, 0.0)
+        steep = limit / (MODULUS * size / springs * compression.sum())
+        most, least = steep * compression, steep * (np.maximum(before**2 - places**2, 0.0) + jump)
+        force = np.zeros(3)
         for i in range(springs):
             met = radius > before and places[i] > before
-            part = (radius - places[i]) / (radius - before) if met else 1.0
-            trial = w[i] + max(part, 0.0) * step
-            length = np.linalg.norm(trial)
-            w[i] = trial * (most[i] / length) if length > most[i] else trial
+            part = max((radius - places[i]) / (radius - before), 0.0) if met else 1.0
+            trial = w[i] + part * step
+            if lag > 0.0 and places[i] < radius:
+                w[i] = relaxing(w[i], trial, part * TIME / lag, least[i], most[i])
+                force += cut(w[i] + lag * velocity, most[i])
+            else:
+                w[i] = cut(trial, most[i])
+                force += w[i]
         before = radius
-        forces.append(-MODULUS * size / springs * w.sum(axis=0))
+        forces.append(-MODULUS * size / springs * force)
     return np.array(forces)
 
 
-def write(path, springs, rows, unit=UNIT, modulus=MODULUS):
+def cut(vector, most):
+    """Return a vector of at most a length."""
+    length = np.linalg.norm(vector)
+    return vector * (most / length) if length > most else vector
+
+
+def relaxing(held, trial, x, before, after):
+    """Return w after x relaxation times: w' = (f - w)/A, abs(f) up to a limit on a line."""
+    left, gone = np.exp(-x), -np.expm1(-x)
+    mean = quad(lambda t: (before + (after - before) * t) * x * np.exp(-x * (1.0 - t)), 0.0, 1.0,
+                epsabs=0.0, epsrel=1e-13)[0]  # fmt: skip
+    moved, grown = left * held + cut(trial - left * held, mean), after * gone
+    if mean > grown:  # where w grows, the limit of the end counts
+        least = left * held + cut(trial - left * held, grown)
+        moved = cut(moved, max(np.linalg.norm(held), np.linalg.norm(least)))
+    return moved
+
+
+def write(path, springs, rows, unit=UNIT, modulus=MODULUS, time=TIME):
     """Write a motion for the drivers."""
-    head = np.array([springs, len(rows), unit, modulus], float)
+    head = np.array([springs, len(rows), unit, modulus, time * (rows.shape[1] > 8)], float)
     np.concatenate((head, rows.ravel())).tofile(path)

@@ -50,7 +50,8 @@ def driven(words, folder, springs, rows, **lengths):
 
 def driven_each(words, folder, springs, motions):
     """Return the answers along several motions, which a row without contact parts, in one call."""
-    apart = np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0]])
+    apart = np.zeros((1, motions[0].shape[1]))
+    apart[0, 5] = 1.0
     found = driven(
         words, folder, springs, np.vstack([x for each in motions for x in (each, apart)])
     )
@@ -231,7 +232,7 @@ console.log(JSON.stringify([first, force]));
 def test_what_the_notes_say_of_spin_about_the_normal(tmp_path):
     """Two bodies that spin about the normal together take the force along."""
     notes = (KERNELS / "README.md").read_text("utf-8")
-    lines = notes[notes.index("    const about") : notes.index("### How many")]
+    lines = notes[notes.index("    const about") : notes.index("### Where the")]
     kernel = json.dumps((KERNELS / "contactlab_springs.mjs").as_uri())
     first, second = answered(SPINNING.format(kernel=kernel, lines=lines), tmp_path)
     normal = np.array([0.6, 0.0, 0.8])

@@ -26,8 +26,8 @@ def restitution(law, given):
 
 
 def psi2(law, psi1, chi, *, springs=200, steps=None):
-    """Return psi2 of a batch under ``springs``."""
-    tangential = contactlab.create("tangential.springs", springs=springs)
+    """Return psi2 of a batch under ``springs`` that are elastic in shear."""
+    tangential = contactlab.create("tangential.springs", springs=springs, shear_loss=0.0)
     march = contactlab.create("integrator.symplectic", steps=steps or 4 * springs)
     sim = Simulation(normal=law, tangential=tangential, integrator=march)
     return sim.run(Scene.nondimensional(psi1=np.array(psi1, dtype=float), chi=chi)).check().psi2

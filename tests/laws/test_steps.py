@@ -53,6 +53,8 @@ def test_annuli_agree_with_springs(name):
         chosen = contactlab.create(f"tangential.{tangential}")
         if chosen.needs <= law.offers:
             chosen = attrs.evolve(chosen, **{chosen.resolution: 100})
+            if tangential == "springs":
+                chosen = attrs.evolve(chosen, shear_loss=0.0)
             found[tangential] = Simulation(normal=law, tangential=chosen).run(given).check().psi2
     # of first order: at 100 annuli and 200 steps 0.011 off; springs up to 0.02 (see the caution)
     assert found["annulus"] == pytest.approx(found["springs"], abs=0.02)

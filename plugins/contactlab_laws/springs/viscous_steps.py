@@ -61,10 +61,10 @@ def advance_all(
     wide = (count, items)
 
     def rows(column: Any) -> Array:
-        column = np.asarray(column)
-        if column.size == count:
-            return column.reshape(count, 1)
-        return np.asarray(np.broadcast_to(column, (count, *shape)).reshape(wide))
+        table: Array = np.asarray(column)
+        if table.size == count:
+            return table.reshape(count, 1)
+        return np.broadcast_to(table, (count, *shape)).reshape(wide)
 
     contact = _contacts(state, steps, rows)
     drift, kick, acting = (rows(each) for each in (steps.drift, steps.kick, steps.friction_load))
@@ -175,7 +175,7 @@ def _march(
         slip = slip - mobility[k] * force
         drive = viscous.Drive(move, drift[k], slip, force, mobility[k], limit[k], acting[k], scale)
         most = grid.most[k, :now, None]
-        share, slip, f = viscous.solved(held, most, lead[k], drive, grid.per_total[k], out=f)
+        share, f, _ = viscous.solved(held, most, lead[k], drive, grid.per_total[k], out=f)
         if grid.per_total[k] == 0.0:
             share = viscous.alone(lead[k] * drive.slip, grid.excess[k], last_share)
         last_share = share

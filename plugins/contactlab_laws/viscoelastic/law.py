@@ -52,7 +52,7 @@ class Viscoelastic(NormalLaw, Tabulated):
     """
 
     api_version: ClassVar[int] = 2
-    offers: ClassVar[frozenset[str]] = frozenset({"radius"})
+    offers: ClassVar[frozenset[str]] = frozenset({"radius", "kelvin_voigt"})
 
     restitution: float | None = restitution(default=None)
     relaxation_time: float | None = quantity("s", rule=NON_NEGATIVE, default=None)
