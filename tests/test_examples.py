@@ -46,6 +46,7 @@ SCRIPTS = {
     "egg": ("after 1, 5, 10 bounces: [0.889", "egg.png"),
     "toe_shot": ("15 mm off the toe: starts 2.9° right", "toe_shot.png"),
     "any_two_bodies": ("30°: rebound 0.913, slip -0.723", "any_two_bodies.png"),
+    "loss_in_shear": ("one loss for both       at psi1 = 1:  0.15", "loss_in_shear.png"),
     "signs": ("spin -90 rad/s, slip 0.00 m/s", "signs.png"),
     "law_in_five_minutes": ("0.1 of the normal speed", "law_in_five_minutes.png"),
 }

@@ -13,10 +13,11 @@ import pytest
 
 from tests.kernels.motions import wandering
 from tests.kernels.test_kernels import COMPILER, HERE, KERNELS, driven, needs_c
+from tests.longer import longer
 
 FOLDER = Path(__file__).parents[1] / "examples" / "lammps"
 PAGE = (FOLDER / "README.md").read_text("utf-8")
-SCRIPTS = ("build", "rebounds", "checks", "cost", "gas", "dense_flow", "drum")
+SCRIPTS = ("build", "rebounds", "loss", "checks", "cost", "gas", "dense_flow", "drum")
 
 
 def shown():
@@ -28,7 +29,7 @@ def shown():
 
 
 #: Scripts of many grains, as ``gas`` is.
-LIKE_GAS = ("cost", "dense_flow", "drum")
+LIKE_GAS = ("cost", "loss", "dense_flow", "drum")
 
 
 @pytest.mark.parametrize(
@@ -65,13 +66,29 @@ def test_the_sub_model_calls_the_kernel_that_is_shipped():
         assert name in kernel.read_text("utf-8")
 
 
+def module(name):
+    """Return a script of examples/lammps as a module."""
+    spec = importlib.util.spec_from_file_location(name, FOLDER / f"{name}.py")
+    made = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(made)
+    return made
+
+
 @pytest.fixture
 def merging():
     """Return examples/lammps/merge.py as a module."""
-    spec = importlib.util.spec_from_file_location("merge", FOLDER / "merge.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return module("merge")
+
+
+@needs_c
+@pytest.mark.parametrize(("springs", "bound"), [(8, 0.015), *longer((50, 2e-3))])
+def test_impacts_in_the_steps_of_lammps(springs, bound, monkeypatch, tmp_path):
+    """Velocity Verlet with velocities of half a step ago: 200 steps, contacts of ten sizes."""
+    monkeypatch.syspath_prepend(FOLDER)
+    loss = module("loss")
+    expected = [loss.PSI2[psi1] for psi1 in loss.settings()[0]]
+    found = loss.alone(loss.kernel(tmp_path), springs, 200)
+    assert np.abs(found - expected).max() <= bound
 
 
 @needs_c
@@ -130,6 +147,7 @@ def test_a_merged_tree_holds_code_pages_and_test_once(merging, tree):
         text = once[tree / "src" / "GRANULAR" / name]
         assert text.startswith("/* A header\n   of two lines */\n")
         assert "contactlab_springs" not in text
+    assert "static double springs_damped_step(" in text
     assert "static double springs_step(" in text
     assert "Contributing authors: the authors of contactlab" in text
     assert tree / "unittest" / "force-styles" / "tests" / merging.UNIT_TEST in once

@@ -29,3 +29,18 @@ def test_impacts_in_yade():
         springs, worst, rms, work = map(float, row)
         assert (springs, worst <= bounds[1], rms <= bounds[2]) == (bounds[0], True, True)
         assert work == pytest.approx(1.0, abs=0.005)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("yade") is None, reason="YADE is not installed")
+def test_damped_impacts_in_yade():
+    words = [sys.executable, FOLDER / "rebounds.py", "--damped", "--steps", "200"]
+    done = subprocess.run(
+        [*words, "--springs", "8", "50"], capture_output=True, text=True, check=True
+    )
+    rows = [[float(cell) for cell in line.split()] for line in done.stdout.splitlines()[1:]]
+    for (springs, worst, _, work), expected, bound in zip(
+        rows, (8, 50), (0.015, 2e-3), strict=True
+    ):
+        assert (springs, worst <= bound) == (expected, True)
+        assert work == pytest.approx(1.0, abs=0.005)

@@ -243,6 +243,13 @@ def add_laws(
             metavar="A,B,..." if many else "NAME",
             help=f"name of the {word}" + (", or several" if many else "") + "; or file.py:Class",
         )
+    if kinds == KINDS and not many:
+        parser.add_argument(
+            "--restitution",
+            type=finite,
+            metavar="E",
+            help="in place of a normal law: one loss for pressure and shear that gives this e",
+        )
     parser.add_argument(
         "--set",
         type=setting,

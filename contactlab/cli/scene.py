@@ -105,6 +105,13 @@ def inputs(arguments: argparse.Namespace) -> Inputs:
 
 def composed(arguments: argparse.Namespace, choice: LawChoice) -> Simulation:
     """Return the laws of ``choice``, replaced by the laws and options of the arguments."""
+    if arguments.restitution is not None:
+        if arguments.normal is not None:
+            raise ValueError(
+                "--normal, --restitution: a restitution stands in place of a normal law; leave "
+                "one of them out, or give --set normal.restitution=0.9"
+            )
+        choice = choice.without("normal").restituted(arguments.restitution)
     choice = choice.choose(
         normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
     )

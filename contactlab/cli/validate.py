@@ -24,7 +24,12 @@ from contactlab.study.evidence import Evidence, gather
 from contactlab.study.validation import Finding, validate
 
 #: Laws in a picture, if installed; more curves could not be distinguished.
-DRAWN = ("fronts", "springs, tsuji restitution=0.98", "mindlin_cap", "coulomb")
+DRAWN = (
+    "fronts",
+    *(f"springs, viscoelastic restitution={e}" for e in (0.98, 0.9)),
+    "mindlin_cap",
+    "coulomb",
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.compose.rebound import restituted_error
+from contactlab.compose.rebound import RESTITUTED_CHI, restituted_error
 from contactlab.impact.cautions import contact_vectors
 from contactlab.impact.encounter import Encounter
 from contactlab.numeric.arrays import some
@@ -14,6 +14,9 @@ from contactlab.numeric.checks import Real
 from contactlab.outcome.plan import PSI2_ERROR, TANGENTIAL_MOTION, Clause, Plan
 
 PARTED = "collision: the bodies separate, they pass through untouched"
+#: Seconds that springs take for impacts with a restitution beyond the table: the first, and each at
+#: chi = 3; they grow as chi^0.75.
+FIRST, EACH = 0.1, 6e-4
 STANDS_FOR = (
     "restitution {}: of a frictionless impact on the mass 1/W_nn, normal.viscoelastic; a body's "
     "own V2 follows from it"
@@ -51,7 +54,7 @@ def by_rebound(plan: Plan, chi: Any, restitution: Real) -> Plan:
     said: dict[str, tuple[str, tuple[Any, ...] | None]] = {
         TANGENTIAL_MOTION: (
             f"tangential motion: contactlab.rebound with restitution={told}, one loss for pressure "
-            "and shear",
+            f"and shear, by springs beyond its table: {_lasting(chi, marched)}",
             None,
         ),
         PSI2_ERROR: ("numerical error of psi2: at most {:.2g}, of contactlab.rebound", (error,)),
@@ -63,3 +66,10 @@ def by_rebound(plan: Plan, chi: Any, restitution: Real) -> Plan:
             clause = clause._replace(text=text, values=values)
         computed.append(clause)
     return plan.changed(computed=tuple(computed), psi2_error=error if error.ndim else float(error))
+
+
+def _lasting(chi: Any, marched: Any) -> str:
+    """Return about how long the springs of ``rebound`` take, on a computer of the year 2026."""
+    far = np.maximum(np.broadcast_to(chi, np.shape(marched))[marched] / RESTITUTED_CHI[1], 1.0)
+    seconds = FIRST + EACH * float(np.sum(far**0.75))
+    return f"about {seconds:.1g} s"

@@ -53,6 +53,7 @@ UNCHECKED = (
 )
 #: Entries of a plan of impacts in which friction changes the approach.
 TOGETHER = "normal and tangential motion together: friction changes the approach, or slip turns"
+OF_CONTACT = "restitution: of the contact without coupling; that of the bodies follows from it"
 ONE_PLANE = "second tangent: the motion stays in a plane"
 OF_SPHERES = (
     "cautions of laws: their sizes were measured for spheres, where friction does not change the "
@@ -152,6 +153,8 @@ def _words(
         computed.append(Clause(text, masks.marched, code=TANGENTIAL_MOTION))
     if coupled:
         computed.append(Clause(TOGETHER, masks.known))
+        if getattr(used.normal, "restitution", None) not in (None, 1.0):
+            computed.append(Clause(OF_CONTACT, masks.known))
     advice = "" if asked.estimate else ADVICE
     computed += _error_clauses("psi2", columns.psi2_error, masks.ended, advice)
     if coupled:  # of spheres it is that of the normal motion, and far smaller

@@ -34,8 +34,8 @@ def holds(simulation: Simulation | None) -> bool:
     """
     if simulation is None:
         return True
-    normal: Any = simulation.normal
-    if type(normal) is not _normal_law() or normal.restitution is None:
+    normal = simulation.normal
+    if type(normal) is not _normal_law() or getattr(normal, "restitution", None) is None:
         return False
     return simulation == Simulation(normal=normal)
 

@@ -105,14 +105,31 @@ export function dampedStep(state, n, moved, normal, radius, limit, unit, modulus
     if (lag > 0 && i < touching) {
       const before = most * ((r < v ? v * v - r * r : 0) + jump);
       const {left, ramp, gone} = part < 1 ? relaxed(part * time / lag) : whole;
-      const [kx, ky, kz] = bounded([tx, ty, tz], [hx, hy, hz], left, before * gone + (l - before) * ramp, l * gone);
+      // The force is at most the limit, so that w is within `reach` of what is left of the one held; where it grows,
+      // within `least`, or energy could be gained.
+      const reach = before * gone + (l - before) * ramp, least = l * gone;
+      const mx = tx - left * hx, my = ty - left * hy, mz = tz - left * hz, size = Math.sqrt(mx * mx + my * my + mz * mz);
+      let kx = tx, ky = ty, kz = tz;
+      if (size > reach) {
+        const cut = reach / size;
+        kx = left * hx + cut * mx; ky = left * hy + cut * my; kz = left * hz + cut * mz;
+      }
+      if (least < reach && size > least) {
+        const cut = least / size, ax = left * hx + cut * mx, ay = left * hy + cut * my, az = left * hz + cut * mz;
+        const allowed = Math.max(hx * hx + hy * hy + hz * hz, ax * ax + ay * ay + az * az);
+        const grown = kx * kx + ky * ky + kz * kz;
+        if (grown > allowed) {
+          const shrunk = Math.sqrt(allowed / grown);
+          kx *= shrunk; ky *= shrunk; kz *= shrunk;
+        }
+      }
       const gx = kx - hx, gy = ky - hy, gz = kz - hz;
       work += 2 * lag / time * (gx * dx + gy * dy + gz * dz)
         + (hx + kx) * (part * dx - gx) + (hy + ky) * (part * dy - gy) + (hz + kz) * (part * dz - gz);
       state[k] = kx; state[k + 1] = ky; state[k + 2] = kz;
-      const square = (kx + px) ** 2 + (ky + py) ** 2 + (kz + pz) ** 2;
-      const share = square > l * l ? l / Math.sqrt(square) : 1;
-      fx += share * (kx + px); fy += share * (ky + py); fz += share * (kz + pz);
+      const sx = kx + px, sy = ky + py, sz = kz + pz, pulled = sx * sx + sy * sy + sz * sz;
+      const share = pulled > l * l ? l / Math.sqrt(pulled) : 1;
+      fx += share * sx; fy += share * sy; fz += share * sz;
       continue;
     }
     const square = tx * tx + ty * ty + tz * tz;
@@ -144,17 +161,6 @@ function relaxed(x) {
   }
   const left = Math.exp(-x);
   return {left, ramp: 1 - (1 - left) / x, gone: 1 - left};
-}
-
-/** Returns the deflection of a spring that would move to w. Its force is at most its limit, so that it is within a
- *  length `reach` of what is left of the one held; where it grows, within `least`, or energy could be gained. */
-function bounded(w, held, left, reach, least) {
-  const move = w.map((each, k) => each - left * held[k]), size = Math.hypot(...move);
-  const cut = most => (size > most ? move.map((each, k) => left * held[k] + most / size * each) : w);
-  const far = cut(reach);
-  if (!(least < reach && size > least)) return far;
-  const grown = Math.hypot(...far), allowed = Math.max(Math.hypot(...held), Math.hypot(...cut(least)));
-  return grown > allowed ? far.map(each => each * allowed / grown) : far;
 }
 
 /** Fits the grid to the contact radius b, so that A/4 < b <= A. Returns the energy lost over 2 G*. */

@@ -46,7 +46,7 @@ const QUESTIONS = [
     ([one, two]) => `The angle does not, ${degrees(one.exact)} and ${degrees(two.exact)}: elastic contact has no speed of its own. The spin doubles, ${minus(one.exact.spin, 0)} to ${minus(two.exact.spin, 0)} rad/s.`],
   ["A steel ball without spin hits steel at 45\u00b0 and 3 m/s, friction 0.3. The restitution falls from 1 to 0.7. Does it leave steeper or flatter?",
     [STEEL, {...STEEL, restitution: .7}],
-    ([one, two]) => `Flatter, at about ${two.exact.angle.toFixed(0)}\u00b0 in place of ${one.exact.angle.toFixed(0)}\u00b0, as it rises more slowly.`],
+    ([one, two]) => `Flatter, at ${degrees(two.exact)} in place of ${degrees(one.exact)}, as it rises more slowly.`],
   ["A solid plastic ball and a thin shell (inertia 0.67) hit at 30\u00b0 and 2 m/s without spin, friction 0.8. Which one leaves steeper?",
     [{...PLASTIC, angle: 30, friction: .8}, {...PLASTIC, angle: 30, friction: .8, inertia: .67}],
     ([solid, shell]) => `The shell, at ${degrees(shell.exact)}; the solid ball at ${degrees(solid.exact)}. A shell is harder to spin, so friction slows it more.`],

@@ -24,7 +24,7 @@ SPRINGS, STEPS = 100, 500
 #: Ranges of the sliders: least, most.
 RANGES = {"angle": (0.0, 85.0), "speed": (0.1, 10.0), "spin": (-600.0, 600.0),
           "friction": (0.02, 1.0), "radius": (0.001, 0.1), "inertia": (0.25, 0.67),
-          "restitution": (0.5, 1.0)}  # fmt: skip
+          "restitution": (0.0, 1.0)}  # fmt: skip
 #: Parts of the page and their files; the kernel is that for games, no module here.
 PARTS = {
     "STYLE": "pages/explore.css", "KERNEL": "kernels/contactlab_bounce.mjs",

@@ -22,6 +22,7 @@ from contactlab.compose.names import (
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
 from contactlab.scene_file.table import Table, flattened, nearest_of
 
@@ -71,6 +72,29 @@ class LawChoice:
                 raise ValueError(f"{complaint}; {hint}".rstrip("; "))
             options.setdefault(owner, {})[option] = value
         return attrs.evolve(self, options=options)
+
+    def without(self, kind: str) -> LawChoice:
+        """Return the choice without the law of a kind and its options."""
+        kept = {key: value for key, value in self.options.items() if key != kind}
+        return attrs.evolve(self, **{kind: None}, options=kept)
+
+    def restituted(self, restitution: float) -> LawChoice:
+        """Return the choice with the law of a restitution, one loss for pressure and shear.
+
+        Raises
+        ------
+        ValueError
+            If another normal law is named, or the restitution is out of range.
+        """
+        law = composition.RESTITUTION["normal"]
+        if self.normal not in (None, law) or "restitution" in self.options.get("normal", {}):
+            rule = f"stands in place of a normal law, and normal = {self.normal!r} is named"
+            remedy = "name one of the two; an option of a law is normal.restitution"
+            raise refuse("restitution", restitution, rule, remedy)
+        composition.law("normal", law, restitution=restitution)  # refuses what is out of range
+        if restitution == 1.0:
+            return self
+        return self.choose(normal=law).set({"normal.restitution": restitution})
 
     def simulation(self) -> Simulation:
         """Return the simulation of the three laws with their options.
@@ -162,13 +186,15 @@ def _complaint(path: str) -> str | None:
 
 def read_laws(content: object, folder: Path, *, allow_code: bool) -> LawChoice:
     """Return the laws of the ``[simulation]`` table of a file in ``folder``; none is imported."""
-    table = Table(content, "simulation", known=(*KINDS, "options"))
+    table = Table(content, "simulation", known=(*KINDS, "restitution", "options"))
     names = {
         kind: seen_from(folder, table.text(kind), trusted=allow_code)
         for kind in KINDS
         if table.has(kind)
     }
     choice = LawChoice().choose(**names)
+    if table.has("restitution"):
+        choice = choice.restituted(table.number("restitution", remedy="leave it out for 1"))
     if not table.has("options"):
         return choice
     raw = table.content["options"]

@@ -47,19 +47,28 @@ class Source:
             return read_scene(path)
 
 
-#: Normal laws for the impacts of Kharaz et al.: elastic, and damped to the loss that they measured.
-DAMPED = {DEFAULT_NORMAL: {}, "tsuji": {"restitution": 0.98}}
 E_T = "tangential_restitution"
+
+
+def _damped(restitution: float) -> dict[str, dict[str, float]]:
+    """Return normal laws: elastic, and damped to the loss that was measured."""
+    loss = {"restitution": restitution}
+    return {DEFAULT_NORMAL: {}, "tsuji": loss, "viscoelastic": loss}
+
+
+#: Springs share the loss of these normal laws; under them annuli lose in pressure alone.
 SOURCES = (
     Source(
         name="kharaz2001",
         kind="experiment",
-        normals=DAMPED,
+        normals=_damped(0.98),
         bounds={
             (E_T, "fronts"): 0.015,
             (E_T, "springs, tsuji restitution=0.98"): 0.015,
+            (E_T, "springs, viscoelastic restitution=0.98"): 0.015,
         },
     ),
+    Source(name="superball", kind="experiment", normals=_damped(0.9)),
     Source(name="finite-elements", kind="finite elements", bounds={("psi2", "fronts"): 0.06}),
     Source(name="codes-test4-oxide", kind="other codes", bounds={(E_T, "mindlin_cap"): 0.006}),
     Source(name="codes-test4-alloy", kind="other codes", bounds={(E_T, "mindlin_cap"): 0.006}),

@@ -37,6 +37,28 @@ REFERENCE_PSI2 = {
         0.8494911084, 1.1585220552, 0.6554364732,
     ),
 }  # fmt: skip
+#: psi2 with one loss for pressure and shear at the same psi1, by restitution and chi, to 3e-6:
+#: springs of two numbers, extrapolated (theory §15).
+LOSS_PSI2 = {
+    (0.912242, 49 / 34):
+        (0.008928, 0.009160, -0.085073, -0.174580, -0.724878, -1.219935, -1.256848),
+    (0.912242, 7 / 6):
+        (-0.017317, -0.137768, -0.383082, -0.522071, -1.054454, -1.215194, -0.461897),
+    (0.836405, 49 / 34):
+        (0.001063, -0.018386, -0.107094, -0.176153, -0.637783, -1.089706, -1.105620),
+    (0.836405, 7 / 6):
+        (-0.019273, -0.134426, -0.351641, -0.468823, -0.942747, -1.084370, -0.284944),
+    (0.712382, 49 / 34):
+        (-0.007853, -0.050955, -0.136844, -0.184068, -0.513880, -0.891083, -0.859514),
+    (0.712382, 1.0):
+        (-0.033383, -0.190251, -0.425932, -0.531852, -0.867797, -0.424765, 0.575235),
+    (0.538747, 49 / 34):
+        (-0.013432, -0.071125, -0.153547, -0.186051, -0.373254, -0.639568, -0.435211),
+    (0.538747, 1.75):
+        (-0.010535, -0.052723, -0.105150, -0.120047, -0.208623, -0.450809, -0.672458),
+}  # fmt: skip
+#: Springs and steps against these values, and the bound.
+LOSS_SPRINGS, LOSS_STEPS, LOSS_BOUND = 50, 200, 1.2e-3
 #: Relative bounds of force, and of approach or duration, as read off figures. Two readers of one
 #: approach differ by 0.0054; the end of contact is read off a curve that meets its axis at a
 #: small angle.
@@ -94,6 +116,8 @@ def _checks() -> Iterator[Callable[[], Finding]]:
     for composition in COMPOSITIONS:
         if {f"tangential.{composition[0]}", f"integrator.{composition[2]}"} <= set(installed):
             yield partial(_reference, *composition)
+    if {"normal.viscoelastic", "tangential.springs", "integrator.symplectic"} <= set(installed):
+        yield _loss
     for name, (scene, published) in hertz_scalars().items():
         for entries, bound in (
             (("force",), FORCE_READING),
@@ -205,6 +229,26 @@ def _reference(
     numbers = ", ".join(f"{key}={value}" for key, value in (options | settings).items())
     what = f"{tangential} / {integrator}" + (f", {numbers}" if numbers else "")
     return _finding(what, "21 reference values of psi2", off, bound)
+
+
+def _loss() -> Finding:
+    law = partial(REGISTRY.create, "normal.viscoelastic")
+    parts = {
+        "tangential": REGISTRY.create("tangential.springs", springs=LOSS_SPRINGS),
+        "integrator": REGISTRY.create("integrator.symplectic", steps=LOSS_STEPS),
+    }
+    off = [
+        uninterrupted(
+            Simulation(normal=law(restitution=e), **parts).sweep(
+                Scene.nondimensional(psi1=np.array(REFERENCE_PSI1), chi=chi)
+            )
+        ).psi2
+        - np.array(expected)
+        for (e, chi), expected in LOSS_PSI2.items()
+    ]
+    what = f"viscoelastic / springs, springs={LOSS_SPRINGS}, steps={LOSS_STEPS}"
+    count = sum(map(len, LOSS_PSI2.values()))
+    return _finding(what, f"{count} reference values of psi2", off, LOSS_BOUND)
 
 
 def _codes(number: int, form: str) -> Finding:

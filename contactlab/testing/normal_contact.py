@@ -10,7 +10,7 @@ import numpy as np
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import NormalLaw
 from contactlab.impact.hertz import hertz_scales
-from contactlab.testing.check import check, hold, within
+from contactlab.testing.check import apply_if, check, hold, within
 from contactlab.testing.normal import ROUNDING, STEPS, respond, strokes
 
 #: Contact radius squared over R times approach: 1 for an elastic sphere, 2 for a material that
@@ -122,6 +122,40 @@ def hertzian_pressure(law: Any) -> None:
                 f"{name} its force is that of an elastic body, and b² is {share:.3g} R z, not "
                 "that of eq. (2).",
             )
+
+
+@check(NormalLaw)
+def viscous(law: Any) -> None:
+    """A viscous law has Hertz's radius and force at rest, and more in approach (NormalLaw, 8)."""
+    apply_if(law.viscous, "It is not viscous.")
+    impact, approach, _ = strokes()
+    depths = np.linspace(0.02, 1.0, STEPS) * float(approach.max())
+    exact = np.sqrt(impact.pair.radius * depths)
+    pressed = (4.0 / 3.0) * impact.pair.effective_modulus * exact * depths
+    rest, _, _, _ = respond(law, impact, depths, np.zeros_like(depths))
+    gap = float(np.max(np.abs(rest / pressed - 1.0)))
+    within(gap, ROUNDING, f"It is viscous, and its force at rest is {gap:.2g} off Hertz's.")
+    rates = np.full_like(depths, float(impact.normal_speed))
+    force, radii, _, _ = respond(law, impact, depths, rates)
+    gap = float(np.max(np.abs(radii / exact - 1.0)))
+    within(gap, ROUNDING, f"It is viscous, and its radius is {gap:.2g} off Hertz's in approach.")
+    hold(np.all(force > rest), "It is viscous, and resists an approach no more than rest.")
+
+
+@check(NormalLaw, claim="kelvin_voigt")
+def kelvin_voigt(law: Any) -> None:
+    """In unloading the pressure is Hertz's over b² = R (z + A z'), with one relaxation time A."""
+    impact, approach, _ = strokes()
+    pair, speed = impact.pair, float(impact.normal_speed)
+    depth, rates = float(approach.max()), -speed * np.geomspace(1e-3, 1.0, STEPS)
+    force, radii, _, _ = respond(law, impact, np.full(STEPS, depth), rates)
+    hertz = (4.0 / 3.0) * pair.effective_modulus * radii**3 / pair.radius
+    gap = float(np.max(np.abs(force - hertz)) / np.max(hertz))
+    within(gap, ROUNDING, f"In unloading its force is {gap:.2g} off Hertz's over its radius.")
+    touching = radii > 0.0
+    times = (depth - radii**2 / pair.radius)[touching] / -rates[touching]
+    gap = float(np.ptp(times) / np.max(times))
+    within(gap, 1e-6, f"In unloading its relaxation times differ by {gap:.2g}.")
 
 
 @check(NormalLaw, claim="elastic_hertz")

@@ -74,15 +74,13 @@ void GranSubModTangentialMindlinSprings::mix_coeffs(double *icoeffs, double *jco
 void GranSubModTangentialMindlinSprings::calculate_forces()
 {
   double *history = &gm->history[history_index];
-  double kept[1 + CONTACTLAB_SPRINGS_STATE(MOST) + 3], moved[3] = {0.0, 0.0, 0.0}, slip[3];
-  double limit = mu * gm->normal_model->get_fncrit(), elastic = limit, damping = 0.0;
+  double kept[1 + CONTACTLAB_SPRINGS_STATE(MOST) + 3], moved[3] = {0.0, 0.0, 0.0};
 
   // N leads the history, so that a restart with another N or law is told
   if (history[0] != springs && (history[0] != 0.0 || history[1] != 0.0 || history[2] != 0.0))
     error->one(FLERR, "mindlin_springs: a contact has the history of another N or tangential model, not of N = {}",
                springs);
 
-  std::copy(gm->vtr, gm->vtr + 3, slip);
   if (gm->history_update) {
     for (int i = 0; i < 3; i++) moved[i] = gm->dt * gm->vtr[i];
     history[0] = springs;
@@ -91,20 +89,22 @@ void GranSubModTangentialMindlinSprings::calculate_forces()
     history = kept;
   }
 
-  if (xt > 0.0) {
-    damping = xt * gm->damping_model->get_damp_prefactor();
-    if (!gm->normal_model->get_cohesive_flag()) {
-      limit = mu * std::max(gm->Fntot, 0.0);
-      elastic = mu * std::max(gm->Fnormal, 0.0);
-    }
-    // velocities are those of half a step ago: the slip is continued from the last two
-    double *last = history + size_history - 3;
-    if (gm->history_update) {
-      if (history[1] > 0.0)
-        for (int i = 0; i < 3; i++) slip[i] += 0.5 * (slip[i] - last[i]);
-      std::copy(gm->vtr, gm->vtr + 3, last);
-    }
+  double limit = mu * gm->normal_model->get_fncrit(), elastic = limit;
+  if (xt == 0.0) {
+    contactlab_springs_step(history + 1, springs, moved, gm->nx, gm->contact_radius, limit, gm->Reff, k, gm->fs);
+    return;
+  }
+  if (!gm->normal_model->get_cohesive_flag()) {
+    limit = mu * std::max(gm->Fntot, 0.0);
+    elastic = mu * std::max(gm->Fnormal, 0.0);
+  }
+  // velocities are those of half a step ago: the slip is continued from the last two
+  double slip[3], *last = history + size_history - 3;
+  const double more = gm->history_update && history[1] > 0.0 ? 0.5 : 0.0;
+  for (int i = 0; i < 3; i++) {
+    slip[i] = gm->vtr[i] + more * (gm->vtr[i] - last[i]);
+    last[i] = gm->vtr[i];
   }
   contactlab_springs_damped_step(history + 1, springs, moved, gm->nx, gm->contact_radius, limit, gm->Reff, k, gm->fs,
-                                 elastic, damping, slip, gm->dt);
+                                 elastic, xt * gm->damping_model->get_damp_prefactor(), slip, gm->dt);
 }

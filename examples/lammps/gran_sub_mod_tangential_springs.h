@@ -21,7 +21,7 @@ namespace Granular_NS {
 
   // tangential mindlin_springs kt xt mu N
   //   kt  8 G*, 1/G* = sum (2 - nu)/G, in pressure units; NULL takes it from the material of the normal model
-  //   xt  tangential over normal damping; NULL takes one loss for both, G*/E* of the material; 0 elastic shear
+  //   xt  tangential over normal damping; NULL takes one loss for both, 4 G*/E*; 0 elastic shear
   //   mu  friction coefficient
   //   N   springs, even, 2 to 64; the history has 3 + 3 N numbers, and 3 more where xt is not 0
   class GranSubModTangentialMindlinSprings : public GranSubModTangential {

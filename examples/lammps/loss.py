@@ -1,8 +1,8 @@
-"""Damped impacts on a wall in LAMMPS, against one loss for pressure and shear, and the kernel alone.
+"""Damped impacts on a wall in LAMMPS, against one loss for pressure and shear.
 
-For each law: the largest and the rms error of psi2 at e = 0.7441 (Tsuji's damping), chi = 49/34, six psi1
-from stick to gross slip and ten sizes of the largest contact between two powers of two of the
-radius. Springs with loss are followed by the kernel alone too, along the same steps.
+For each law: the largest and the rms error of psi2 at e = 0.7441 (Tsuji's damping), chi = 49/34,
+six psi1 from stick to gross slip and ten sizes of the largest contact between two powers of two of
+the radius. Springs with loss are followed by the kernel alone too, along the same steps.
 
 Examples
 --------

@@ -36,7 +36,8 @@ PLAIN = (
 )  # fmt: skip
 
 ITEM = (
-    r"7. *mindlin_springs* : :math:`k_t` or NULL, :math:`x_{\gamma,t}`, :math:`\mu_s`, :math:`N`"
+    r"7. *mindlin_springs* : :math:`k_t` or NULL, :math:`x_{\gamma,t}` or NULL, "
+    r":math:`\mu_s`, :math:`N`"
     "\n"
 )
 SECTION = r"""
@@ -63,14 +64,21 @@ halves.  Nothing about the future of the contact needs to be known, and no path
 gains energy.  A change of the tangent plane is treated as for *mindlin*.
 
 The number of springs :math:`N` is even, from 2 to 64, and a contact stores
-:math:`3 + 3N` values.  After an impact of elastic spheres, the tangential
-velocity of the contact point, in units of
+:math:`3 + 3N` values, and three more with damping.  After an impact of elastic
+spheres, the tangential velocity of the contact point, in units of
 :math:`\mu_s v_n E_{eff}/(4 G_{eff})`, differs from the solution of
 :ref:`Maw et al <Maw1976>` by at most 0.022 with :math:`N = 8`, and by 0.47 to
 0.66 with the *mindlin* options, if a contact takes 50 time steps.  A contact
-needs at least 14 time steps.  The stiffness :math:`k_t` is that of *mindlin*;
-:math:`x_{\gamma,t}` adds tangential damping within what the springs leave of
-the Coulomb limit.
+needs at least 14 time steps.  The stiffness :math:`k_t` is that of *mindlin*.
+
+The damping :math:`x_{\gamma,t}` is that of a contact that sticks over the normal
+damping, as for *mindlin*, but each spring carries its part up to its own limit:
+with :math:`A = x_{\gamma,t} \eta_n / (k_t a)` its force is
+:math:`\mathbf{f}_i = \mathbf{w}_i + A \dot{\mathbf{w}}_i`,
+:math:`\|\mathbf{f}_i\| \le l_i`, and the limits share the normal damping too.
+*NULL* takes one relaxation time for normal and tangential motion,
+:math:`x_{\gamma,t} = 4 G_{eff}/E_{eff}`, which is :math:`2 (1 - \nu)/(2 - \nu)`
+for like materials.  Zero is elastic shear.
 
 .. note::
 
@@ -85,8 +93,8 @@ For *tangential mindlin_springs* the stiffness, also that from *NULL*, is mixed 
 
    k_{t,ij} = \frac{2 k_{t,i} k_{t,j}}{k_{t,i} + k_{t,j}}
 
-which is the stiffness of the two materials in contact.  The larger :math:`N` is
-used.
+which is the stiffness of the two materials in contact.  The ratio
+:math:`x_{\gamma,t}/k_t` is averaged, and the larger :math:`N` is used.
 """
 MAW = """Maw, N., Barber, J. R., & Fawcett, J. N. (1976).
 The oblique impact of elastic spheres. Wear, 38(1), 101-114."""

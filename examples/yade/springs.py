@@ -83,8 +83,10 @@ class Springs:
 def _mass(one, other):
     """Return the mass of the pair, as YADE's damping takes it."""
     masses = [body.state.mass for body in (one, other) if body.dynamic]
-    return masses[0] if len(masses) == 1 else one.state.mass * other.state.mass / (
-        one.state.mass + other.state.mass
+    return (
+        masses[0]
+        if len(masses) == 1
+        else one.state.mass * other.state.mass / (one.state.mass + other.state.mass)
     )
 
 

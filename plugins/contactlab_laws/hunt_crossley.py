@@ -8,12 +8,11 @@ from typing import Any, ClassVar, NamedTuple
 
 import attrs
 
-from contactlab.contracts import NormalContact, without_tension
+from contactlab.contracts import NormalContact, NormalLaw, without_tension
 from contactlab.contracts.restitution import one_of_two, restitution, root
 from contactlab.impact.hertz import hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, Real, quantity
-from contactlab_laws.differences.table import OfRestitution
 
 #: Default restitution, for laws with no damping of their own.
 DEFAULT_RESTITUTION = 0.9
@@ -41,7 +40,7 @@ class Parts(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class HuntCrossley(OfRestitution):
+class HuntCrossley(NormalLaw):
     """Hertz's force times 1 + lambda z': no jump at first touch, no tension in an impact.
 
     P = k z^1.5 (1 + lambda z'), k = (4/3) E* sqrt(R), in N, positive in compression, z' positive

@@ -8,12 +8,11 @@ from typing import Any, ClassVar, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.contracts import NormalContact, without_tension
+from contactlab.contracts import NormalContact, NormalLaw, without_tension
 from contactlab.contracts.restitution import one_of_two, restitution
 from contactlab.impact.hertz import hertz_scales, hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, Real, quantity
-from contactlab_laws.differences.table import OfRestitution
 
 #: Default restitution, for laws with no relaxation time of their own.
 DEFAULT_RESTITUTION = 0.9
@@ -70,7 +69,7 @@ class Parts(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class KuwabaraKono(OfRestitution):
+class KuwabaraKono(NormalLaw):
     """Hertz contact of viscoelastic spheres, to first order in the viscosity.
 
     P = k z^0.5 (z + 1.5 A z'), k = (4/3) E* sqrt(R), P in N, positive in compression, z' positive

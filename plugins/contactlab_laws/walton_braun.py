@@ -7,12 +7,11 @@ from typing import Any, ClassVar, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.contracts import NormalContact
+from contactlab.contracts import NormalContact, NormalLaw
 from contactlab.contracts.restitution import restitution
 from contactlab.impact.hertz import linear_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import POSITIVE, Real, quantity
-from contactlab_laws.differences.table import OfRestitution
 
 
 class State(NamedTuple):
@@ -24,7 +23,7 @@ class State(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class WaltonBraun(OfRestitution):
+class WaltonBraun(NormalLaw):
     """Plastic loading P = k1 z and elastic unloading P = k2 (z - z_p), with e = sqrt(k1/k2).
 
     P is in N, positive in compression; the remaining indentation is z_p = (1 - e²) z_max. In

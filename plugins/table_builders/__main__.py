@@ -26,8 +26,8 @@ def main() -> int:
         verifying.add_argument("--count", type=int, default=count, help=f"impacts ({count})")
         verifying.add_argument("--seed", type=int, default=1)
         these.add_parser("bench", help="print the processor time an impact takes")
+        these.add_parser("thin", help="write it, thinned, into the kernels for games")
         if table is elastic:
-            these.add_parser("thin", help="write it, thinned, into the kernels for games")
             _options(building, verifying)
     asked = parser.parse_args()
     if asked.table == "coupling":
@@ -104,6 +104,12 @@ def _restituted(asked: argparse.Namespace) -> int:
         from table_builders.restituted.build import build
 
         build(SHIPPED)
+        return 0
+    if asked.command == "thin":
+        from table_builders.restituted import thin
+
+        for file in thin.write():
+            print(file)
         return 0
     from table_builders.restituted.checks import bench, verify
 

@@ -8,14 +8,16 @@ const given = value => (value === 0 ? undefined : value);
 const body = ([radius, mass, inertia, young, poisson]) => ({
   radius: given(radius), mass: given(mass), inertia: given(inertia), young, poisson,
 });
-for (let k = 0; k < rows.length; k += 26) {
-  const row = Array.from(rows.subarray(k, k + 26)), part = at => row.slice(at, at + 3);
+for (let k = 0; k < rows.length; k += 27) {
+  const row = Array.from(rows.subarray(k, k + 27)), part = at => row.slice(at, at + 3);
+  const contact = {friction: row[10], restitution: row[11]};
   try {
-    const made = bounce(body(row.slice(0, 5)), body(row.slice(5, 10)), row[10], ...[11, 14, 17, 20, 23].map(part));
+    const made = bounce(body(row.slice(0, 5)), body(row.slice(5, 10)), contact, ...[12, 15, 18, 21, 24].map(part));
     answers.push(Number(made.bounced), ...made.velocity, ...made.spin, ...made.otherVelocity, ...made.otherSpin);
   } catch (error) {
     if (!(error instanceof RangeError)) throw error;
-    answers.push(-1, ...row.slice(14));
+    answers.push(-1, ...row.slice(15));
   }
 }
 writeFileSync(process.argv[3], Float64Array.from(answers));
+

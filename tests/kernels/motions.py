@@ -53,7 +53,8 @@ def damped(rows, seed):
     limit = np.where(random.uniform(size=steps) < 0.02, 0.0, rows[:, 7])
     lag = TIME * 10.0 ** np.repeat(random.uniform(-2.0, 2.0, steps // 20 + 1), 20)[:steps]
     lag[random.uniform(size=steps) < 0.02] = 0.0
-    moved = rows[:, :3] * 10.0 ** np.repeat(random.uniform(-3.0, 0.0, (steps // 20 + 1, 1)), 20, 0)[:steps]
+    sizes = np.repeat(10.0 ** random.uniform(-3.0, 0.0, steps // 20 + 1), 20)[:steps]
+    moved = rows[:, :3] * sizes[:, None]
     velocity = moved / TIME * random.uniform(0.5, 1.5, (steps, 1))
     damping = lag * MODULUS * rows[:, 6]
     return np.column_stack([moved, rows[:, 3:7], limit, elastic, damping, velocity])
@@ -82,7 +83,7 @@ def by_vectors(springs, rows):
     size, before, w, forces = 0.0, 0.0, np.zeros((springs, 3)), []
     for row in rows:
         step, normal, radius, limit = row[:3], row[3:6], row[6], row[7]
-        elastic, damping, velocity = (row[8], row[9], row[10:]) if len(row) > 8 else (limit, 0, step)
+        elastic, damping, *velocity = row[8:] if len(row) > 8 else (limit, 0.0, *step)
         lag = damping / (MODULUS * radius) if radius > 0.0 else 0.0
         if lag > 0.0 and limit < elastic:
             radius *= (limit / elastic) ** (1.0 / 3.0)
@@ -133,7 +134,7 @@ def cut(vector, most):
 
 
 def relaxing(held, trial, x, before, after):
-    """Return w after x relaxation times: w' = (f - w)/A, abs(f) below a limit that changes evenly."""
+    """Return w after x relaxation times: w' = (f - w)/A, abs(f) up to a limit on a line."""
     left, gone = np.exp(-x), -np.expm1(-x)
     mean = quad(lambda t: (before + (after - before) * t) * x * np.exp(-x * (1.0 - t)), 0.0, 1.0,
                 epsabs=0.0, epsrel=1e-13)[0]  # fmt: skip

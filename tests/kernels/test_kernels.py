@@ -232,7 +232,7 @@ console.log(JSON.stringify([first, force]));
 def test_what_the_notes_say_of_spin_about_the_normal(tmp_path):
     """Two bodies that spin about the normal together take the force along."""
     notes = (KERNELS / "README.md").read_text("utf-8")
-    lines = notes[notes.index("    const about") : notes.index("### How many")]
+    lines = notes[notes.index("    const about") : notes.index("### Where the")]
     kernel = json.dumps((KERNELS / "contactlab_springs.mjs").as_uri())
     first, second = answered(SPINNING.format(kernel=kernel, lines=lines), tmp_path)
     normal = np.array([0.6, 0.0, 0.8])

@@ -1,4 +1,4 @@
-"""Shear that takes the loss of a damped normal force: kernels in C and JavaScript (theory §15)."""
+"""Shear that takes the loss of a damped normal force: kernels in C and JavaScript."""
 
 import ctypes
 import functools
@@ -192,7 +192,7 @@ def hunt_crossley(overlap, rate, share=0.2):
 
 
 def viscoelastic(overlap, rate, lag=0.1):
-    """Return the three of §15's contact."""
+    """Return the three of the viscoelastic contact."""
     elastic, damping = overlap**1.5, 1.5 * lag * overlap**0.5
     if rate >= 0.0:
         return elastic, damping * rate, damping
@@ -229,7 +229,7 @@ def impact(step, law, psi1, *, springs, steps=200, unit=1.0, start=0.5, shear_lo
     return slip @ along, rate, heat
 
 
-#: psi2 of springs that share the loss of a law (theory §15), by psi1.
+#: psi2 of springs that share the loss of a law, by psi1.
 PSI1 = (0.5, 1.0, 2.0, 3.0, 4.0, 8.0)
 TSUJI = dict(zip(PSI1, (-0.04377, -0.13498, -0.59223, -0.99929, -0.94568, 2.97295), strict=True))
 STRONG = dict(zip(PSI1, (-0.06384, -0.13210, -0.27882, -0.44378, 0.17026, 4.17026), strict=True))
@@ -274,7 +274,7 @@ def test_contacts_of_any_size_and_any_start(step, springs, bound):
                                *longer((4.0, (0.105, 0.150, 0.199)))]
 )  # fmt: skip
 def test_shear_loss_is_a_number(step, shear_loss, ratios):
-    """-psi2/psi1 of §15, which has three digits."""
+    """-psi2/psi1 of the theory, to three digits."""
     for psi1, ratio in zip((1.0, 2.0, 3.0), ratios, strict=True):
         found = impact(step, viscoelastic, psi1, springs=50, shear_loss=shear_loss)[0]
         assert -found / psi1 == pytest.approx(ratio, abs=1e-3)

@@ -261,8 +261,8 @@ def test_the_caution_has_the_size_of_the_evidence():
     """None where it slips throughout, none at e = 1; metals and deep contacts are told."""
     rubber = Material(young_modulus=3e6, poisson_ratio=0.45, density=1000.0)
     ball = Scene(
-        sphere=Sphere(radius=0.03, material=rubber), target=HalfSpace(RIGID), normal_speed=5.0, tangential_velocity=2.0,
-        friction_coefficient=0.5,
+        sphere=Sphere(radius=0.03, material=rubber), target=HalfSpace(RIGID),
+        normal_speed=5.0, tangential_velocity=2.0, friction_coefficient=0.5,
     )  # fmt: skip
     plan = springs(viscoelastic(0.8)).plan(ball)
     assert any("e_T" in text and "0.16 at e = 0.8" in text for text in map(str, plan.cautions))
@@ -282,3 +282,31 @@ def test_the_caution_has_the_size_of_the_evidence():
 def test_a_loss_in_shear_out_of_range_is_refused(loss):
     with pytest.raises(ValueError, match=r"shear_loss = .*must"):
         contactlab.create("tangential.springs", shear_loss=loss)
+
+
+def test_step_by_step_is_all_at_once():
+    """Forces and both losses, also beside other impacts and in several axes."""
+    simulation = springs(viscoelastic(0.5), 20, 80)
+    one = PLANAR(psi1=1.2, chi=1.4)
+    whole, stepped = simulation.run(one), simulation.run(one, history="fields")
+    for name in ("friction_work", "shear_loss", "slip_velocity_change"):
+        expected = getattr(stepped.motion, name)
+        assert getattr(whole.motion, name) == pytest.approx(expected, rel=1e-12), name
+    batch = simulation.run(PLANAR(psi1=[[1.2, 3.0], [0.5, 8.0]], chi=1.4))
+    assert batch.psi2[0, 0] == pytest.approx(whole.psi2, abs=1e-12)
+
+
+def test_a_relaxation_time_gives_each_speed_its_restitution():
+    """1 - e grows as v1^(1/5) at first; a batch is each impact alone."""
+    law = contactlab.create("normal.viscoelastic", relaxation_time=2e-5)
+    speeds = np.array([1e-6, 3.2e-5, 1.024e-3])
+    rubber = Material(young_modulus=3e6, poisson_ratio=0.45, density=1000.0)
+    scene = Scene(
+        sphere=Sphere(radius=0.03, material=rubber), target=HalfSpace(RIGID),
+        normal_speed=speeds, tangential_velocity=0.3 * speeds, friction_coefficient=0.3,
+    )  # fmt: skip
+    result = springs(law, 12, 50).run(scene).check()
+    lost = 1.0 - np.asarray(result.normal_restitution)
+    assert lost[1:] / lost[:-1] == pytest.approx(2.0, rel=0.05)
+    alone = [springs(law, 12, 50).run(scene.take(k)).psi2 for k in range(3)]
+    assert result.psi2 == pytest.approx(alone, abs=1e-9)

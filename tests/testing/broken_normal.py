@@ -7,10 +7,13 @@ from typing import ClassVar
 import attrs
 import numpy as np
 
+import contactlab
 from contactlab.contracts import NormalContact, NormalLaw
 from tests.laws.outside_laws import Plastic
 from tests.testing.fresh_faults import HERTZ, MOTION
 from tests.testing.made import altered, broken
+
+Viscoelastic = type(contactlab.create("normal.viscoelastic"))
 
 
 class Altered(HERTZ):
@@ -63,6 +66,12 @@ class Stepwise(NormalLaw):
 
     def alter(self, contact, dashpot, rate):
         return contact
+
+
+class Viscous(Stepwise):
+    """Says that it is viscous."""
+
+    viscous = True
 
 
 class EndsUnderLoad(Stepwise):
@@ -169,6 +178,25 @@ BROKEN = [
          "motion_agrees", "The force of the motion is 1.0e-02 off"),
         ("Wide", lambda contact, *_: contact._replace(radius=1.01 * contact.radius),
          "elastic_hertz", "The radius is 0.01 off Hertz's"),
+    ),
+    *broken(Viscous, "alter",
+        ("ViscousAtRestToo", lambda contact, dashpot, _: contact._replace(
+             force=contact.force + 0.1 * dashpot),
+         "viscous", "its force at rest is"),
+        ("ViscousAndWider", lambda contact, *_: contact._replace(radius=1.1 * contact.radius),
+         "viscous", "its radius is 0.1 off"),
+        ("ViscousWithoutLoss", lambda contact, *_: contact,
+         "viscous", "resists an approach no more than rest"),
+    ),
+    *altered(Viscoelastic, "respond",
+        ("PartsLater", lambda contact, state, *_: (
+             contact._replace(radius=1.01 * contact.radius), state),
+         "kelvin_voigt", "its force is 0.029 off"),
+    ),
+    *broken(Viscoelastic, "respond",
+        ("RelaxesAtNoOneTime", lambda state, approach, rate: Viscoelastic().respond(
+             state, approach, rate * abs(rate)),
+         "kelvin_voigt", "relaxation times differ"),
     ),
     *broken(Stepwise, "alter",
         ("PushesBothWays",

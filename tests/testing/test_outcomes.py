@@ -210,6 +210,11 @@ def test_tests_of_pytest_are_those_that_a_law_claims(few):
 
 def test_words_that_a_law_may_offer_are_those_that_checks_test():
     contracts = contactlab.contracts
-    assert claims(contracts.NormalLaw) == {"radius", "hertzian_pressure", "elastic_hertz"}
+    assert claims(contracts.NormalLaw) == {
+        "radius",
+        "hertzian_pressure",
+        "elastic_hertz",
+        "kelvin_voigt",
+    }
     assert claims(contracts.TangentialLaw) == {"partial_slip", "rigid", "no_friction"}
     assert claims(contracts.Integrator) == set()

@@ -21,6 +21,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, choice, count
 from contactlab_laws.annulus import all_steps, step
 from contactlab_laws.annulus.tables import Tables, hertz_pressure, tables
+from contactlab_laws.differences import table as differences
 from contactlab_laws.jaeger.all_steps import ScaledSteps
 from contactlab_laws.jaeger.partial_slip import PartialSlip, Scales, hemisphere
 
@@ -43,7 +44,8 @@ class Annulus(PartialSlip):
 
     The pressures in the middles of (34) carry the load P to within about n^-1.5. Under Hertz's
     law they are those of the paper; under any other law they are scaled to carry P, so that gross
-    slip is exact.
+    slip is exact. Shear is elastic: under a viscous normal law the loss is in pressure alone, where
+    springs share it (theory §15).
 
     Parameters
     ----------
@@ -75,7 +77,8 @@ class Annulus(PartialSlip):
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of every law, and one on a pressure that may be no hemisphere."""
-        return (*super().cautions(scene, normal), *hemisphere(normal))
+        own = (*differences.choice(scene, normal), *hemisphere(normal))
+        return (*super().cautions(scene, normal), *own)
 
     def path_cautions(self) -> tuple[str, ...]:
         """Return the caution that the force at gross slip is that of the annuli, not mu N."""

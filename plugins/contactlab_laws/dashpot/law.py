@@ -18,7 +18,6 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import POSITIVE, Real, quantity
 from contactlab_laws.dashpot.motion import DashpotMotion, ScaledMotion
 from contactlab_laws.dashpot.oscillator import damping_of
-from contactlab_laws.differences.table import OfRestitution
 from contactlab_laws.hertz.motion import HertzMotion
 
 
@@ -40,7 +39,7 @@ def pressed(parts: Parts, approach: Real, rate: Real, powers: tuple[float, float
 
 
 @attrs.frozen(kw_only=True)
-class Tsuji(OfRestitution, ClosedFormNormalLaw):
+class Tsuji(ClosedFormNormalLaw):
     """Hertz's spring with a dashpot that gives the same restitution at any speed.
 
     P = k z^1.5 + 2 beta sqrt(1.25 M k) z^0.25 z', k = (4/3) E* sqrt(R), in N, positive in
@@ -89,7 +88,7 @@ class Tsuji(OfRestitution, ClosedFormNormalLaw):
 
 
 @attrs.frozen(kw_only=True)
-class Linear(OfRestitution, ClosedFormNormalLaw):
+class Linear(ClosedFormNormalLaw):
     """A linear spring and dashpot.
 
     P = k z + 2 beta sqrt(M k) z', in N, positive in compression; contact ends where P returns to

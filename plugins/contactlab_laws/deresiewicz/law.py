@@ -20,6 +20,7 @@ from contactlab.contracts import (
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 from contactlab_laws.deresiewicz.branches import ContactState, Step, followed
+from contactlab_laws.differences import table as differences
 from contactlab_laws.jaeger.partial_slip import hemisphere
 
 #: Bound of the imbalance of the energy books, over the energy at the start: from the short memory.
@@ -71,7 +72,8 @@ class MindlinDeresiewicz(SteppedTangentialLaw):
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of every law, of the pressure, and of the short memory."""
-        return (*super().cautions(scene, normal), *hemisphere(normal), SHORT_MEMORY)
+        own = (*differences.choice(scene, normal), *hemisphere(normal), SHORT_MEMORY)
+        return (*super().cautions(scene, normal), *own)
 
     def path_cautions(self) -> tuple[str, ...]:
         """Return the caution of a memory that holds few turning points."""

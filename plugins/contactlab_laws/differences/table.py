@@ -12,7 +12,6 @@ import numpy as np
 
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
-from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.scene import Scene
 
 FILE = Path(__file__).with_name("differences.csv")
@@ -40,13 +39,16 @@ class Row(NamedTuple):
     ----------
     restitution : float
     choice : float
-        Between this normal law and Tsuji's of the same restitution.
+        Between this normal law and Tsuji's of the same restitution, with elastic shear.
+    shared : float
+        The same where shear shares the loss of viscous normal laws.
     springs : tuple of float
         Between independent springs and Coulomb's law at every point, at the chi of ``NODES``.
     """
 
     restitution: float
     choice: float
+    shared: float
     springs: tuple[float, ...]
 
 
@@ -61,8 +63,8 @@ def rows() -> dict[str, tuple[Row, ...]]:
     table: dict[str, list[Row]] = {}
     with FILE.open(encoding="utf-8", newline="") as file:
         for law, *numbers in list(csv.reader(file))[1:]:
-            e, choice, *springs = map(float, numbers)
-            row = Row(e, choice, tuple(springs))
+            e, choice, shared, *springs = map(float, numbers)
+            row = Row(e, choice, shared, tuple(springs))
             table.setdefault(law.replace(".law.", "."), []).append(row)
     return {law: tuple(sorted(each)) for law, each in table.items()}
 
@@ -102,8 +104,11 @@ def _by_springs(measured: tuple[Row, ...], e: Any, chi: Any) -> float:
     return largest
 
 
-def choice(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-    """Return the caution that another normal law of the same e moves psi2, with its size."""
+def choice(scene: Scene, normal: NormalMotion, *, shared: bool = False) -> tuple[str, ...]:
+    """Return the caution that another normal law of the same e moves psi2, with its size.
+
+    ``shared`` is True if shear shares the loss of viscous normal laws.
+    """
     if not scene.rubs:
         return ()
     measured, own = rows(), key(normal.law)
@@ -113,29 +118,22 @@ def choice(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         if np.all(_restitution(normal) == 1.0):
             return ()  # no damping: Hertz's motion
         sizes = {
-            law.rpartition(".")[2]: _largest(normal, each)
+            law.rpartition(".")[2]: _largest(normal, each, shared)
             for law, each in measured.items()
             if law != own and each[0].restitution <= SPANNED
         }
         least, most = (pick(sizes, key=sizes.__getitem__) for pick in (min, max))
         size_text = f"{_above(sizes[least])} ({least}) to {_above(sizes[most])} ({most})"
     else:
-        size = _largest(normal, measured[own])
+        size = _largest(normal, measured[own], shared)
         if not size >= LEAST:
             return ()
         size_text = f"{_above(size)} (Tsuji)"
+    shear = "where shear shares the loss" if shared else "with elastic shear"
     return (
-        "the restitution alone does not decide psi2: under partial slip other normal laws of the "
+        f"the restitution alone does not decide psi2: {shear} other normal laws of the "
         f"same restitution move psi2 by up to {size_text} ({MEASURED}; model, not numerical error)",
     )
-
-
-class OfRestitution(NormalLaw):
-    """Base of laws whose restitution is an option: another law of equal e moves psi2."""
-
-    def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
-        """Return the cautions of every law, and how far psi2 moves with other laws of equal e."""
-        return (*super().cautions(scene, motion), *choice(scene, motion))
 
 
 def _above(size: float, factor: float = BETWEEN) -> str:
@@ -145,11 +143,12 @@ def _above(size: float, factor: float = BETWEEN) -> str:
     return f"{float(digit):.1g}"
 
 
-def _largest(normal: NormalMotion, measured: tuple[Row, ...]) -> float:
+def _largest(normal: NormalMotion, measured: tuple[Row, ...], shared: bool) -> float:
     """Return the largest difference from Tsuji's law, interpolated in the restitution."""
     e = _restitution(normal)
     tabulated = [row.restitution for row in measured]
-    sizes = np.interp(e, tabulated, [row.choice for row in measured])
+    largest = [row.shared if shared else row.choice for row in measured]
+    sizes = np.interp(e, tabulated, largest)
     return float(np.nanmax(sizes)) if np.isfinite(sizes).any() else 0.0
 
 

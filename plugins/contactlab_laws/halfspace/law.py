@@ -11,6 +11,7 @@ from contactlab.contracts import Law, NormalLaw, NormalMotion, WholeImpact, Whol
 from contactlab.impact.coupling import coupling_number
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, choice, count, flag, refuse
+from contactlab_laws.differences import table as differences
 from contactlab_laws.halfspace.groups import Options
 from contactlab_laws.halfspace.whole_impacts import own_answers
 from contactlab_laws.jaeger.gross_slip import gross_slip
@@ -124,6 +125,8 @@ class HalfSpace(WholeImpactTangentialLaw):
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the caution of coupling, if it is left out, and of the pressure."""
-        own = () if self.coupling == "two_way" else hemisphere(normal)
+        own = differences.choice(scene, normal)
+        if self.coupling != "two_way":
+            own = (*own, *hemisphere(normal))
         left_out = super().cautions(scene, normal) if self.coupling == "none" else ()
         return (*left_out, *own)

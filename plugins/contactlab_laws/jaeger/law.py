@@ -20,7 +20,7 @@ from contactlab.contracts import (
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat
 from contactlab.numeric.checks import Real
-from contactlab_laws.differences.table import springs
+from contactlab_laws.differences import table as differences
 from contactlab_laws.jaeger import all_steps, step
 from contactlab_laws.jaeger.bundle import Array, bundle, spring_fields
 from contactlab_laws.jaeger.partial_slip import PartialSlip, Scales, hemisphere
@@ -49,7 +49,11 @@ class ProfileLaw(PartialSlip):
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of every law, of separately limited springs, and of the pressure."""
-        own = (*springs(scene, normal), *hemisphere(normal))
+        own = (
+            *differences.choice(scene, normal),
+            *differences.springs(scene, normal),
+            *hemisphere(normal),
+        )
         return (*super().cautions(scene, normal), *own)
 
     def start(self, scene: Scene, normal: NormalMotion) -> State:

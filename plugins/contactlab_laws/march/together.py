@@ -34,8 +34,8 @@ from contactlab_laws.march.division import resolving
 #: A contact that lasts longer than so many times the approach without friction is given up.
 LONGEST = 100
 #: Turns in which a step solves for rates at which its forces act, where forces depend on rates;
-#: steps that grow evenly at first touch, where such forces go as the root of time.
-TURNS, LEADING = 3, 10
+#: share of the steps that grow evenly at first touch, where such forces go as the root of time.
+TURNS, LEADING = 3, 0.4
 #: Energy of the deepest contact that is followed, over that of the approach without friction.
 DEEPEST = 1e10
 
@@ -104,6 +104,7 @@ class _March:
             return float(value) if plain else np.array(np.broadcast_to(value, scene.shape))
 
         self.step = entry(np.asarray(normal.duration) / count)
+        self.leading = np.ceil(LEADING * count)
         self.most = int(LONGEST * np.max(count, where=np.isfinite(count), initial=1.0))
         W: Any = scene.inverse_mass
         size = 1 + self.axes
@@ -235,9 +236,9 @@ class _March:
 
     def _width(self) -> Any:
         """Return the width of the next step in s."""
-        if self.elastic or self.steps >= LEADING:
+        if self.elastic:
             return self.step
-        return self.step * ((self.steps + 0.5) / LEADING)
+        return self.step * np.minimum((self.steps + 0.5) / self.leading, 1.0)
 
     def _sampled(self, approach: Any, at: list[Any], force: list[Any], step: Any) -> Sampled:
         """Return the motion where the forces act, as far as it is known."""

@@ -24,7 +24,8 @@ from contactlab.contracts import (
     sliding,
 )
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real, Rule, choice, count, quantity, refuse
+from contactlab.numeric.checks import Real, Rule, choice, count, flag, quantity, refuse
+from contactlab_laws.differences import table as differences
 from contactlab_laws.jaeger.law import ProfileLaw
 from contactlab_laws.springs import doubling, viscous, viscous_steps
 
@@ -62,6 +63,9 @@ class Springs(ProfileLaw):
         Relaxation time in shear over that in pressure, under a viscous normal law: 1, the
         default, is the theory of one loss for both (theory §15); 0 is shear without loss. Other
         numbers are for fits. Normal laws that are not viscous have no loss in shear.
+    table : bool
+        Take psi2 from the table of restitutions where it is there: under ``normal.viscoelastic``
+        with a restitution, chi 0.3 to 3. What asks for a history is marched.
 
     References
     ----------
@@ -78,6 +82,7 @@ class Springs(ProfileLaw):
     springs: int = count(default=50, most=100_000)
     grid: str = choice("largest", "doubling", default="largest")
     shear_loss: float = quantity("1", rule=SHEAR_LOSS, default=1.0)
+    table: bool = flag(default=False)
 
     def __attrs_post_init__(self) -> None:
         if self.grid == "doubling" and self.springs % 2:
@@ -108,10 +113,19 @@ class Springs(ProfileLaw):
         if "kelvin_voigt" in normal.offers:
             least = normal.final_rate * scene.friction_coefficient / scene.pair.stiffness_ratio
         where = (abs(scene.psi1) >= 1.0) & (reduced >= least)
-        if not scene.shape and not where:
-            return known
-        reason = "the impact slips from start to end"
-        return (*known, sliding(scene, normal, where=where, reason=reason, stops=False))
+        if scene.shape or where:
+            reason = "the impact slips from start to end"
+            known = (*known, sliding(scene, normal, where=where, reason=reason, stops=False))
+        return (*known, *self._tabulated(scene, normal))
+
+    def _tabulated(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
+        """Return the answer of the table of restitutions, if it is asked for and there is one."""
+        e = getattr(normal.law, "restitution", None)
+        if not self.table or "kelvin_voigt" not in normal.offers or e is None:
+            return ()
+        from contactlab_laws.viscoelastic.whole_impacts import tabulated  # springs need no table
+
+        return tabulated(scene, e)
 
     def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:
         """Return the error of springs that share a loss, measured for chi up to 6; else NaN."""
@@ -129,7 +143,8 @@ class Springs(ProfileLaw):
         from contactlab_laws.viscoelastic import evidence  # springs without loss need none of it
 
         fitted = self.shear_loss != 1.0
-        own = evidence.cautions(scene, normal, fitted=fitted)
+        lost = evidence.cautions(scene, normal, fitted=fitted)
+        own = (*differences.choice(scene, normal, shared=True), *lost)
         return (*TangentialLaw.cautions(self, scene, normal), *own)
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:

@@ -279,7 +279,7 @@ def moved(
     in_contact = total > 0.0
     per_total = 1.0 / np.where(in_contact, total, 1.0)
     weight = drive.limit * per_total
-    share, slip, traction = solved(
+    share, traction, slip = solved(
         deflection, most, lead, drive, per_total, out=np.empty_like(deflection)
     )
     if not in_contact.all():
@@ -300,7 +300,7 @@ def moved(
 def solved(
     deflection: Array, most: Array, lead: Array, drive: Drive, per_total: Array, *, out: Array
 ) -> tuple[Array, Array, Array]:
-    """Return share of Coulomb's limit, slip velocity and tractions, which depend on each other.
+    """Return share of Coulomb's limit, tractions, and the slip velocity that they belong to.
 
     From the force of the last step one turn is of second order; where the force moves the slip
     velocity much, as by a long relaxation in a light body, Newton's method is. ``out`` takes the
@@ -311,22 +311,24 @@ def solved(
     traction = np.add(deflection, lead * drive.slip, out=out)
     _cut(traction, most)
     found = np.ones(len(traction)).dot(traction) * per_total
-    slip = drive.slip + (share - found) * (drive.mobility * drive.acting)
-    hard = np.flatnonzero(stiff * len(traction) > STIFF)
+    slip = np.broadcast_to(drive.slip, share.shape)
+    hard = np.flatnonzero(stiff * np.count_nonzero(most, axis=0) > STIFF)
     if not hard.size:
-        return found, slip, traction
+        return found, traction, slip
     few = [np.broadcast_to(each, share.shape)[hard] for each in (lead, stiff, per_total)]
     push = (drive.mobility * drive.acting)[hard]
     one, at, limits = share[hard], drive.slip[hard], most[:, hard if most.shape[1] > 1 else 0, ...]
     limits = limits.reshape(len(most), -1)
+    slip = slip.copy()
     for _ in range(TURNS):
+        slip[hard] = at
         pulled = deflection[:, hard] + few[0] * at
         stuck = (np.abs(pulled) < limits).sum(axis=0)
         _cut(pulled, limits)
         new = one + (pulled.sum(axis=0) * few[2] - one) / (1.0 + few[1] * stuck)
         at, one = at + (one - new) * push, new
-    found[hard], slip[hard], traction[:, hard] = one, at, pulled
-    return found, slip, traction
+    found[hard], traction[:, hard] = one, pulled
+    return found, traction, slip
 
 
 def _real(first: Any, second: Any) -> Any:

@@ -175,7 +175,7 @@ def _march(
         slip = slip - mobility[k] * force
         drive = viscous.Drive(move, drift[k], slip, force, mobility[k], limit[k], acting[k], scale)
         most = grid.most[k, :now, None]
-        share, slip, f = viscous.solved(held, most, lead[k], drive, grid.per_total[k], out=f)
+        share, f, _ = viscous.solved(held, most, lead[k], drive, grid.per_total[k], out=f)
         if grid.per_total[k] == 0.0:
             share = viscous.alone(lead[k] * drive.slip, grid.excess[k], last_share)
         last_share = share

@@ -51,14 +51,14 @@ def impacts(e: float) -> tuple[Array, Array]:
     return psi1, np.tile(CHI, 2 * COUNT)
 
 
-def springs(law: NormalLaw, psi1: Array, chi: Array) -> Array:
+def springs(law: NormalLaw, psi1: Array, chi: Array, *, shear_loss: float = 1.0) -> Array:
     """Return psi2 by springs, extrapolated in their number, shape (impacts,)."""
     scene = Scene.nondimensional(psi1=psi1, chi=chi)
     psi2 = []
     for count in (SPRINGS // 2, SPRINGS):
         simulation = Simulation(
             normal=law,
-            tangential=REGISTRY.create("tangential.springs", springs=count),
+            tangential=REGISTRY.create("tangential.springs", springs=count, shear_loss=shear_loss),
             integrator=REGISTRY.create("integrator.symplectic", steps=4 * count),
         )
         psi2.append(np.asarray(simulation.sweep(scene).check().psi2))
@@ -93,7 +93,14 @@ def by_springs(law: NormalLaw, e: float) -> Iterator[float]:
     for chi in NODES:
         psi1 = np.linspace(0.0, 2.0 * chi * (1.0 + e) + 1.0, SPEEDS + 1)[1:]
         ratio = np.full(SPEEDS, chi)
-        yield float(np.abs(springs(law, psi1, ratio) - pointwise(law, psi1, ratio)).max())
+        elastic = springs(law, psi1, ratio, shear_loss=0.0)
+        yield float(np.abs(elastic - pointwise(law, psi1, ratio)).max())
+
+
+@cache
+def tsuji_sharing(e: float) -> Array:
+    """Return psi2 of the impacts under Tsuji's law, whose loss springs share."""
+    return springs(REGISTRY.create("normal.tsuji", restitution=e), *impacts(e))
 
 
 def row(law: NormalLaw) -> list[str]:
@@ -103,7 +110,10 @@ def row(law: NormalLaw) -> list[str]:
     psi1, chi = impacts(e)
     exact = pointwise(law, psi1, chi)
     choice = float(np.abs(tsuji(e) - exact).max())
-    return [key(law), f"{e:g}", *(f"{size:.1e}" for size in (choice, *by_springs(law, e)))]
+    sharing = springs(law, psi1, chi) if law.viscous else exact
+    shared = float(np.abs(tsuji_sharing(e) - sharing).max())
+    sizes = choice, shared, *by_springs(law, e)
+    return [key(law), f"{e:g}", *(f"{size:.1e}" for size in sizes)]
 
 
 def write() -> None:
@@ -115,4 +125,4 @@ def write() -> None:
     with FILE.open("w", encoding="utf-8", newline="") as file:
         lines = csv.writer(file, lineterminator="\n")
         heads = [f"springs chi={chi:g}" for chi in NODES]
-        lines.writerows([["law", "restitution", "choice", *heads], *measured])
+        lines.writerows([["law", "restitution", "choice", "shared", *heads], *measured])

@@ -63,17 +63,22 @@ def _rows(cell: NDArray[np.int16], terms: Array, cuts: Cuts) -> list[list[int]]:
 
 def write(folder: Path | None = None) -> list[Path]:
     """Write the table into the kernels of a folder, by default contactlab's; return the files."""
+    return put(thinned(), FILES, folder)
+
+
+def put(numbers: list[str], heads: dict[str, str], folder: Path | None = None) -> list[Path]:
+    """Write numbers into the kernels of a folder, where a table has its head; return the files."""
     source = folder or Path(str(resources.files("contactlab").joinpath("kernels")))
     lines, line = [], ""
-    for number in thinned():
+    for number in numbers:
         if len(line) + len(number) >= WIDTH:
             lines.append(line)
             line = ""
         line += f"{number},"
     text = "\n".join([*lines, line])
-    for name, head in FILES.items():
+    for name, head in heads.items():
         file = source / name
         pattern = f"({re.escape(head)}\n).*?(\n[]}}];)"
         before = file.read_text("utf-8")
         file.write_text(re.sub(pattern, rf"\g<1>{text}\g<2>", before, flags=re.DOTALL), "utf-8")
-    return [source / name for name in FILES]
+    return [source / name for name in heads]
