@@ -6,7 +6,7 @@ Examples
   contactlab fit impacts.csv bodies.toml --fit friction_coefficient,stiffness_ratio
   contactlab fit impacts.csv bodies.toml --fit friction_coefficient,restitution,shear_loss
   contactlab fit impacts.csv bodies.toml --laws exact,coulomb,mindlin_cap --figure fit.png
-  contactlab fit impacts.csv bodies.toml --normal hertz,viscoelastic --fit friction_coefficient,restitution
+  contactlab fit impacts.csv bodies.toml --normal viscoelastic,tsuji --fit restitution
 """
 
 from __future__ import annotations

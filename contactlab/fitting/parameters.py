@@ -223,12 +223,13 @@ def _choices(setup: Setup) -> dict[str, Callable[[], Parameter]]:
             most=STIFFNESS[1],
             starts=_evenly(*STIFFNESS),
         )
-    for kind in KINDS if setup.simulation is not None else ():
-        law = getattr(setup.simulation, kind)
+    simulation: Any = setup.simulation
+    for kind in KINDS if simulation is not None else ():
+        law = getattr(simulation, kind)
         for field in attrs.fields(type(law)) if attrs.has(type(law)) else ():
             value = getattr(law, field.name)
             if field.init and isinstance(value, float) and kind != "integrator":
-                if field.name == SHEAR_LOSS and not setup.simulation.normal.viscous:
+                if field.name == SHEAR_LOSS and not simulation.normal.viscous:
                     continue  # nothing is lost
                 choices[f"{kind}.{field.name}"] = partial(_option, kind, field, value)
     return choices

@@ -41,7 +41,7 @@ def holds(simulation: Simulation | None) -> bool:
 
 
 @cache
-def _normal_law() -> type:
+def _normal_law() -> Any:
     """Return the class of the normal law behind ``rebound(restitution=)``."""
     return type(composition.law("normal", LOSSY))
 
@@ -75,7 +75,7 @@ def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
 
 
 def rebounds(scene: Scene, restitution: Real) -> ImpactResult:
-    """Return impacts with a restitution each; all but the velocities is NaN, and nothing is told."""
+    """Return impacts with a restitution each: velocities; the rest is NaN, and nothing is told."""
     unknown = ("duration", "maximum_radius", "maximum_approach", "maximum_force")
     rate: Any = -restitution * np.asarray(scene.normal_speed)
     return _result(scene, restitution, rate, dict.fromkeys(unknown, np.nan), lambda: ((), (), ()))
@@ -91,15 +91,14 @@ def _result(
     """Return the impacts of a batch with psi2 by the table."""
     shape, e = scene.shape, restitution
     each = e if isinstance(e, float) else np.broadcast_to(e, shape)
-    change: Any = (rebound(scene.psi1, scene.chi, restitution=each) - scene.psi1) / np.asarray(
-        scene.psi_scale
-    )
+    psi2: Any = rebound(scene.psi1, scene.chi, restitution=each)
+    course: Any = {name: np.broadcast_to(number, shape) for name, number in numbers.items()}
     motion = Motion(
-        slip_velocity_change=change,
+        slip_velocity_change=(psi2 - scene.psi1) / np.asarray(scene.psi_scale),
         friction_work=np.full(shape, np.nan),
         status=np.full(shape, Status.SUCCESS, dtype=object),
         normal_velocity=np.broadcast_to(normal_velocity, shape),
-        **{name: np.broadcast_to(number, shape) for name, number in numbers.items()},
+        **course,
     )
     plan = Plan(PlanColumns.nothing(shape), words)
     return ImpactResult(scene=scene, plan=plan, motion=motion, run_time=0.0, laws={})
