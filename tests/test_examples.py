@@ -86,6 +86,8 @@ def test_every_script_is_listed_here():
 )
 def test_script(name, tmp_path, monkeypatch, capsys):
     words, picture = SCRIPTS[name]
+    for module in ("dask.distributed", "xarray") if name == "sweep_on_a_cluster" else ():
+        pytest.importorskip(module, reason=f"needs the extra {module.partition('.')[0]}")
     script = EXAMPLES / f"{name}.py"
     if name in ALONE:
         done = python(script, *OPTIONS.get(name, ()), folder=tmp_path)

@@ -14,6 +14,7 @@ import pytest
 from tests.kernels.motions import wandering
 from tests.kernels.test_kernels import COMPILER, HERE, KERNELS, driven, needs_c
 from tests.longer import longer
+from tests.present import PACKAGE
 
 FOLDER = Path(__file__).parents[1] / "examples" / "lammps"
 PAGE = (FOLDER / "README.md").read_text("utf-8")
@@ -61,7 +62,7 @@ def test_the_page_lists_every_file():
 
 def test_the_sub_model_calls_the_kernel_that_is_shipped():
     source = (FOLDER / "gran_sub_mod_tangential_springs.cpp").read_text("utf-8")
-    kernel = FOLDER.parents[1] / "contactlab" / "kernels" / "contactlab_springs.h"
+    kernel = PACKAGE / "kernels" / "contactlab_springs.h"
     for name in set(re.findall(r"contactlab_springs_\w+|CONTACTLAB_\w+", source)):
         assert name in kernel.read_text("utf-8")
 

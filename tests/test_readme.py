@@ -6,7 +6,6 @@ import json
 import re
 import sys
 import types
-from pathlib import Path
 
 import pytest
 
@@ -15,8 +14,8 @@ from contactlab.cli.main import main
 from contactlab.compose.registry import REGISTRY
 from contactlab.impact.hertz import peak_pressure
 from contactlab.testing import CHECKS, Verdict, check_law
+from tests.present import ROOT, needs_sources
 
-ROOT = Path(__file__).parents[1]
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 LAWS, STARTING = (guide.text(topic) for topic in ("laws", "getting-started"))
 SNIPPETS = re.findall(r"```python\n(.*?)```\n(?:```text\n(.*?)```\n)?", TEXT, re.DOTALL)
@@ -47,6 +46,7 @@ def test_there_are_six_lines_and_few_words():
     assert len(TEXT.split()) <= MOST_WORDS
 
 
+@needs_sources
 def test_links_and_pictures_lead_to_files():
     for target in re.findall(r"\]\(([^)]+)\)", TEXT):
         path, _, anchor = target.partition("#")

@@ -13,6 +13,7 @@ import pytest
 
 from contactlab import rebound
 from contactlab.cli.main import main
+from tests.present import PACKAGE, needs_sources
 
 RECIPES = Path(__file__).parents[1] / "examples" / "recipes"
 PSI1 = np.array([-3.0, 0.2, 0.9, 1.2, 2.0, 4.0, 7.0])
@@ -172,7 +173,7 @@ console.log(JSON.stringify({bounced, heights, resting}));
 def told(tmp_path_factory):
     """Return slips of bounces, and what the recipe tells of them and of balls that come to rest."""
     folder = tmp_path_factory.mktemp("bounces")
-    kernel = RECIPES.parents[1] / "contactlab" / "kernels" / "contactlab_bounce.mjs"
+    kernel = PACKAGE / "kernels" / "contactlab_bounce.mjs"
     script = BOUNCES.replace("BALL;", json.dumps((RECIPES / "bouncing_ball.mjs").as_uri()) + ";")
     (folder / "bounces.mjs").write_text(
         script.replace("KERNEL", json.dumps(kernel.as_uri())), "utf-8"
@@ -192,6 +193,7 @@ needs_node = pytest.mark.skipif(shutil.which("node") is None, reason="node is no
 
 
 @needs_node
+@needs_sources
 def test_a_ball_in_a_game_bounces_as_rebound_says(told):
     """psi2 to 1e-6; ten seconds of elastic bounces reach the same height."""
     (along, spin), told = told
@@ -214,6 +216,7 @@ def test_a_ball_in_a_game_bounces_as_rebound_says(told):
 
 
 @needs_node
+@needs_sources
 @pytest.mark.parametrize("which", range(4))
 def test_a_ball_of_the_collection_comes_to_rest(told, which):
     """Its energy never grows; it rises to e^2 of the height before; and it stays where it rests."""
@@ -235,6 +238,7 @@ def test_a_ball_of_the_collection_comes_to_rest(told, which):
 
 
 @needs_node
+@needs_sources
 def test_the_ball_runs_as_printed():
     script = (RECIPES / "bouncing_ball.mjs").read_text("utf-8")
     command = re.search(r"^ \*     (node .*)$", script, re.MULTILINE)[1].split()

@@ -15,10 +15,11 @@ from contactlab.cli import arguments as shared
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.files import written
 
-#: Files of ``contactlab/kernels``: springs on a doubling grid (theory §13), bounces, and notes.
+#: Files of ``contactlab/kernels``: springs on a doubling grid (theory §13), bounces, types, notes.
 FILES = (
-    "contactlab_springs.h", "contactlab_springs.mjs", "contactlab_bounce.h",
-    "contactlab_bounce.mjs", "package.json", "README.md",
+    "contactlab_springs.h", "contactlab_springs.mjs", "contactlab_springs.d.mts",
+    "contactlab_bounce.h", "contactlab_bounce.mjs", "contactlab_bounce.d.mts",
+    "package.json", "README.md", "LICENSE",
 )  # fmt: skip
 
 

@@ -14,6 +14,7 @@ from tests.laws.ending_laws import Ending, Raising
 
 @pytest.fixture(scope="module")
 def executor():
+    pytest.importorskip("dask.distributed", reason="needs the extra dask")
     from dask.distributed import Client, LocalCluster
 
     with (

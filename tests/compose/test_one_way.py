@@ -39,6 +39,7 @@ from contactlab.contracts import (
 from contactlab.contracts.status import Status
 from contactlab.contracts.whole_impact import WholeImpact
 from contactlab.outcome.export import write_csv, write_json, write_npz
+from tests.present import extra
 
 STEEL = Material.named("steel")
 FLOOR = HalfSpace(STEEL)
@@ -359,6 +360,7 @@ GRIDS = [
 ]
 
 
+@extra("xarray")
 @pytest.mark.parametrize("entries", GRIDS, ids=lambda entries: "-".join(entries))
 def test_a_grid_of_any_group(entries):
     lists = {name: values for name, values in entries.items() if isinstance(values, list)}
@@ -1079,6 +1081,7 @@ def test_files_hold_what_was_swept_and_what_came_out(swept, suffix):
     assert list(read["status"]) == 4 * ["SUCCESS"]
 
 
+@extra("pandas")
 def test_frames_hold_what_was_swept(swept):
     result, encounter, _ = swept
     frame = result.to_dataframe()

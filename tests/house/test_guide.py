@@ -20,9 +20,9 @@ from contactlab.impact import bodies, coupling, hertz, normal_spin
 from contactlab.outcome import energy, history, motion, plan, result
 from contactlab.study.validation import REFERENCE_PSI2
 from contactlab.testing import Verdict, check_law
+from tests.present import PACKAGE, ROOT, extra
 
-ROOT = Path(__file__).parents[2]
-GUIDE = ROOT / "contactlab" / "guide"
+GUIDE = PACKAGE / "guide"
 INDEX = ROOT / ".ci" / "site" / "index.md"
 #: Code with the output that is shown below it, if any.
 BLOCKS = re.compile(r"```python\n(.*?)```\n(?:```text\n(.*?)```\n)?", re.DOTALL)
@@ -34,6 +34,8 @@ LAWS = (
 )  # fmt: skip
 #: Laws whose checks take longer than a second.
 HEAVY = ("Viscoelastic", "Brush", "Leapfrog")
+#: Extras that the code of a topic needs.
+EXTRAS = {"for-a-paper": ("pandas",), "getting-started": ("xarray",)}
 #: Where names in the tables of the guide are looked for.
 NAMESPACES = (
     contactlab, contracts, bodies, plan, history, motion, energy, normal_motion, result,
@@ -46,8 +48,8 @@ MODULES = {
 
 def sources():
     """Every file that may cite the guide."""
-    for folder in ("contactlab", "plugins", "tests", "examples"):
-        for path in sorted((ROOT / folder).rglob("*")):
+    for folder in (PACKAGE, ROOT / "plugins", ROOT / "tests", ROOT / "examples"):
+        for path in sorted(folder.rglob("*")):
             if path.suffix in (".py", ".md", ".toml") and path != Path(__file__):
                 yield path
     yield ROOT / "README.md"
@@ -109,7 +111,13 @@ def test_lines_fit_a_terminal_but_for_tables_and_code(topic):
     assert not [line for line in prose if len(line) > 120 and not line.startswith(("|", "!["))]
 
 
-@pytest.mark.parametrize("topic", TOPICS)
+@pytest.mark.parametrize(
+    "topic",
+    [
+        pytest.param(topic, marks=[extra(name) for name in EXTRAS.get(topic, ())])
+        for topic in TOPICS
+    ],
+)
 def test_code_prints_what_is_shown(topic):
     expected = [shown for _, shown in BLOCKS.findall(whole(topic))]
     assert run(topic)[1] == expected

@@ -1,7 +1,6 @@
 """Every kind of number at every public door: the value of plain floats, or one refusal."""
 
 import numpy as np
-import pandas as pd
 import pytest
 
 import contactlab
@@ -16,7 +15,9 @@ from contactlab import (
     load_path,
     rebound,
 )
+from tests.present import extra
 
+needs_pandas = extra("pandas")
 STEEL = Material.named("steel")
 BALL, PLATE = Sphere(0.01, STEEL), HalfSpace(STEEL)
 #: One number in many kinds; float32 holds it exactly, as it holds the arrays below.
@@ -37,12 +38,16 @@ MANY = {
     "big-endian": _PLAIN.astype(">f8"),
     "strided": np.repeat(_PLAIN, 2)[::2],
     "reversed": _PLAIN[::-1].copy()[::-1],
-    "series": pd.Series(VALUES, index=[7, 3, 5]),
-    "column": pd.DataFrame({"a": VALUES})["a"],
     "unmasked": np.ma.array(VALUES, mask=False),
 }
 MANY["read-only"] = _PLAIN.copy()
 MANY["read-only"].flags.writeable = False
+#: Made by pandas, which is an extra.
+OF_PANDAS = {
+    "series": lambda pandas: pandas.Series(VALUES, index=[7, 3, 5]),
+    "column": lambda pandas: pandas.DataFrame({"a": VALUES})["a"],
+}
+KINDS = [*MANY, *(pytest.param(kind, marks=needs_pandas) for kind in OF_PANDAS)]
 REFUSED = {
     "masked": np.ma.array(VALUES, mask=[0, 1, 0]),
     "object": np.array(["a", 1.0, None], dtype=object),
@@ -103,11 +108,12 @@ def test_one_number_of_any_kind_gives_what_a_float_gives(door, kind):
     assert answer == enter(1.25)
 
 
-@pytest.mark.parametrize("kind", MANY)
+@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("door", DOORS)
 def test_many_numbers_of_any_kind_give_what_an_array_gives(door, kind):
     enter, _ = DOORS[door]
-    answer = enter(MANY[kind])
+    made = OF_PANDAS[kind](pytest.importorskip("pandas")) if kind in OF_PANDAS else MANY[kind]
+    answer = enter(made)
     assert type(answer) is np.ndarray
     assert answer.dtype == np.float64
     assert answer.tolist() == enter(np.array(VALUES)).tolist()
@@ -129,8 +135,14 @@ def test_the_order_of_an_array_in_memory_does_not_matter(order):
     assert path.friction_force.shape == (2, 2)
 
 
-@pytest.mark.parametrize("empty", [[], np.array([]), pd.Series([], dtype=float)])
-def test_no_numbers_give_no_answers_or_a_refusal(empty):
+def series(values):
+    """Return a series of pandas."""
+    return pytest.importorskip("pandas").Series(values, dtype=float)
+
+
+@pytest.mark.parametrize("kind", [list, np.array, pytest.param(series, marks=needs_pandas)])
+def test_no_numbers_give_no_answers_or_a_refusal(kind):
+    empty = kind([])
     assert rebound(empty, 1.44).shape == (0,)
     with pytest.raises(ValueError, match="at least one"):
         Scene.nondimensional(psi1=empty, chi=1.44)
@@ -141,7 +153,15 @@ VECTOR = (0.5, 0.0, -1.25)
 
 @pytest.mark.parametrize(
     "kind",
-    [list, tuple, np.array, np.float32, lambda v: np.array(v, ">f8"), pd.Series, np.ma.array],
+    [
+        list,
+        tuple,
+        np.array,
+        np.float32,
+        lambda v: np.array(v, ">f8"),
+        np.ma.array,
+        pytest.param(series, marks=needs_pandas),
+    ],
 )
 def test_vectors_of_any_kind(kind):
     given = kind(VECTOR) if kind is not np.float32 else np.array(VECTOR, np.float32)

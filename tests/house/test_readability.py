@@ -7,13 +7,12 @@ import re
 import textwrap
 from functools import cache
 from graphlib import TopologicalSorter
-from pathlib import Path
 
 import pytest
 
 import contactlab
+from tests.present import PACKAGE, ROOT
 
-PACKAGE = Path(contactlab.__file__).parent
 #: The public modules: guide, read-me and examples import from no other.
 PUBLIC_MODULES = (
     "contactlab",
@@ -126,8 +125,7 @@ def exported():
 
 def imported_by_readers():
     """Return pairs (module, name) of what guide, read-me and examples import from contactlab."""
-    root = PACKAGE.parent
-    pages = [*root.glob("*.md"), *PACKAGE.glob("guide/*.md"), *root.glob("examples/**/*.py")]
+    pages = [*ROOT.glob("*.md"), *PACKAGE.glob("guide/*.md"), *ROOT.glob("examples/**/*.py")]
     return {
         (module, name)
         for page in pages

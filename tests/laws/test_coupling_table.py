@@ -5,6 +5,9 @@ import pytest
 
 from contactlab import Scene
 from contactlab.impact.coupling import coupling_shift, nodes
+
+pytest.importorskip("table_builders", reason="table_builders is not in the wheel")
+
 from table_builders.coupling.build import CHI, COUPLING_NUMBER, POISSON_RATIO, PSI1, shift
 
 #: A caution may understate the shift by this factor, where the shift is at least ``FROM``.

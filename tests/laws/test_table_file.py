@@ -12,6 +12,9 @@ from contactlab import rebound
 from contactlab_laws.tables import damped, elastic
 from contactlab_laws.tables.elastic import Table
 from contactlab_laws.tables.file import read, write
+
+pytest.importorskip("table_builders", reason="table_builders is not in the wheel")
+
 from table_builders.__main__ import main
 from table_builders.elastic import build
 from tests.laws.test_tabulated import BOUND, mixed

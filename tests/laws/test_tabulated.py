@@ -14,6 +14,9 @@ from contactlab_laws.tables.elastic import NODES, SHIPPED, shipped
 from contactlab_laws.tables.file import read
 from contactlab_laws.tables.patches import nodes, polynomial
 from contactlab_laws.tables.regions import CUT_END, FIRST_POWER, LARGEST_CHI, places
+
+pytest.importorskip("table_builders", reason="table_builders is not in the wheel")
+
 from table_builders.elastic import cuts
 from table_builders.elastic.coordinates import NAMES, impact
 from table_builders.elastic.exact import exact

@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 from matplotlib.figure import Figure
 
-import contactlab
 from contactlab import Scene, Simulation
 from contactlab.cli.main import main
 from contactlab.figures.comparison import differences, laws_over_sweep
@@ -17,7 +16,7 @@ from contactlab.study.comparison import compare
 #: Quantities with the units m/s and rad/s of bodies, and an angle.
 QUANTITIES = "rebound_slip_velocity,rebound_spin,local_rebound_angle_deg"
 UNITS = re.compile(r"m/s|rad/s|\bkg\b|\(m\)|\(s\)|\(J\)|\(N\)")
-BALL = Path(contactlab.__file__).parents[1] / "examples" / "steel_ball.toml"
+BALL = Path(__file__).parents[2] / "examples" / "steel_ball.toml"
 LAWS = ("--tangential", "coulomb,fronts")
 MEASURED = """
 [nondimensional]

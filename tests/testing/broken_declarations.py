@@ -71,7 +71,7 @@ class Interpolates(Sound):
 BROKEN = [
     (OneOfThreeWays, "contract", "It must be derived from one of SteppedTangentialLaw"),
     (Mutable, "immutable", "ratio can be set"),
-    (CannotBePickled, "copies", "Can't pickle local object"),
+    (CannotBePickled, "copies", "CannotBePickled.<lambda>"),
     (TakesAnything, "parameters", "extra = nan: accepted without a ValueError"),
     (TakesAnyFlag, "parameters", "flag = nan: accepted without a ValueError"),
     *broken(Sound, "api_version",

@@ -1,7 +1,5 @@
 """The kit catches each broken law by the check that is meant for it, and lets a sound one pass."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -16,6 +14,7 @@ from contactlab.testing import (
 )
 from contactlab_laws.mindlin import MindlinCap
 from tests.longer import longer
+from tests.present import PACKAGE, ROOT
 from tests.testing import broken_clauses as clauses
 from tests.testing import broken_declarations as declarations
 from tests.testing import broken_impacts as impacts
@@ -28,8 +27,7 @@ from tests.testing import broken_vectors as vectors
 from tests.testing import fresh_faults
 from tests.testing.made import checked
 
-ROOT = Path(__file__).parents[2]
-TOLD = (ROOT / "README.md", ROOT / "contactlab/guide/how-far-to-trust.md")
+TOLD = (ROOT / "README.md", PACKAGE / "guide" / "how-far-to-trust.md")
 
 
 BROKEN = [

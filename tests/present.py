@@ -1,0 +1,21 @@
+"""What some tests need and may be missing: an extra, or the repository around the package."""
+
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+import contactlab
+
+#: The repository or source archive that the tests stand in, and the package that they test.
+ROOT, PACKAGE = Path(__file__).parents[1], Path(contactlab.__file__).parent
+#: Why a test is skipped where the package is not the one beside the tests.
+INSTALLED = "reads sources that are not in an installed package"
+
+
+def extra(module):
+    """Return a mark that skips a test where an optional package is missing."""
+    return pytest.mark.skipif(find_spec(module) is None, reason=f"needs the extra {module}")
+
+
+needs_sources = pytest.mark.skipif(not (ROOT / "contactlab").is_dir(), reason=INSTALLED)
