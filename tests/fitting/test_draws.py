@@ -30,8 +30,8 @@ def test_intervals_beside_the_truth_are_not_silent(flaw, told, silent):
     """Of 40 draws of each flaw: the share with a note, and of misses with neither note nor caution.
 
     Before: 60 % of the draws that lose energy were told, 35 % were silent and wrong; with the tilt
-    78 % and 18 %. After: 88 % and none; 85 % and 12 %. Of the same draws without a flaw one in 40 is
-    accused, before and after.
+    78 % and 18 %. After: 88 % and none; 85 % and 12 %. Of the same draws without a flaw one in 40
+    is accused, before and after.
     """
     outcomes = [outcome(draw(seed, outliers=False, only=("friction_coefficient",), **flaw))
                 for seed in range(40)]  # fmt: skip
