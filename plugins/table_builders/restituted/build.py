@@ -18,7 +18,7 @@ from contactlab_laws.viscoelastic.relaxation import number_of
 
 #: Largest error of psi2 between the nodes of a cell, by region; it is looked for where the sum of
 #: the last terms along each coordinate is less than ``CLOSE`` times as much.
-TOLERANCES = (3.5e-5, 3.5e-5, 3.5e-5, 3.5e-5, 1.1e-4)
+TOLERANCES = (4e-5, 4e-5, 4e-5, 4e-5, 1.35e-4)
 CLOSE = 6.0
 #: Where it is looked for, as shares of a cell along each coordinate: far from nodes.
 BETWEEN = (
