@@ -59,8 +59,10 @@ def collide(
 
     Notes
     -----
-    An empty batch gives an empty collision. Arrays are float64. Threads may call this function at
-    the same time: it keeps no state but tables that never change.
+    Velocities of spheres depend on Poisson's ratio and, for unlike bodies, on the ratio of Young's
+    moduli: of like bodies any modulus will do, such as that of ``Material.named``. An empty batch
+    gives an empty collision. Arrays are float64. Threads may call this function at the same time:
+    it keeps no state but tables that never change.
 
     Examples
     --------
