@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from contactlab import rebound
+from contactlab import Encounter, HalfSpace, Material, Sphere, collide, rebound
 from contactlab.cli.main import main
 from tests.present import PACKAGE, needs_sources
 
@@ -38,6 +38,8 @@ def differences(psi1, chi, step=1e-5):
 def test_every_recipe_is_run_here():
     names = {path.name for path in RECIPES.iterdir() if path.is_file()}
     assert names == {
+        "ball_in_planck.mjs",
+        "ball_in_pymunk.py",
         "bouncing_ball.mjs",
         "contact.c",
         "contact.cpp",
@@ -248,6 +250,82 @@ def test_the_ball_runs_as_printed():
     lines = done.stdout.splitlines()
     assert re.match(r"0\.4\d s: \d\.\d+ m/s along, 3\.\d+ up, -?\d+ rad/s", lines[0])
     assert re.match(r"\d+\.\d\d s: at rest, \d+\.\d\d m along", lines[-1])
+
+
+#: Velocity (m/s) and spin (rad/s) of balls thrown at a floor: in stick, partial slip, gross slip.
+THROWS = [((1.0, -3.0), 0.0), ((2.0, -4.4), 80.0), ((6.0, -2.0), -40.0), ((-3.0, -4.0), 10.0)]
+
+
+def bounced(ball, floor, friction, e, velocity, spin):
+    """Return velocity along and up, and spin of a ball that meets the floor, by ``collide``."""
+    made = collide(
+        Encounter(
+            ball, floor, friction, normal=[0, -1, 0], velocity=(*velocity, 0.0), spin=(0, 0, spin)
+        ),
+        restitution=e,
+    )
+    return [*made.velocity[:2], made.spin[2]]
+
+
+def test_a_ball_in_pymunk():
+    """Without gravity one bounce is that of ``collide``; with it the ball comes to rest."""
+    pytest.importorskip("pymunk", reason="pymunk is not installed: pip install contactlab[recipes]")
+    ours = recipe("ball_in_pymunk")
+    for velocity, spin in THROWS:
+        space, body = ours.thrown(velocity, spin, gravity=0.0)
+        for _ in range(200):
+            space.step(1e-3)
+        expected = bounced(ours.BALL, ours.FLOOR, ours.FRICTION, ours.RESTITUTION, velocity, spin)
+        assert [*body.velocity, body.angular_velocity] == pytest.approx(expected, abs=1e-9)
+    space, body = ours.thrown((2.0, -4.4), 150.0)
+    for _ in range(12 * 240):
+        space.step(1 / 240)
+    assert body.velocity.y == pytest.approx(0.0, abs=1e-6)
+    assert body.position.y == pytest.approx(ours.BALL.radius, abs=1e-3)
+
+
+IN_PLANCK = """
+import {thrown} from "./ball_in_planck.mjs";
+import {BALLS} from "contactlab";
+const told = ({body}) => {
+  const {x, y} = body.getLinearVelocity();
+  return [x, y, body.getAngularVelocity()];
+};
+const bounced = JSON.parse(process.argv[2]).map(([velocity, spin]) => {
+  const one = thrown(BALLS.superball, velocity, spin, {gravity: 0});
+  for (let k = 0; k < 50; k++) one.world.step(1 / 240);
+  return told(one);
+});
+const one = thrown(BALLS.superball, [2, -4.4], 150);
+for (let k = 0; k < 15 * 240; k++) one.world.step(1 / 240);
+console.log(JSON.stringify({bounced, rests: told(one), height: one.body.getPosition().y}));
+"""
+
+
+@pytest.mark.slow
+@needs_node
+@pytest.mark.skipif(shutil.which("npm") is None, reason="npm is not there")
+def test_a_ball_in_planck(tmp_path):
+    """Without gravity one bounce is that of ``collide`` to 1e-4; with it the ball comes to rest."""
+    kernels = RECIPES.parents[1] / "contactlab" / "kernels"
+    install = ["npm", "install", "--no-audit", "--no-fund", "planck@1", str(kernels)]
+    installed = subprocess.run(install, cwd=tmp_path, capture_output=True, text=True, check=False)
+    if installed.returncode:
+        pytest.skip(f"npm cannot install planck: {installed.stderr.strip()[-200:]}")
+    shutil.copy(RECIPES / "ball_in_planck.mjs", tmp_path)
+    (tmp_path / "run.mjs").write_text(IN_PLANCK, "utf-8")
+    words = ["node", "run.mjs", json.dumps(THROWS)]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=True)
+    told = json.loads(done.stdout)
+    material = Material(young_modulus=1e6, poisson_ratio=0.5)
+    superball = Sphere(0.023, material, mass=0.0462)
+    for (velocity, spin), found in zip(THROWS, told["bounced"], strict=True):
+        expected = bounced(superball, HalfSpace(material), 0.39, 0.9, velocity, spin)
+        unit = 0.39 * 4.4 / 0.67  # of psi, m/s
+        assert found[:2] == pytest.approx(expected[:2], abs=1e-4 * unit)
+        assert 0.023 * found[2] == pytest.approx(0.023 * expected[2], abs=3e-4 * unit)
+    assert told["rests"][1] == 0.0
+    assert told["height"] == pytest.approx(0.023, abs=0.011)  # planck keeps 1 cm between shapes
 
 
 #: A recipe, and the commands that build it: those of its head.

@@ -4,24 +4,30 @@ Examples
 --------
   contactlab fit examples/kharaz2001.toml --quantity tangential_restitution
   contactlab fit impacts.csv bodies.toml --fit friction_coefficient,stiffness_ratio
+  contactlab fit impacts.csv bodies.toml --fit friction_coefficient,restitution,shear_loss
   contactlab fit impacts.csv bodies.toml --laws exact,coulomb,mindlin_cap --figure fit.png
+  contactlab fit impacts.csv bodies.toml --normal viscoelastic,tsuji --fit restitution
 """
 
 from __future__ import annotations
 
 import argparse
+import itertools
 import sys
 from pathlib import Path
 from typing import Any
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.fit_report import describe, ranking, write_residuals
+from contactlab.cli.fit_report import describe, further_cautions, ranking, write_residuals
 from contactlab.cli.scene import add_allow_code
 from contactlab.compose.composition import DEFAULT_NORMAL
 from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.compose.simulation import Simulation
 from contactlab.fitting import Fit, Ranked, fit, in_order, rank, read_measurements
+from contactlab.fitting.estimation import default_laws, parameters_of
 from contactlab.fitting.model import SOME_FRICTION
+from contactlab.fitting.parameters import RESTITUTION
+from contactlab.fitting.tabulated import LOSSY
 from contactlab.numeric.checks import whole
 from contactlab.outcome.files import distinct
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
@@ -42,8 +48,8 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         help="DATA.csv and SCENE.toml, or a SCENE.toml that holds measured values",
     )
     words = (
-        "friction_coefficient (default), stiffness_ratio, or options of the laws chosen, such as "
-        "normal.restitution"
+        "friction_coefficient (default), stiffness_ratio, restitution (one loss for pressure and "
+        "shear), shear_loss, or options of the laws chosen; each law fits those that it has"
     )
     shared.add_names(parser, "--fit", words, default=["friction_coefficient"])
     words = (
@@ -51,7 +57,8 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         "law, computed from a table"
     )
     shared.add_names(parser, "--laws", words, default=[EXACT])
-    shared.add_laws(parser, kinds=("normal", "integrator"))
+    shared.add_names(parser, "--normal", "normal laws, as --laws; or file.py:Class")
+    shared.add_laws(parser, kinds=("integrator",))
     add_allow_code(parser)
     shared.add_names(parser, "--quantity", "measured quantities to fit (default: all)")
     parser.add_argument(
@@ -81,25 +88,26 @@ def execute(arguments: argparse.Namespace) -> int:
     file = read_scene(path, entries=impacts.given, defaults=defaults, allow_code=allow)
     shared.tell_normal_spin(file.encounter)
     simulations = _simulations(arguments, file)
-    selection: dict[str, Any] = {"parameters": arguments.fit, "quantities": arguments.quantity}
+    own = parameters_of(impacts, path, simulations, arguments.fit)
+    selection: dict[str, Any] = {"quantities": arguments.quantity}
     first, *others = simulations
+    reported = {"parameters": own[first], "simulation": simulations[first], **selection}
     ranked: list[Ranked] = []
     fitted: Fit | None = None
     interrupted = False
     try:
         with shared.progress(arguments.progress, "searches") as progress:
-            fitted = fit(
-                impacts, path, simulation=simulations[first], progress=progress, **selection
-            )
+            fitted = fit(impacts, path, progress=progress, **reported)
         with shared.progress(arguments.progress, "laws") as progress:
             for done, name in enumerate(others, start=1):
                 if progress is not None:
                     progress(done, len(simulations))
-                ranked += rank(impacts, path, {name: simulations[name]}, **selection)
+                law = {name: simulations[name]}
+                ranked += rank(impacts, path, law, parameters=own[name], **selection)
         if arguments.bootstrap:
             with shared.progress(arguments.progress, "bootstrap") as progress:
                 options = {"bootstrap": arguments.bootstrap, "progress": progress}
-                fitted = fit(impacts, path, simulation=simulations[first], **selection, **options)
+                fitted = fit(impacts, path, **reported, **options)
     except KeyboardInterrupt:  # report what is done
         if fitted is None:
             raise
@@ -130,11 +138,7 @@ def _report(fitted: Fit, ranked: list[Ranked], *, complete: bool, as_json: bool)
         return
     print(describe(fitted))
     if ranked:
-        print("\n" + ranking(ranked))
-        for law in ranked:
-            if law.fit and law.fit is not fitted:
-                for text in law.fit.cautions:
-                    print(f"\ncaution of {law.name}: {text}")
+        print("\n\n".join(["", ranking(ranked), *further_cautions(fitted, ranked)])[1:])
     if not complete:
         print("\nnot complete: interrupted")
 
@@ -161,18 +165,30 @@ def _files(names: list[str]) -> tuple[Any, Path]:
 
 
 def _simulations(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation | None]:
-    """Return a simulation for each name in ``--laws``, None for the exact table."""
-    normal = arguments.normal or file.laws.normal
+    """Return a simulation for each pair of laws, None for the exact table.
+
+    The names are those of ``--laws``, of ``--normal`` if it is a list, or both.
+    """
+    normals = arguments.normal or [None]
+    own = file.laws.normal
+    settings = dict(arguments.settings)
+    if normals == [None] and own is None:
+        restituted = f"normal.{RESTITUTION}" in settings
+        if default_laws(arguments.fit, restituted=restituted) is not None:
+            normals = [LOSSY]
     simulations: dict[str, Simulation | None] = {}
-    for name in arguments.laws:
-        if name == EXACT and normal in (None, DEFAULT_NORMAL) and not arguments.settings:
-            simulations[name] = None
+    for normal, name in itertools.product(normals, arguments.laws):
+        exact = name == EXACT
+        told = [normal] if len(normals) > 1 else []
+        told += [name] if len(arguments.laws) > 1 or not told else []
+        if exact and (normal or own) in (None, DEFAULT_NORMAL) and not settings:
+            simulations[" ".join(told)] = None
             continue
         options = {k: v for k, v in file.laws.options.items() if k.startswith("normal")}
-        choice = LawChoice(
-            normal=file.laws.normal, integrator=arguments.integrator, options=options
-        ).choose(normal=arguments.normal, tangential=None if name == EXACT else name)
-        simulations[name] = choice.set(dict(arguments.settings)).simulation()
+        choice = LawChoice(normal=own, integrator=arguments.integrator, options=options).choose(
+            normal=normal, tangential=None if exact else name
+        )
+        simulations[" ".join(told)] = choice.set(settings).simulation()
     return simulations
 
 

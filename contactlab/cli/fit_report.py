@@ -52,16 +52,36 @@ def describe(fit: Fit) -> str:
 def ranking(ranked: list[Ranked]) -> str:
     """Return a table of the laws in order, each with its fitted parameters."""
     fits = [law.fit for law in ranked if law.fit]
-    names, quantities = list(fits[0].parameters), list(fits[0].rms)
+    names = list(dict.fromkeys(name for one in fits for name in one.parameters))
+    quantities = list(dict.fromkeys(name for one in fits for name in one.rms))
     headings = ["law", "AIC - best", *names, *(f"rms {name}" for name in quantities)]
     best = min(law.aic for law in fits)
     rows = [
-        [law.name, law.fit.aic - best, *(law.fit[name] for name in names), *law.fit.rms.values()]
+        [law.name, law.fit.aic - best, *_numbers(law.fit, names, quantities)]
         if law.fit
         else [law.name, *[None] * (1 + len(names) + len(quantities))]
         for law in ranked
     ]
     return f"laws by fit (a difference of 10 is beyond doubt)\n{table(headings, rows, digits=4)}"
+
+
+def _numbers(fit: Fit, names: list[str], quantities: list[str]) -> list[float | None]:
+    """Return parameters and rms residuals of a law; None for those that it has not."""
+    values = [fit[name] if name in fit.parameters else None for name in names]
+    return [*values, *(fit.rms.get(name) for name in quantities)]
+
+
+def further_cautions(first: Fit, ranked: list[Ranked]) -> list[str]:
+    """Return the cautions that the first law has not, each once with the laws that have it."""
+    laws: dict[str, list[str]] = {}
+    for law in ranked:
+        for text in law.fit.cautions if law.fit else ():
+            laws.setdefault(text, []).append(law.name)
+    return [
+        f"caution of {' and '.join(names)}: {text}"
+        for text, names in laws.items()
+        if text not in first.cautions
+    ]
 
 
 def write_residuals(path: Path, shown: list[Ranked]) -> None:

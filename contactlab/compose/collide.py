@@ -40,14 +40,13 @@ def collide(
         contact and partial slip: under a microsecond per encounter in a large batch, 0.2 ms for a
         single one.
     restitution : float, array of shape (...,), or callable
-        e of the normal motion without a simulation, from 0.01 to 1: one number, one for each
+        e of the normal motion without a simulation, from 0 to 1: one number, one for each
         encounter, or a function that returns either for the normal speeds of approach in m/s, a
         float or an array of shape (...,); where bodies separate the speed reads 1 m/s and the
-        answer is not used. Below 1 the law is Tsuji's, with Coulomb's law at every point: from a
-        table for e from 0.5 and chi from 0.8 to 1.8 (solid spheres), at half a microsecond per
-        encounter with any number of different e, and by rings elsewhere, in milliseconds.
-        ``Collision.plan`` states the error of psi2. Other laws of the same e give another psi2, at
-        e = 0.9 by up to 0.021 (viscoelastic) or 0.62 (a linear spring): see ``contactlab.rebound``.
+        answer is not used. Below 1 the law is ``normal.viscoelastic``, one loss for pressure and
+        shear, by ``contactlab.rebound``: from a table for chi from 0.3 to 3 (all spheres but those
+        with a dense core), at half a microsecond per encounter with any number of different e, and
+        by springs elsewhere, in milliseconds. ``Collision.plan`` states the error of psi2.
     separating : "refuse" or "pass"
         For bodies that do not approach each other: an error with the index of the first, or both
         bodies unchanged, with ``Collision.collided`` False.
@@ -60,8 +59,10 @@ def collide(
 
     Notes
     -----
-    An empty batch gives an empty collision. Arrays are float64. Threads may call this function at
-    the same time: it keeps no state but tables that never change.
+    Velocities of spheres depend on Poisson's ratio and, for unlike bodies, on the ratio of Young's
+    moduli: of like bodies any modulus will do, such as that of ``Material.named``. An empty batch
+    gives an empty collision. Arrays are float64. Threads may call this function at the same time:
+    it keeps no state but tables that never change.
 
     Examples
     --------
@@ -118,7 +119,7 @@ def collide(
 def _alone(given: Any, restitution: Any) -> None:
     """Refuse a restitution beside a simulation."""
     if np.any(restitution != 1.0):
-        remedy = "give it to the normal law: create('normal.tsuji', restitution=0.9)"
+        remedy = "give it to the normal law: create('normal.viscoelastic', restitution=0.9)"
         raise refuse("restitution", given, "stands in place of a simulation", remedy)
 
 

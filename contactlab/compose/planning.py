@@ -22,7 +22,7 @@ from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
 from contactlab.contracts.status import Status
-from contactlab.contracts.tangential import SteppedTangentialLaw
+from contactlab.contracts.tangential import SteppedTangentialLaw, TangentialLaw
 from contactlab.impact.cautions import rigid_bodies, three_numbers, unit_slips, unlikely
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, some, spread, taken
@@ -175,13 +175,17 @@ def _words(
 
 def _loses_in_pressure_alone(laws: Laws, scene: Scene) -> bool:
     """Return whether the normal law is viscous, and the tangential law does not share its loss."""
-    tangential: Any = laws.tangential
-    if not laws.normal.viscous or "partial_slip" not in tangential.offers:
+    if not laws.normal.viscous or "partial_slip" not in laws.tangential.offers:
         return False
-    shares = isinstance(tangential, SteppedTangentialLaw) and tangential.shares_loss(laws.normal)
-    if shares:
+    if _shares_loss(laws):
         return False
     return scene.rubs if scene.inverse_mass is None else together.at_larger_slip(scene).rubs
+
+
+def _shares_loss(laws: Laws) -> bool:
+    """Return whether the tangential law shares the loss of the normal law."""
+    tangential: Any = laws.tangential
+    return isinstance(tangential, SteppedTangentialLaw) and tangential.shares_loss(laws.normal)
 
 
 def _in_place(laws: Laws, used: Laws) -> str:
@@ -232,13 +236,15 @@ def _cautions(
         ends = _ends(laws.normal, central, None if coupled else motion, known)
         for law in (laws.normal, laws.tangential):
             asked += _asked(law, law.cautions, whole, ends)
+        if coupled and _shares_loss(laws):
+            asked += _of_grip(laws.tangential, together.at_smaller_slip(part), known, ends)
         if coupled:  # that of yield and of a large contact hold for any bodies
             said += NormalLaw.cautions(laws.normal, whole, ends)
     if some(masks.marched):
         marched = part if every(masks.marched) else part.take(masks.marched)
         ends = _ends(laws.normal, central, None if coupled else motion, masks.marched)
         asked += _asked(laws.integrator, laws.integrator.remarks, ends, laws.tangential, marched)
-    own = [text for text in asked if text not in said]
+    own = [text for text in dict.fromkeys(asked) if text not in said]
     said += own
     if coupled:
         said += [OF_SPHERES] if own else []
@@ -249,6 +255,13 @@ def _cautions(
         clauses += _books(laws, scene, motion)
     vectors = three_numbers(scene)
     return (*clauses, *(Clause(text, np.ones(scene.shape, dtype=bool)) for text in vectors))
+
+
+def _of_grip(law: Any, central: Scene, known: Mask, ends: Any) -> list[str]:
+    """Return what a law that shares the loss says, beside what all say, of the smaller slip."""
+    scene = central if every(known) else central.take(known)
+    usual = TangentialLaw.cautions(law, scene, ends)
+    return [text for text in _asked(law, law.cautions, scene, ends) if text not in usual]
 
 
 def _ends(law: Any, scene: Scene, motion: Motion | None, where: Mask) -> Any:

@@ -111,8 +111,8 @@ def rebound(
         ``normal.viscoelastic``: one relaxation time for pressure and shear. In the table psi2 holds
         to 5e-5 up to chi = 2, and to 1.5e-4 up to 3. Below chi = 0.3 springs give psi2 to 5e-5,
         above 3 to 3e-4 sqrt(chi/3). Impacts that slip throughout, psi1 >= max(1, 2 chi (1 + e) -
-        e), and those of e = 0, are exact. Loss by yield, and in shear alone, is not in this law:
-        its size as a model error is ``contactlab guide theory-loss``.
+        e), and those of e = 0, are exact. A plan of ``collide`` states how far e_T =
+        -psi2/psi1 is trusted (model error).
 
     Returns
     -------
@@ -150,7 +150,7 @@ def rebound(
             if _within(psi1, chi, *ELASTIC_CHI):
                 return _table("tangential")(psi1, chi)  # type: ignore[no-any-return]
         elif _below_one(restitution, psi1) and _within(psi1, chi, *RESTITUTED_CHI):
-            return _by_table(psi1, chi, restitution)
+            return _by_table(psi1, chi, restitution)  # type: ignore[no-any-return]
     incidence = real(
         "psi1",
         psi1,
@@ -188,9 +188,8 @@ def rebound(
     else:
         psi2 = _solve(flat, ratios, aim)
     slopes = _slopes(flat, ratios, e if three else None) if derivatives else ()
-    answers = tuple(each.reshape(velocity.shape) for each in (psi2, *slopes))
-    if not velocity.ndim:
-        answers = tuple(float(each) for each in answers)
+    arrays = [each.reshape(velocity.shape) for each in (psi2, *slopes)]
+    answers: tuple[Real, ...] = (*(arrays if velocity.ndim else map(float, arrays)),)
     return answers if derivatives else answers[0]
 
 

@@ -30,6 +30,8 @@ CANCELS = 1e-4
 #: to a tenth of it, where abs(lam) > 1: of V2 over max(1, V2) and psi2 over max(1, psi1), in 1,200
 #: random planar impacts by 50 springs and 200 steps.
 NEAR_SINGULAR = ((0.1, 0.07), (0.01, 0.4), (0.001, 1.2))
+#: Least slip at which cautions are asked, over the larger of two.
+LITTLE = 1e-3
 #: Statuses by which a law ends a whole batch: its impacts are then solved one by one.
 GIVEN_UP = (Status.LAW_RAISED, Status.MALFORMED, Status.NON_FINITE)
 #: Why impacts are not marched.
@@ -84,9 +86,27 @@ def at_larger_slip(scene: Scene) -> Scene:
 
     Sizes of cautions grow with the slip, and pressure makes slip where there is none at first.
     """
+    return _at_slip(scene, np.maximum(*_slips(scene)))
+
+
+def at_smaller_slip(scene: Scene) -> Scene:
+    """Return the central scene at the smaller slip, but no less than a little of the larger.
+
+    Some cautions hold of contacts that grip alone.
+    """
+    slips = _slips(scene)
+    return _at_slip(scene, np.maximum(np.minimum(*slips), LITTLE * np.maximum(*slips)))
+
+
+def _slips(scene: Scene) -> tuple[Any, Any]:
+    """Return the slip speed at first touch, and that which pressure alone leaves."""
     drag = scene.coupling(2.0 * np.asarray(scene.normal_speed))
-    after = scene.size_of(np.asarray(scene.slip_velocity) - drag)
-    slip = spread(np.maximum(scene.slip_speed, after), scene.shape)
+    return scene.slip_speed, scene.size_of(np.asarray(scene.slip_velocity) - drag)
+
+
+def _at_slip(scene: Scene, slip: Any) -> Scene:
+    """Return the central scene at a slip speed."""
+    slip = spread(slip, scene.shape)
     return attrs.evolve(scene.central, tangential_velocity=slip).numbered(scene.index)
 
 

@@ -26,7 +26,7 @@ def draw_fits(path: Path, fits: Mapping[str, Fit], **look: Any) -> None:
 
     Options ``look`` and ``width`` are those of ``contactlab.figures.files.save``.
     """
-    names = list(next(iter(fits.values())).measurements.measured)
+    names = list(dict.fromkeys(name for fit in fits.values() for name in fit.predicted))
 
     def draw(axes: Any) -> None:
         for column, name in enumerate(names):

@@ -53,9 +53,11 @@ def check_scatter(problem: Problem) -> None:
     """Refuse a quantity with too few numbers to estimate its scatter.
 
     The parameters can meet as many numbers exactly. The residuals would then be zero, and with
-    them the estimated error that weights the quantity beside the others.
+    them the estimated error that weights the quantity beside the others. If the parameters meet
+    all numbers, no weight matters.
     """
-    if len(problem.measured) == 1:
+    exact = sum(problem.counts.values()) == len(problem.model.parameters)
+    if len(problem.measured) == 1 or exact:
         return
     for name, count in problem.counts.items():
         if name not in problem.errors and count <= len(problem.model.parameters):

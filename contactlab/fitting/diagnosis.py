@@ -14,6 +14,7 @@ from contactlab.fitting import outliers, patterns, plausible
 from contactlab.fitting.f_test import CHANCE
 from contactlab.fitting.fit_result import Estimate
 from contactlab.fitting.measurements import Measurements
+from contactlab.fitting.parameters import SHEAR_LOSS
 from contactlab.fitting.problem import Problem
 from contactlab.fitting.slips import loosened, lossy, slips
 from contactlab.impact.coupling import LEFT_OUT, coupling_shift
@@ -110,15 +111,15 @@ def lost(problem: Problem, values: Array) -> list[str]:
 
 
 def cautions(problem: Problem, values: Array) -> list[str]:
-    """Return the cautions of the impacts, with the shift of each parameter where one is known.
+    """Return the cautions of the impacts, and the shift of each parameter where one is known.
 
     The shift is that by coupling, in size: the shifts of psi2 of all impacts, each in the worse
     direction, times the derivatives of the best values by the measured numbers.
     """
     result = problem.model.impacts(values)
     said = result.cautions
-    coupled = [text.startswith(LEFT_OUT) for text in said]
-    if not any(coupled):
+    said = [*said, *_sheared(problem)]
+    if not any(text.startswith(LEFT_OUT) for text in said):
         return said
     change = coupling_shift(result.scene) / np.asarray(result.scene.psi_scale)
     velocity = result.motion.slip_velocity_change + change
@@ -132,10 +133,19 @@ def cautions(problem: Problem, values: Array) -> list[str]:
         rows = np.isfinite(problem.measured[name])
         moves[rows] += part * off[rows, None]
     sizes = zip(problem.model.parameters, np.abs(moves).sum(axis=0), strict=True)
-    moved = ", ".join(f"{parameter.name} by up to about {size:.1g}" for parameter, size in sizes)
+    moves_by = ", ".join(f"{parameter.name} by up to about {size:.1g}" for parameter, size in sizes)
+    return [*said, f"left out, the coupling of unlike bodies moves {moves_by}"]
+
+
+def _sheared(problem: Problem) -> list[str]:
+    """Return the caution of a loss in shear that is fitted."""
+    fitted = {parameter.name.rpartition(".")[2] for parameter in problem.model.parameters}
+    if SHEAR_LOSS not in fitted:
+        return []
+    assumed = "" if "stiffness_ratio" in fitted else " holds for these Poisson's ratios, and"
     return [
-        f"{text}; this moves {moved}" if is_it else text
-        for text, is_it in zip(said, coupled, strict=True)
+        f"{SHEAR_LOSS}{assumed} stands for all that moves the tangential restitution: one such "
+        "number does not tell it without Poisson's ratios and friction (model, not scatter)"
     ]
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose.simulation import Simulation
-from contactlab.fitting import determined
+from contactlab.fitting import determined, tabulated
 from contactlab.fitting.diagnosis import (
     Diagnosis,
     cautions,
@@ -26,10 +26,17 @@ from contactlab.fitting.diagnosis import (
 from contactlab.fitting.fit_result import Estimate, Fit
 from contactlab.fitting.measurements import Measurements, read_measurements
 from contactlab.fitting.model import Model, scene_of, simulation_of
-from contactlab.fitting.parameters import Setup, parameter_named
-from contactlab.fitting.plausible import unlikely_parameters
+from contactlab.fitting.parameters import (
+    RESTITUTION,
+    SHEAR_LOSS,
+    Setup,
+    asks_for,
+    parameter_named,
+    those_of,
+)
+from contactlab.fitting.plausible import restitutions, unlikely_parameters
 from contactlab.fitting.problem import Problem, solved, starting
-from contactlab.fitting.slips import assumed, slips
+from contactlab.fitting.slips import SOME_LOSS, assumed, slips
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import common_shape
 from contactlab.numeric.checks import real, refuse, whole
@@ -69,9 +76,10 @@ def fit(
         Bodies, and entries without a column; may be left out if ``measurements`` is a scene file.
     parameters : sequence of str
         ``friction_coefficient``, ``stiffness_ratio`` (kappa = G*/E*), or an option of a law:
-        ``normal.restitution``, ``tangential.beta0``.
+        ``normal.restitution``, ``tangential.shear_loss``.
     simulation : Simulation, optional
-        The laws; by default the exact elastic ones by their table.
+        The laws; by default the exact elastic ones by their table, and with ``restitution`` among
+        the parameters those of one loss for pressure and shear (``normal.viscoelastic``).
     quantities : sequence of str, optional
         Measured quantities to fit; all by default.
     bootstrap : int
@@ -110,17 +118,20 @@ def fit(
     samples = whole("bootstrap", bootstrap, least=0, most=100_000)
     table = read_measurements(measurements).only(quantities)
     laws = simulation_of(simulation)
+    if laws is None:
+        laws = default_laws(parameters)
     problem = _problem(table, scene, parameters, laws)
     determined.check_enough(problem)
     counted = None if samples else progress
     values, *others = _solutions(problem, counted)
     left_out: tuple[str, ...] = ()
     slipped: list[str] = []
-    every = problem
+    every, of_restitution = problem, restitutions(problem, table)
     if idle := determined.idle(problem, values):
         left_out = (f"{', '.join(idle)}: not met, for no parameter moves it under these laws",)
         slipped, _ = slips(problem, table.given, values, problem.measured)
-        slipped = slipped or lost(problem, values)
+        if not slipped and (seen := lost(problem, values)):
+            slipped, of_restitution = seen, []
         table = table.only([name for name in table.measured if name not in idle])
         problem = _problem(table, scene, parameters, laws)
         values, *others = _solutions(problem)
@@ -133,18 +144,37 @@ def fit(
         determined.check_precise(problem, values, reaches)
         determined.check_single(problem, [values, *others])
     except ValueError as error:
-        causes = (*slipped, *diagnosis.sentences, *error_notes(problem, values))
+        causes = (*slipped, *of_restitution, *diagnosis.sentences, *error_notes(problem, values))
         if not causes:
             raise
         raise ValueError(f"{'. '.join(causes)}. As it is, {error}") from None
-    notes = (*left_out, *slipped, *outcome.notes)
+    notes = (*left_out, *slipped, *of_restitution, *outcome.notes)
     warned = (*cautions(problem, values), *(() if notes else assumed(every, values, reaches)))
-    outcome = attrs.evolve(outcome, notes=notes, cautions=warned)
+    aic = every.criterion(values)  # over all numbers, so that laws that leave some out compare
+    outcome = attrs.evolve(outcome, notes=notes, cautions=warned, aic=aic)
     if counted is not None:
         counted(1, 1)
     if not samples:
         return outcome
     return _with_bootstrap(outcome, problem, values, samples, seed=seed, progress=progress)
+
+
+def default_laws(parameters: Sequence[str], *, restituted: bool = False) -> Simulation | None:
+    """Return the laws of a fit that names none: None, the exact elastic ones, or those with loss.
+
+    Raises
+    ------
+    ValueError
+        If a loss in shear is to be fitted without a restitution, fitted or ``restituted``.
+    """
+    sheared = asks_for(SHEAR_LOSS, parameters)
+    if asks_for(RESTITUTION, parameters) or (sheared and restituted):
+        return tabulated.with_loss(SOME_LOSS)
+    if sheared:
+        rule = "is a share of the loss in pressure, which is not known"
+        remedy = f"fit {RESTITUTION} too, or choose normal={tabulated.LOSSY} with its restitution"
+        raise refuse("parameters", SHEAR_LOSS, rule, remedy)
+    return None
 
 
 def _with_bootstrap(
@@ -325,7 +355,7 @@ def rank(
     Parameters
     ----------
     measurements, scene, parameters
-        As for ``fit``.
+        As for ``fit``. A parameter that some of the laws have is fitted under those alone.
     simulations : mapping of str to Simulation
         Laws by the names to report; None stands for the exact elastic laws.
     progress : callable, optional
@@ -339,9 +369,10 @@ def rank(
         If the measurements cannot be read. The failure of a single law is in its ``refusal``.
     """
     table = read_measurements(measurements)
+    own = parameters_of(table, scene, simulations, parameters)
     ranked = []
     for done, (name, simulation) in enumerate(simulations.items(), start=1):
-        keywords = options | {"parameters": parameters, "simulation": simulation}
+        keywords = options | {"parameters": own[name], "simulation": simulation}
         try:
             ranked.append(Ranked(name=name, fit=fit(table, scene, **keywords)))
         except (ValueError, ImpactError) as error:
@@ -349,6 +380,25 @@ def rank(
         if progress is not None:
             progress(done, len(simulations))
     return in_order(ranked)
+
+
+def parameters_of(
+    measurements: Measurements,
+    scene: Any,
+    simulations: Mapping[str, Simulation | None],
+    parameters: Sequence[str],
+) -> dict[str, list[str]]:
+    """Return the parameters to fit under each law; those that no law has stay, to be refused."""
+    batch = scene_of(scene, measurements.given, len(measurements))
+    having = {
+        name: those_of(Setup(batch, simulation), parameters)
+        for name, simulation in simulations.items()
+    }
+    nowhere = set(parameters).difference(*having.values())
+    return {
+        name: [each for each in parameters if each in had or each in nowhere]
+        for name, had in having.items()
+    }
 
 
 def in_order(ranked: Iterable[Ranked]) -> list[Ranked]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from contactlab.compose.simulation import Simulation
 from contactlab.fitting import tabulated
-from contactlab.fitting.parameters import Parameter, Setup
+from contactlab.fitting.parameters import RESTITUTION, Parameter, Setup
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.columns import QUANTITIES
@@ -26,6 +26,10 @@ SOME_FRICTION = 0.1
 #: Points whose predictions are kept: those of a search and its diagnosis, not of a bootstrap.
 REMEMBERED = 1000
 TABULATED = "exact elastic law (tabulated rebound)"
+#: Digits of an option of a law: within them impacts run once, and normal motions are kept.
+DIGITS = 7
+#: The quantity that takes the course of the normal motion, not its restitution alone.
+CONTACT_TIME = "contact_time"
 POLAR, CARTESIAN = ("speed", "angle_deg"), ("normal_speed", "tangential_velocity")
 
 
@@ -51,6 +55,7 @@ class Model:
         Points with equal options of laws run together in one batch. A point seen before
         is not run again.
         """
+        points = self._near(points)
         if len(self._known) > REMEMBERED:
             self._known.clear()
         keys = [point.tobytes() for point in points]
@@ -63,9 +68,18 @@ class Model:
             self._run(points[fresh], [keys[row] for row in fresh], quantities)
         return {name: np.array([self._known[key][name] for key in keys]) for name in quantities}
 
+    def _near(self, points: Array) -> Array:
+        """Return points, shape (m, parameters), with rounded options of laws."""
+        near = points.copy()
+        for place, parameter in enumerate(self.parameters):
+            if not parameter.batched:
+                near[:, place] = [float(f"{v:.{DIGITS}g}") for v in points[:, place].tolist()]
+        return near
+
     def _run(self, points: Array, keys: Sequence[bytes], quantities: Sequence[str]) -> None:
         """Run the impacts at some points and keep the quantities under their keys."""
-        alone = [place for place, p in enumerate(self.parameters) if not p.batched]
+        each = self._restituted(quantities)
+        alone = [place for place, p in enumerate(self.parameters) if not (p.batched or p is each)]
         _, group = np.unique(points[:, alone], axis=0, return_inverse=True)
         group = np.reshape(group, -1)  # its shape depends on the version of numpy
         for number in range(int(group.max()) + 1):
@@ -77,13 +91,29 @@ class Model:
     def _together(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
         """Return the quantities, shape (m, n), at points with equal laws, from one batch."""
         many, count = len(points), self.setup.scene.shape[0]
-        setup = self.setup._replace(scene=self._times(many))
+        setup, restituted = (
+            self.setup._replace(scene=self._times(many)),
+            self._restituted(quantities),
+        )
+        restitution: Any = None
         for parameter, column in zip(self.parameters, points.T, strict=True):
-            each = parameter.batched and many > 1
+            each = many > 1 and (parameter.batched or parameter is restituted)
             value = np.repeat(column, count) if each else float(column[0])
-            setup = parameter.applied(setup, value)
-        result = self._impacts(setup)
+            if parameter is restituted:
+                restitution = value
+            else:
+                setup = parameter.applied(setup, value)
+        if restitution is None:
+            result = self._impacts(setup)
+        else:
+            result = tabulated.rebounds(setup.scene, restitution)
         return {name: QUANTITIES[name].of(result).reshape(many, count) for name in quantities}
+
+    def _restituted(self, quantities: Sequence[str]) -> Parameter | None:
+        """Return the restitution if each impact of a batch may have its own; else None."""
+        if not self.tabled or CONTACT_TIME in quantities:
+            return None
+        return next((p for p in self.parameters if p.name == f"normal.{RESTITUTION}"), None)
 
     def _impacts(self, setup: Setup) -> ImpactResult:
         """Return the impacts of a scene under its laws."""
@@ -93,7 +123,7 @@ class Model:
 
     def impacts(self, values: Array) -> ImpactResult:
         """Return the impacts, shape (n,), at values of the parameters, shape (parameters,)."""
-        return self._impacts(self._setup(values.tolist()))
+        return self._impacts(self._setup(self._near(values[None])[0].tolist()))
 
     def _setup(self, values: Sequence[float]) -> Setup:
         """Return scene and laws at values of the parameters."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import abc
 import inspect
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -13,8 +13,10 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.compose.names import full_name
 from contactlab.compose.registry import KINDS, REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
+from contactlab.fitting import tabulated
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, Rule
@@ -30,6 +32,8 @@ STIFFNESS = (2.0 / 3.0, 4.0 / 3.0)
 TRIED = np.concatenate([-np.geomspace(1e12, 1e-6, 37), [0.0], np.geomspace(1e-6, 1e12, 37)])
 #: Starts of a parameter with a finite range; few starts may all lie where it has no effect.
 STARTS = 15
+#: Options of the loss: of viscous normal laws, and of tangential laws that share it.
+RESTITUTION, SHEAR_LOSS = "restitution", "shear_loss"
 
 
 class Setup(NamedTuple):
@@ -143,21 +147,53 @@ def parameter_named(name: str, setup: Setup) -> Parameter:
     The kind may be left out if only one law has an option of that name.
     """
     choices = _choices(setup)
+    if (full := _full(name, choices)) is not None:
+        return choices[full]()
+    near = nearest(name, [*choices, *_short(choices)])
+    listed = f"known here: {', '.join(choices)}" if choices else "nothing can be fitted here"
+    raise ValueError(
+        f"parameters = {name!r}: scene and laws have no such number; {near}{listed}{_remedy(name)}"
+    )
+
+
+def those_of(setup: Setup, names: Sequence[str]) -> list[str]:
+    """Return those of some names that scene and laws have."""
+    choices = _choices(setup)
+    return [name for name in names if _full(name, choices) is not None]
+
+
+def asks_for(option: str, names: Sequence[str]) -> bool:
+    """Return whether an option of a law is among the names of parameters."""
+    return any(name.rpartition(".")[2] == option for name in names)
+
+
+def _full(name: str, choices: Collection[str]) -> str | None:
+    """Return the full name of a parameter; None if it is none of the choices, or of several."""
+    same = [name] if name in choices else _short(choices).get(name, [])
+    return same[0] if len(same) == 1 else None
+
+
+def _short(choices: Collection[str]) -> dict[str, list[str]]:
+    """Return the full names by the last word of each."""
     short: dict[str, list[str]] = {}
     for full in choices:
         short.setdefault(full.rpartition(".")[2], []).append(full)
-    if name not in choices and len(short.get(name, ())) == 1:
-        name = short[name][0]
-    if name in choices:
-        return choices[name]()
-    near = nearest(name, [*choices, *short])
-    listed = f"known here: {', '.join(choices)}" if choices else "nothing can be fitted here"
-    remedy = "; options of a law are there once it is chosen and they have a number"
-    if having := laws_with(name.rpartition(".")[2]):
-        remedy = f"; it is an option of {', '.join(having)}: choose one of them"
-    raise ValueError(
-        f"parameters = {name!r}: scene and laws have no such number; {near}{listed}{remedy}"
-    )
+    return short
+
+
+def _remedy(name: str) -> str:
+    """Return which laws have a parameter."""
+    option = name.rpartition(".")[2]
+    having = laws_with(option)
+    if option == SHEAR_LOSS:
+        return f"; it is an option of {', '.join(having)} under normal = {tabulated.LOSSY!r}"
+    if not having:
+        return "; options of a law are there once it is chosen and they have a number"
+    usual = full_name("normal", tabulated.LOSSY)
+    if option == RESTITUTION and usual in having:
+        others = ", ".join(law for law in having if law != usual)
+        return f"; it is an option of {usual} (one loss for pressure and shear), and of {others}"
+    return f"; it is an option of {', '.join(having)}: choose one of them"
 
 
 def laws_with(option: str) -> list[str]:
@@ -187,13 +223,15 @@ def _choices(setup: Setup) -> dict[str, Callable[[], Parameter]]:
             most=STIFFNESS[1],
             starts=_evenly(*STIFFNESS),
         )
-    for kind in KINDS if setup.simulation is not None else ():
-        law = getattr(setup.simulation, kind)
+    simulation: Any = setup.simulation
+    for kind in KINDS if simulation is not None else ():
+        law = getattr(simulation, kind)
         for field in attrs.fields(type(law)) if attrs.has(type(law)) else ():
             value = getattr(law, field.name)
             if field.init and isinstance(value, float) and kind != "integrator":
-                full = f"{kind}.{field.name}"
-                choices[full] = partial(_option, kind, field, value)
+                if field.name == SHEAR_LOSS and not simulation.normal.viscous:
+                    continue  # nothing is lost
+                choices[f"{kind}.{field.name}"] = partial(_option, kind, field, value)
     return choices
 
 

@@ -1,4 +1,4 @@
-"""Residuals that follow a column, and single numbers that determine a parameter."""
+"""Residuals that climb with a column or follow it, and numbers that decide alone."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from contactlab.fitting.f_test import NUMERICAL, SPARE, chance_of, orthonormal
 from contactlab.fitting.problem import Problem
+from contactlab.outcome.columns import QUANTITIES
 
 Array = NDArray[np.float64]
 
@@ -21,6 +22,7 @@ VARIES = 0.1
 #: Leverage above which a single number determines the fit.
 ALONE = 0.95
 ORDER = "the order of the rows"
+LOOK = "look at that column, at what else has changed with it, and at other laws"
 
 
 class Pattern(NamedTuple):
@@ -41,8 +43,9 @@ def pattern(
 
     Notes
     -----
-    F tests, beside the parameters, of a polynomial of third degree in the rank of the column, for
-    each quantity, and of a parameter that changes between two rows. A test of runs of signs would
+    F tests, beside the parameters, for each quantity: of a line and of a polynomial of third degree
+    in the rank of the column, and of a line through 0 that ends at a value of it, as where slip
+    begins; and of a parameter that changes between two rows. A test of runs of signs would
     be too weak: no run in ten impacts is improbable enough. The chance is multiplied by the number
     of tests (Bonferroni).
     """
@@ -51,23 +54,47 @@ def pattern(
     ranks = _ranked(columns, len(next(iter(problem.measured.values()))))
     sizes = problem.sizes()
     least = {n: (NUMERICAL * size / np.min(scales[n])) ** 2 for n, size in sizes.items()}
-    tests = []
+    tests: list[Pattern] = []
+    ended: list[Pattern] = []
     for name, numbers in problem.measured.items():
         for column, rank in ranks.items():
             x = rank[np.isfinite(numbers)]
             terms = legendre.legvander(2.0 * (x - x.min()) / max(np.ptp(x), 1.0) - 1.0, DEGREE)
-            words = (
-                f"{name}: residuals follow {column}: look at that column, at what else has changed "
-                "with it, and at other laws"
-            )
-            chance = chance_of(residuals[name], slopes[name], terms[:, 1:], least[name])
-            tests.append(Pattern(chance, words))
+
+            def test(words: str, added: Array, name: str = name) -> Pattern:
+                chance = chance_of(residuals[name], slopes[name], added, least[name])
+                return Pattern(chance, f"{name}: {words}: {LOOK}")
+
+            number = np.asarray(columns.get(column, rank + 1.0), dtype=float)[np.isfinite(numbers)]
+            row = problem.residuals(values[None])[name][0][np.isfinite(numbers)]
+            lows = [x < last for last in range(SPARE, int(x.max()) + 2)]
+            lines = [np.where(low, number, 0.0) for low in lows]
+            gains = [float((row @ one) ** 2 / (one @ one or 1.0)) for one in lines]
+            low = lows[int(np.argmax(gains))]  # the line that is nearest to the residuals
+            words = _climb(name, number[low], row[low], column)
+            ended += [test(words, one[:, None]) for one in lines]
+            tests.append(test(_climb(name, number, row, column), terms[:, 1:2]))
+            tests.append(test(f"residuals follow {column}", terms[:, 1:]))
     same = [name for name in ranks if ORDER not in ranks and _in_order(ranks[name])]
     tests += _changes(problem, weighted, jacobian, max(least.values()), same)
     if not tests:
         return NO_PATTERN
-    clearest = min(tests)
-    return clearest._replace(chance=clearest.chance * len(tests))
+    clearest, line = min(tests), min(ended, default=NO_PATTERN)
+    if 2.0 * line.chance < clearest.chance:  # not where a changed parameter makes the same line
+        clearest = line
+    return clearest._replace(chance=clearest.chance * (len(tests) + len(ended)))
+
+
+def _climb(name: str, x: Array, residuals: Array, column: str) -> str:
+    """Return how residuals grow with a column: the ends of the line through them."""
+    ends = float(x.min()), float(x.max())
+    if ends[0] == ends[1]:
+        return f"residuals are off at {column} {ends[0]:.3g}"
+    low, high = np.polyval(np.polyfit(x, residuals, 1), ends)
+    unit = QUANTITIES[name].unit if name in QUANTITIES else "1"
+    size = f"from {low:+.2g} to {high:+.2g}{'' if unit == '1' else ' ' + unit}"
+    way = "climb" if high > low else "fall"
+    return f"residuals {way} with {column}, {size} between {ends[0]:.3g} and {ends[1]:.3g}"
 
 
 def _changes(

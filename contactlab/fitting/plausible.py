@@ -1,13 +1,16 @@
-"""Implausible numbers of measurements and of materials."""
+"""Implausible numbers of measurements and of materials, and restitutions that laws lack."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.fitting import tabulated
+from contactlab.fitting.f_test import NUMERICAL
 from contactlab.fitting.measurements import Measurements
 from contactlab.fitting.problem import Problem
 
@@ -27,6 +30,8 @@ RADIUS = (1e-6, 0.5)
 RADIANS = 1.58
 #: Possible restitutions with a margin for scatter, and the share outside that is reported.
 BOUNDS, SHARE = {"normal_restitution": (-0.1, 1.1), "slip_restitution": (-1.1, 1.1)}, 1 / 3
+#: A mean restitution lies above or below 1 if scatter makes that with less than this chance.
+DOUBT = 0.01
 #: Additional bounds without spin before the impact.
 WITHOUT_SPIN = {"tangential_restitution": (-0.1, 1.1)}
 
@@ -63,6 +68,49 @@ def unlikely_numbers(problem: Problem, table: Measurements) -> list[str]:
                 "does: look at its unit, its sign and whether columns have moved"
             )
     return sentences
+
+
+def restitutions(problem: Problem, table: Measurements) -> list[str]:
+    """Return a sentence if the normal restitution is above 1, or below that of elastic laws."""
+    scene, laws = problem.model.setup
+    e = table.measured.get("normal_restitution")
+    error = table.errors.get("normal_restitution")
+    name = "normal_restitution"
+    if e is None and (out := table.measured.get("rebound_normal_velocity")) is not None:
+        name, error = "rebound_normal_velocity", table.errors.get("rebound_normal_velocity")
+        speed = np.asarray(scene.normal_speed)
+        e, error = -out / speed, None if error is None else error / speed
+    if e is None:
+        return []
+    mean, off = _mean(e, error)
+    if off > 0.0:
+        return [
+            f"{name}: a restitution of {mean:.3g}, above 1: no law here gains energy; look at the "
+            "speeds, the angle and the spin"
+        ]
+    lossless = laws is None or "elastic_hertz" in laws.normal.offers
+    if off < 0.0 and mean > 0.0 and lossless:
+        return [
+            f"{name}: a restitution of {mean:.3g}, under laws that lose nothing: {tabulated.TOO}"
+        ]
+    return []
+
+
+def _mean(e: Array, error: Array | None) -> tuple[float, float]:
+    """Return the mean of restitutions, and its distance from 1 if chance does not make that."""
+    from scipy.special import ndtri, stdtrit  # only a fit needs scipy
+
+    present = np.isfinite(e)
+    e, number = e[present], int(present.sum())
+    mean, reach = float(e.mean()), 0.0
+    if error is not None:
+        weights = error[present] ** -2.0
+        mean = float(np.average(e, weights=weights))
+        reach = float(ndtri(1.0 - DOUBT) / math.sqrt(weights.sum()))
+    elif number > 1:
+        reach = float(stdtrit(number - 1, 1.0 - DOUBT) * e.std(ddof=1) / math.sqrt(number))
+    off = mean - 1.0
+    return mean, off if abs(off) > max(reach, NUMERICAL) else 0.0
 
 
 def unlikely_parameters(

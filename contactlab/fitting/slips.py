@@ -11,12 +11,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose.names import short_name
-from contactlab.compose.rebound import RESTITUTED_CHI, laws_of
-from contactlab.compose.simulation import Simulation
+from contactlab.compose.rebound import RESTITUTED_CHI
 from contactlab.fitting import tabulated
 from contactlab.fitting.f_test import SPARE, chance_of
 from contactlab.fitting.model import Model
-from contactlab.fitting.parameters import Parameter, Setup, in_words, laws_with, parameter_named
+from contactlab.fitting.parameters import (
+    RESTITUTION,
+    SHEAR_LOSS,
+    Parameter,
+    Setup,
+    in_words,
+    laws_with,
+    parameter_named,
+    those_of,
+)
 from contactlab.fitting.patterns import NO_PATTERN, Pattern
 from contactlab.fitting.problem import Problem, grid, solved
 from contactlab.fitting.readings import Reading, readings, turned
@@ -32,12 +40,15 @@ SMALLER, CERTAIN = 2.0, 20.0
 WORTH_FITTING = 3.0
 #: Most readings reported, and difference of scores up to which they are as good as the best.
 LISTED, ALIKE = 3, 6.0
-#: A tilt is fitted if normal scatter follows its derivative with less than this chance.
-WORTH_TILTING = 1e-2
+#: A tilt, or a loss in shear, is fitted if normal scatter follows its derivative with less than
+#: this chance.
+WORTH_FITTING_MORE = 1e-2
 #: Largest tilt, in degrees.
 TILT = 15.0
-#: The option of normal laws that is tried, and the start of its search.
-RESTITUTION, SOME_LOSS = "normal.restitution", 0.9
+#: Start of the search of a restitution.
+SOME_LOSS = 0.9
+#: Restitution of the contact point, an option of tangential laws.
+SLIP_RESTITUTION = "slip_restitution"
 #: Restitutions tried in place of 1, and the difference of scores that excludes one (95 %).
 LOSSES, EXCLUDED = (0.95, 0.9, 0.85, 0.8, 0.7, 0.6, 0.5), 3.84
 #: Residuals below this share of the largest number are numerical error.
@@ -157,15 +168,17 @@ def _score(problem: Problem, values: Array, table: Problem) -> float:
     return float(_scores(Reading("", problem, {}), values[None], table)[0])
 
 
-def _sentence(problem: Problem, values: Array, better: list[Read]) -> str:
-    """Return a sentence on the best readings, with the parameters of the first."""
+def _sentence(problem: Problem, values: Array, better: list[Read], *, more: int = 0) -> str:
+    """Return a sentence on the best readings, with the parameters of the first but the last."""
     best = better[0]
     own = _score(problem, values, problem)
     times = math.exp((own - best.score) / (2.0 * sum(problem.counts.values())))
     listed = "; or ".join(read.reading.words for read in better)
-    parameters = best.reading.problem.model.parameters[: len(values)]  # without what was tried
-    estimates = in_words(parameters, best.values[: len(values)])
-    return f"{listed}: read so, residuals are {times:.2g} times smaller, and {estimates}"
+    parameters = best.reading.problem.model.parameters
+    kept = len(parameters) - more  # without what was tried
+    estimates = in_words(parameters[:kept], best.values[:kept])
+    told = f"{listed}: read so, residuals are {times:.2g} times smaller"
+    return f"{told}, and {estimates}" if kept else told
 
 
 class AngleOffset(Parameter):
@@ -181,26 +194,33 @@ class AngleOffset(Parameter):
 def loosened(problem: Problem, given: Collection[str], values: Array) -> Pattern:
     """Return the chance that scatter looks like an error common to all impacts, and a sentence.
 
-    Errors that are tried are a common excess of all angles and a wrong restitution.
+    Errors that are tried are a common excess of all angles, a wrong restitution and a wrong loss
+    in shear.
     """
     if problem.model.setup.scene.sphere is None:
         return NO_PATTERN
-    return _better_with(problem, values, _tilted(problem, given, values), _restituted(problem))
+    tried = (
+        _tilted(problem, given, values),
+        _restituted(problem, values),
+        _sheared(problem, values),
+    )
+    return _better_with(problem, values, *tried)
 
 
 def lossy(problem: Problem, values: Array) -> Pattern:
     """Return the chance that scatter looks like a wrong restitution, and a sentence on it."""
     scene, simulation = problem.model.setup
     if simulation is None or tabulated.holds(simulation):
-        return _better_with(problem, values, _restituted(problem))
+        return _better_with(problem, values, _restituted(problem, values))
     if scene.sphere is None or "elastic_hertz" not in simulation.normal.offers:
         return NO_PATTERN
     quick = _elastic(problem)
-    return _better_with(quick, solved(quick, _first(quick)), _restituted(quick))
+    best = solved(quick, _first(quick))
+    return _better_with(quick, best, _restituted(quick, best))
 
 
-#: A problem with one more parameter, the start of that parameter, and words on its best value.
-Wider = tuple[Problem | None, float, Callable[[float], str]]
+#: A problem with one more parameter, the last, its start, and words on the best value of that.
+Wider = tuple[Problem | None, Array, Callable[[float], str]]
 
 
 def _better_with(problem: Problem, values: Array, *tried: Wider) -> Pattern:
@@ -218,7 +238,7 @@ def _better_with(problem: Problem, values: Array, *tried: Wider) -> Pattern:
     found = []
     for wider, start, words in tried:
         if wider is not None:
-            best = solved(wider, np.append(values, start))
+            best = solved(wider, start)
             reading = Reading(words(float(best[-1])), wider, {})
             found.append(Read(reading, _score(wider, best, problem), best))
     found.sort(key=lambda read: read.score)
@@ -227,7 +247,7 @@ def _better_with(problem: Problem, values: Array, *tried: Wider) -> Pattern:
     ratio = math.expm1((own - found[0].score) / number) * freedom
     alike = [read for read in found if read.score - found[0].score < ALIKE]
     chance = float(fdtrc(1, freedom, ratio)) * len(found)
-    return Pattern(chance, _sentence(problem, values, alike))
+    return Pattern(chance, _sentence(problem, values, alike, more=1))
 
 
 def _tilted(problem: Problem, given: Collection[str], values: Array) -> Wider:
@@ -239,37 +259,84 @@ def _tilted(problem: Problem, given: Collection[str], values: Array) -> Wider:
         return f"{name} looks as if all numbers were {size}, as by the zero of a protractor"
 
     offset = AngleOffset(name=name, unit="deg", least=-TILT, most=TILT, starts=(0.0,))
-    model = attrs.evolve(problem.model, parameters=(*problem.model.parameters, offset))
+    return _worth(problem, offset, values, 0.0), np.append(values, 0.0), words
+
+
+def _worth(problem: Problem, more: Parameter, values: Array, start: float) -> Problem | None:
+    """Return the problem with one parameter more; None if scatter follows its derivative as well.
+
+    At ``start`` the parameter leaves the laws as they are.
+    """
+    model = attrs.evolve(problem.model, parameters=(*problem.model.parameters, more))
     wider = attrs.evolve(problem, model=model)
     scales = problem.scales(problem.residuals(values[None]))
-    weighted, slopes = wider.linearised(np.append(values, 0.0), scales)
-    if chance_of(weighted, slopes[:, :-1], slopes[:, -1:], 0.0) > WORTH_TILTING:
-        return None, 0.0, words
-    return wider, 0.0, words
+    weighted, slopes = wider.linearised(np.append(values, start), scales)
+    chance = chance_of(weighted, slopes[:, :-1], slopes[:, -1:], 0.0)
+    return None if chance > WORTH_FITTING_MORE else wider
 
 
-def _restituted(problem: Problem) -> Wider:
+def _sheared(problem: Problem, values: Array) -> Wider:
+    """Return the problem with a loss in shear to fit; None if the laws have none, or it is told."""
+    setup, parameters = problem.model.setup, problem.model.parameters
+    own = float(getattr(setup.simulation and setup.simulation.tangential, SHEAR_LOSS, 1.0))
+
+    def words(shear_loss: float) -> str:
+        others = ", ".join(map(_of_law, laws_with(SLIP_RESTITUTION)))
+        return (
+            f"the contact point looks as if it rebounded {'less' if shear_loss > own else 'more'} "
+            f"than these laws give: as with a loss in shear of {shear_loss:.3g} times that in "
+            f"pressure, in place of {own:.3g} (fit {SHEAR_LOSS} too, or {others}; where Poisson's "
+            f"ratios or friction are not known, one tangential restitution does not tell "
+            f"{SHEAR_LOSS})"
+        )
+
+    fitted = [parameter.name.rpartition(".")[2] for parameter in parameters]
+    if setup.simulation is None or SHEAR_LOSS in fitted or not those_of(setup, [SHEAR_LOSS]):
+        return None, values, words
+    fixed, own_values = _of_the_batch(problem, values)
+    wider = _worth(fixed, parameter_named(SHEAR_LOSS, setup), own_values, own)
+    return wider, np.append(own_values, own), words
+
+
+def _of_the_batch(problem: Problem, values: Array) -> tuple[Problem, Array]:
+    """Return the problem with other options of laws fixed at their values, to save time."""
+    model = problem.model
+    setup, kept = model.setup, []
+    for place, parameter in enumerate(model.parameters):
+        if parameter.batched:
+            kept.append(place)
+        else:
+            setup = parameter.applied(setup, float(values[place]))
+    parameters = tuple(model.parameters[place] for place in kept)
+    return attrs.evolve(problem, model=Model(setup=setup, parameters=parameters)), values[kept]
+
+
+def _of_law(law: str) -> str:
+    """Return in words the slip restitution of a law."""
+    return f"{SLIP_RESTITUTION} of {short_name(law)}"
+
+
+def _restituted(problem: Problem, values: Array) -> Wider:
     """Return the problem with a restitution to fit; None without a table of such impacts."""
     setup, parameters = problem.model.setup, problem.model.parameters
-    laws: Any = setup.simulation or Simulation(normal=laws_of(1.0).normal)
-    own = getattr(laws.normal, "restitution", 1.0)
+    laws: Any = setup.simulation or tabulated.with_loss(SOME_LOSS)
+    own = getattr(setup.simulation and laws.normal, RESTITUTION, 1.0)
 
     def words(restitution: float) -> str:
-        lossy = ", ".join(map(short_name, laws_with("restitution")))
         return (
             f"the impacts look as if their restitution were {restitution:.3g} in place of "
-            f"{own:.3g} (an option of the normal laws {lossy})"
+            f"{own:.3g} ({tabulated.TOO})"
         )
 
     names = [parameter.name for parameter in parameters]
-    chi: Any = setup.scene.chi
-    inside = np.all((chi >= RESTITUTED_CHI[0]) & (chi <= RESTITUTED_CHI[1]))
-    if RESTITUTION in names or not tabulated.holds(laws) or not inside:
-        return None, own, words
+    low, high = RESTITUTED_CHI
+    chi = np.asarray(setup.scene.chi)
+    known = np.all((chi >= low) & (chi <= high)) and tabulated.holds(laws)
+    if f"normal.{RESTITUTION}" in names or not known:
+        return None, values, words
     wider = setup._replace(simulation=laws)
-    more = parameter_named(RESTITUTION, wider)
-    model = Model(setup=wider, parameters=(*parameters, more))
-    return attrs.evolve(problem, model=model), SOME_LOSS, words
+    model = Model(setup=wider, parameters=(*parameters, parameter_named(RESTITUTION, wider)))
+    return attrs.evolve(problem, model=model), np.append(values, SOME_LOSS), words
 
 
 def assumed(problem: Problem, values: Array, reaches: Array) -> list[str]:
@@ -278,7 +345,7 @@ def assumed(problem: Problem, values: Array, reaches: Array) -> list[str]:
     The sentence tells the least restitution of a few that the data do not exclude, if a parameter
     then lies outside of its interval, of half-widths ``reaches``.
     """
-    wider = None if problem.model.setup.simulation else _restituted(problem)[0]
+    wider = None if problem.model.setup.simulation else _restituted(problem, values)[0]
     if wider is None:
         return []
     limit = _score(problem, values, problem) + EXCLUDED

@@ -1,21 +1,29 @@
-"""Impacts with a tabulated rebound: elastic, or with one restitution."""
+"""Impacts with a tabulated rebound: elastic, or with one loss for pressure and shear."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
 
 import numpy as np
 
-from contactlab.compose.rebound import laws_of, rebound
+from contactlab.compose import composition
+from contactlab.compose.rebound import rebound
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.status import Status
 from contactlab.impact.cautions import unit_slips
 from contactlab.impact.coupling import coupling
 from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Real
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import Clause, Plan, PlanColumns, Words
 from contactlab.outcome.result import ImpactResult
+
+#: The normal law behind ``rebound(restitution=)``.
+LOSSY = composition.RESTITUTION["normal"]
+#: What leads to it.
+TOO = f"fit restitution too: that of normal={LOSSY}, one loss for pressure and shear"
 
 
 def holds(simulation: Simulation | None) -> bool:
@@ -26,39 +34,71 @@ def holds(simulation: Simulation | None) -> bool:
     """
     if simulation is None:
         return True
-    normal: Any = simulation.normal
-    if type(normal) is not _normal_law() or normal.restitution is None:
+    normal = simulation.normal
+    if type(normal) is not _normal_law() or getattr(normal, "restitution", None) is None:
         return False
     return simulation == Simulation(normal=normal)
 
 
 @cache
-def _normal_law() -> type:
+def _normal_law() -> Any:
     """Return the class of the normal law behind ``rebound(restitution=)``."""
-    return type(laws_of(0.9).normal)
+    return type(composition.law("normal", LOSSY))
+
+
+def with_loss(restitution: float) -> Simulation:
+    """Return the laws of one loss for pressure and shear, beside default laws."""
+    return Simulation(normal=composition.law("normal", LOSSY, restitution=restitution))
 
 
 def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
     """Return the impacts of a batch by the table of psi2; friction work is NaN."""
-    shape, laws = scene.shape, simulation or Simulation()
-    damping: Any = {} if simulation is None else {"restitution": laws.normal.restitution}  # type: ignore[attr-defined]
-    psi2, course = rebound(scene.psi1, scene.chi, **damping), laws.normal_motion(scene)
-    change: Any = (psi2 - scene.psi1) / np.asarray(scene.psi_scale)
-    motion = Motion(
-        slip_velocity_change=change,
-        friction_work=np.full(shape, np.nan),
-        status=np.full(shape, Status.SUCCESS, dtype=object),
-        duration=np.broadcast_to(course.duration, shape),
-        normal_velocity=np.broadcast_to(course.final_rate, shape),
-        maximum_radius=np.broadcast_to(course.maximum_radius, shape),
-        maximum_approach=np.broadcast_to(course.maximum_approach, shape),
-        maximum_force=np.broadcast_to(course.maximum_force, shape),
-    )
-    everywhere = np.ones(shape, dtype=bool)
+    lossy = simulation is not None and simulation.normal.viscous
+    laws: Any = simulation if lossy else Simulation()
+    course = laws.normal_motion(scene)
+    numbers = {
+        "duration": course.duration,
+        "maximum_radius": course.maximum_radius,
+        "maximum_approach": course.maximum_approach,
+        "maximum_force": course.maximum_force,
+    }
+    everywhere = np.ones(scene.shape, dtype=bool)
 
     def clauses() -> Words:
         said = (*unit_slips(scene), *laws.normal.cautions(scene, course), *coupling(scene))
+        if lossy:
+            said += laws.tangential.cautions(scene, course)
         return (), (), tuple(Clause(text, everywhere) for text in said)
 
-    plan = Plan(PlanColumns.nothing(shape), clauses)
+    restitution = laws.normal.restitution if lossy else 1.0
+    return _result(scene, restitution, course.final_rate, numbers, clauses)
+
+
+def rebounds(scene: Scene, restitution: Real) -> ImpactResult:
+    """Return impacts with a restitution each: velocities; the rest is NaN, and nothing is told."""
+    unknown = ("duration", "maximum_radius", "maximum_approach", "maximum_force")
+    rate: Any = -restitution * np.asarray(scene.normal_speed)
+    return _result(scene, restitution, rate, dict.fromkeys(unknown, np.nan), lambda: ((), (), ()))
+
+
+def _result(
+    scene: Scene,
+    restitution: Real,
+    normal_velocity: Real,
+    numbers: Mapping[str, Real],
+    words: Callable[[], Words],
+) -> ImpactResult:
+    """Return the impacts of a batch with psi2 by the table."""
+    shape, e = scene.shape, restitution
+    each = e if isinstance(e, float) else np.broadcast_to(e, shape)
+    psi2: Any = rebound(scene.psi1, scene.chi, restitution=each)
+    course: Any = {name: np.broadcast_to(number, shape) for name, number in numbers.items()}
+    motion = Motion(
+        slip_velocity_change=(psi2 - scene.psi1) / np.asarray(scene.psi_scale),
+        friction_work=np.full(shape, np.nan),
+        status=np.full(shape, Status.SUCCESS, dtype=object),
+        normal_velocity=np.broadcast_to(normal_velocity, shape),
+        **course,
+    )
+    plan = Plan(PlanColumns.nothing(shape), words)
     return ImpactResult(scene=scene, plan=plan, motion=motion, run_time=0.0, laws={})

@@ -6,7 +6,6 @@ import attrs
 import numpy as np
 
 from contactlab import HalfSpace, Scene, Simulation, Sphere, create, fit
-from contactlab.fitting.tabulated import impacts
 from contactlab.outcome.columns import QUANTITIES
 from tests.fitting.impacts import STEEL
 
@@ -54,8 +53,8 @@ def draw(seed, *, outliers, restitution=1.0, tilt=0.0, only=None):
     )
     rebounds = Simulation(tangential="fronts").sweep(scene).check()
     if restitution < 1.0:
-        law = create("normal.tsuji", restitution=restitution)
-        rebounds = impacts(scene, Simulation(normal=law))
+        law = create("normal.viscoelastic", restitution=restitution)
+        rebounds = Simulation(normal=law).sweep(scene).check()
     columns = {"angle_deg": angles + tilt, "speed (m/s)": speeds}
     bad = rng.random(count) < SHARE if outliers else np.zeros(count, dtype=bool)
     if outliers and not bad.any():

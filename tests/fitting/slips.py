@@ -45,7 +45,7 @@ def true(*names, series, seed, angles=WIDE, spin=None, friction=FRICTION, cartes
     )  # fmt: skip
     laws = Simulation(tangential="fronts")
     if damped:
-        laws = Simulation(normal=create("normal.tsuji", restitution=RESTITUTION))
+        laws = Simulation(normal=create("normal.viscoelastic", restitution=RESTITUTION))
     rebounds = laws.sweep(scene).check()
     columns: dict[str, Any] = {"angle_deg": angles, "speed (m/s)": speeds}
     if cartesian:
@@ -64,7 +64,7 @@ def true(*names, series, seed, angles=WIDE, spin=None, friction=FRICTION, cartes
     fits = {}
     if damped:
         fits = {
-            "laws": Simulation(normal="tsuji"),
+            "laws": Simulation(normal="viscoelastic"),
             "parameters": ("friction_coefficient", "restitution"),
         }
     return File(columns, **fits)

@@ -1,6 +1,7 @@
 """Outliers, patterns and leverage of a straight line through the origin, in closed form."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -141,7 +142,22 @@ def test_a_change_between_two_rows_has_the_chance_of_its_f_test():
     split = left(np.column_stack([x, x * (np.arange(12) >= 6)]))
     least = (1e-4 * np.abs(y).max()) ** 2
     chance = f_distribution.sf((plain - split) / (split / 10.0 + least), 1, 10)
-    assert seen.chance == pytest.approx(chance * (2 + 7), rel=1e-4)  # x, order; after 3 to 9
+    tests = 2 * (2 + 10) + 7  # over x and order: two curves, lines to the 3rd to 12th; changes
+    assert seen.chance == pytest.approx(chance * tests, rel=1e-4)
+
+
+@pytest.mark.parametrize(("slope", "way"), [(0.02, "climb"), (-0.02, "fall")])
+def test_residuals_that_climb_up_to_a_value_are_told_with_their_size(slope, way):
+    """A constant, and a line through 0 that ends at 8."""
+    x = np.linspace(1.0, 12.0, 12)
+    z = 6.0 + 0.1 * NOISE + np.where(x < 8.5, slope * x, 0.0)
+    problem = line({"z": z}, option("a"), x=x)  # z = 3 a
+    seen = patterns.pattern(problem, np.array([z.mean() / 3.0]), {"z": 0.01}, {"x": x})
+    assert seen.chance < 1e-6
+    assert f"residuals {way} with x, from " in seen.words
+    assert "between 1 and 8:" in seen.words
+    low, high = map(float, re.search(r"from (\S+) to (\S+) between", seen.words).groups())
+    assert high - low == pytest.approx(7.0 * slope, rel=0.1)
 
 
 def test_a_change_along_a_column_may_be_another_law():

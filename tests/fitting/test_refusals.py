@@ -171,8 +171,15 @@ def test_a_law_that_is_not_that_of_the_data_ends_at_the_end_of_a_range():
         ({"simulation": "coulomb"}, "simulation = 'coulomb': must be a Simulation"),
         ({"quantities": ["rebound_spin"]}, "was not measured"),
         ({"bootstrap": -1}, "bootstrap"),
-        ({"parameters": ["restitution"]}, "it is an option of normal.hunt_crossley, "),
-        ({"parameters": ["normal.restitution"]}, "normal.tsuji"),
+        (
+            {"parameters": ["restitution"], "simulation": Simulation(tangential="coulomb")},
+            "it is an option of normal.viscoelastic (one loss for pressure and shear), and of ",
+        ),
+        ({"parameters": ["shear_loss"]}, "fit restitution too"),
+        (
+            {"parameters": ["shear_loss"], "simulation": Simulation(tangential="springs")},
+            "under normal = 'viscoelastic'",
+        ),
     ],
 )
 def test_bad_arguments(arguments, words):

@@ -4,13 +4,10 @@ import sys
 
 import numpy as np
 import pytest
-from numpy.polynomial.chebyshev import chebval2d
+from numpy.polynomial.chebyshev import chebval3d
 
 from contactlab.impact.coupling import FILE
 from contactlab_laws.tables import regions
-from contactlab_laws.tables.damped import RINGS, SLIPS, STICKS, TURNS
-from contactlab_laws.tables.damped import place as place_of
-from contactlab_laws.tables.damped import rough as rough_of
 from contactlab_laws.tables.elastic import NODES
 from contactlab_laws.tables.patches import nodes
 from contactlab_laws.tables.regions import (
@@ -29,12 +26,10 @@ pytest.importorskip("table_builders", reason="table_builders is not in the wheel
 
 from table_builders import __main__ as command
 from table_builders.coupling import build as unlike
-from table_builders.damped import build
-from table_builders.damped.build import coefficients, incidence, restitution, smooth
-from table_builders.damped.build import nodes as damped_nodes
 from table_builders.elastic import exact
 from table_builders.elastic.coordinates import impact, measure
 from table_builders.elastic.fit import Cell, slope_at_one
+from table_builders.restituted import build
 
 #: Cuts at chi = 1.5 + psi1/10 and chi = 2 + t^5.
 CUTS = Cuts(np.array([1.5, 0.1]), np.array([2.0, 0, 0, 0, 0, 1.0]))
@@ -77,50 +72,32 @@ def test_the_slope_along_a_cut_that_climbs():
         assert found == pytest.approx(3.0 - chi**2 + g_by_chi * by_cut, abs=1e-6)
 
 
-PIECES = (1.2, 2.2, 5.2)
+def test_the_impacts_of_a_cell_of_restitutions():
+    """Those of a region that slips: half of (1 - u)² of the way from K = 2 chi (1 + e) - e to 1."""
+    cell = build.Cell(2, (1, 0, 2), (1, 0, 3))
+    inner = (np.array([0.0, 0.5]), np.array([0.25]), np.array([0.5]))
+    assert cell.shares(2, inner[2]) == pytest.approx([0.875])
+    psi1, chi = cell.impacts(inner, 0.5)
+    assert chi == pytest.approx(0.75)
+    assert psi1.ravel() == pytest.approx([1.75 - 0.75 * 0.25, 1.75 - 0.75 * 0.0625])
+    assert cell.split(1) == [
+        build.Cell(2, (1, 1, 2), (1, 0, 3)), build.Cell(2, (1, 1, 2), (1, 1, 3))
+    ]  # fmt: skip
+    assert build.Cell(0, (0, 0, 0), (0, 0, 0)).impacts(inner, 0.5)[0].ravel().tolist() == [0, 0.5]
 
 
-@pytest.mark.parametrize(
-    ("piece", "at", "psi1"),
-    [
-        (STICKS, -1.0, 0.0),
-        (STICKS, 0.5, 0.9),
-        (STICKS, 1.0, 1.2),
-        (RINGS, -1.0, 1.2),
-        (RINGS, 0.0, 1.45),  # a quarter of the way at half of its root
-        (RINGS, 1.0, 2.2),
-        (TURNS, 0.2, 3.28),  # 2.2 + 3 * 0.6²
-        (SLIPS, 1.0, 5.2),
-        (SLIPS, 0.0, 9.4),  # 1 + 4.2/0.5
-    ],
-)
-def test_psi1_of_a_coordinate_and_back(piece, at, psi1):
-    assert incidence(piece, at, PIECES) == pytest.approx(psi1, abs=1e-14)
-    assert place_of(piece, psi1, PIECES) == pytest.approx(at, abs=1e-7)
-
-
-@pytest.mark.parametrize(
-    ("piece", "value"), [(STICKS, 0.25), (RINGS, 0.5), (TURNS, 0.5), (SLIPS, 3.9)]
-)
-def test_the_tabulated_quantity_and_back(piece, value):
-    """Gross slip at chi = 1.5, e = 0.8 takes 5.4 from psi1 = 2."""
-    assert smooth(piece, 2.0, 0.5, 1.5, 0.8) == pytest.approx(value, abs=1e-15)
-    assert rough_of(piece, 2.0, value, 1.5, 0.8) == pytest.approx(0.5, abs=1e-15)
-
-
-def test_nodes_are_chebyshevs_and_coefficients_are_found_at_them():
-    half_root = np.sqrt(3.0) / 2.0
-    assert damped_nodes(3, 1.0, 5.0) == pytest.approx([3 - 2 * half_root, 3.0, 3 + 2 * half_root])
-    wanted = np.arange(1.0, 7.0).reshape(2, 3)
-    x, y = np.meshgrid(damped_nodes(2, -1.0, 1.0), damped_nodes(3, -1.0, 1.0), indexing="ij")
-    assert coefficients(chebval2d(x, y, wanted)) == pytest.approx(wanted, abs=1e-14)
-    assert restitution(0.5) == 0.875
-
-
-def test_elastic_gross_slip_by_few_rings():
-    psi1, chi = np.array([[8.0], [9.0]]), np.array([1.0, 1.4])
-    found = build.solve(psi1, chi, 1.0)
-    assert found == pytest.approx(psi1 - 4.0 * chi, abs=1e-9)
+def test_a_cell_that_is_a_polynomial_holds_it(monkeypatch):
+    """With psi2 = psi1² chi (1 + e) in place of springs."""
+    monkeypatch.setattr(build, "solve", lambda psi1, chi, e: psi1**2 * chi * (1.0 + e))
+    cells = [build.Cell(1, (1, 0, 0), (1, 0, 0)), build.Cell(3, (0, 0, 0), (0, 0, 0))]
+    terms = build.terms_of(cells)
+    found = chebval3d(0.5, -0.25, 0.0, terms[0])
+    assert found == pytest.approx(0.875 * (0.5 + 2.5 * 0.375) * 1.5)  # of psi2/psi1, at e = 1/2
+    assert max(build.errors(cells, terms)) < 1e-9
+    assert build.holding(cells, terms) == [True, True]
+    monkeypatch.setattr(build, "solve", lambda psi1, chi, e: np.sign(psi1 - 0.7) + 0.0 * chi * e)
+    assert build.holding(cells[:1], build.terms_of(cells[:1])) == [False]
+    assert build.tails(cells[0], build.terms_of(cells[:1])[0]).argmax() == 0
 
 
 @pytest.mark.parametrize(("psi1", "sign"), [(8.0, 1), (0.3, -1)])
@@ -146,7 +123,8 @@ def test_the_shipped_sizes_of_coupling_are_of_the_nodes_of_the_builder():
 
 
 @pytest.mark.parametrize(
-    "asked", ["", "elastic", "damped", "damped build --count 3", "damped build --file any.npz"]
+    "asked",
+    ["", "elastic", "restituted", "restituted build --count 3", "restituted build --file any.npz"],
 )
 def test_an_unfinished_command_is_refused(asked, monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["table_builders", *asked.split()])

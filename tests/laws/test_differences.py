@@ -16,9 +16,13 @@ class Unknown:
     """A normal law that was not measured."""
 
 
-def cautions(psi1, chi, **laws):
+#: Springs whose shear is elastic: those that share a loss keep to Coulomb's law at every point.
+ELASTIC = create("tangential.springs", shear_loss=0.0)
+
+
+def cautions(psi1, chi, *, tangential=ELASTIC, **laws):
     scene = Scene.nondimensional(psi1=psi1, chi=chi)
-    return [str(each) for each in Simulation(tangential="springs", **laws).plan(scene).cautions]
+    return [str(each) for each in Simulation(tangential=tangential, **laws).plan(scene).cautions]
 
 
 def size(psi1, chi, name, e):
@@ -40,7 +44,7 @@ def size(psi1, chi, name, e):
 def test_the_size_bounds_the_error_of_springs_far_from_solid_spheres(name, e, psi1, chi, exact):
     laws = Simulation(
         normal=create(f"normal.{name}", restitution=e),
-        tangential=create("tangential.springs", springs=120),
+        tangential=create("tangential.springs", springs=120, shear_loss=0.0),
         integrator=create("integrator.symplectic", steps=480),
     )
     off = abs(laws.run(Scene.nondimensional(psi1=psi1, chi=chi)).psi2 - exact)
@@ -58,7 +62,7 @@ def test_the_size_bounds_the_error_of_springs_at_random(name):
         law = create(f"normal.{name}", restitution=float(e))
         scene = Scene.nondimensional(psi1=psi1, chi=chi, poisson_ratio=0.0)
         fine = Simulation(
-            normal=law, tangential=create("tangential.springs", springs=120),
+            normal=law, tangential=create("tangential.springs", springs=120, shear_loss=0.0),
             integrator=create("integrator.symplectic", steps=480),
         ).run(scene)  # fmt: skip
         exact = Simulation(normal=law, tangential="halfspace").run(scene)
@@ -95,4 +99,29 @@ def test_the_worst_of_a_batch_is_told():
 def test_the_caution_of_the_choice_of_normal_law(name, text):
     """Theory §11: at e = .8 Hunt and Crossley's law is .19, a linear spring .5 from Tsuji's."""
     told = cautions(2.0, 1.2, normal=create(f"normal.{name}", restitution=0.8))
-    assert any(re.search(text, each) for each in told)
+    assert any(re.search(f"with elastic shear.*{text}", each) for each in told)
+
+
+@pytest.mark.parametrize("e", [0.5, 0.9])
+def test_the_choice_of_a_viscous_law_where_shear_shares_the_loss(e):
+    """Viscous laws of one restitution, and a linear spring beside them, which shares nothing."""
+    laws = {
+        name: Simulation(normal=create(f"normal.{name}", restitution=e), tangential="springs")
+        for name in ("tsuji", "hunt_crossley", "kuwabara_kono", "viscoelastic", "linear")
+    }
+    psi1, chi = (each.ravel() for each in np.meshgrid(np.linspace(0.2, 9.0, 45), (0.8, 1.2, 1.8)))
+    scene = Scene.nondimensional(psi1=psi1, chi=chi)
+    psi2 = {name: simulation.sweep(scene).check().psi2 for name, simulation in laws.items()}
+    off = {name: np.abs(each - psi2["tsuji"]).max() for name, each in psi2.items()}
+    told = {
+        name: " ".join(cautions(2.0, 1.2, tangential="springs", normal=laws[name].normal))
+        for name in ("tsuji", "hunt_crossley", "kuwabara_kono")
+    }
+    for name in ("hunt_crossley", "kuwabara_kono"):
+        text = re.search(r"shear shares the loss.*up to ([\d.]+) \(Tsuji\)", told[name])
+        assert 0.5 * float(text[1]) < off[name] < float(text[1])
+    least, most = re.search(
+        r"shares the loss.*up to ([\d.]+) \(KuwabaraKono\) to ([\d.]+) \(", told["tsuji"]
+    ).groups()
+    assert off["kuwabara_kono"] < float(least)
+    assert max(off.values()) < float(most)

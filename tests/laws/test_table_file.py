@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from contactlab import rebound
-from contactlab_laws.tables import damped, elastic
+from contactlab_laws.tables import elastic, restituted
 from contactlab_laws.tables.elastic import Table
 from contactlab_laws.tables.file import read, write
 
@@ -20,12 +20,13 @@ from table_builders.elastic import build
 from tests.laws.test_tabulated import BOUND, mixed
 
 
-@pytest.mark.parametrize("shipped", [elastic.SHIPPED, damped.SHIPPED])
+@pytest.mark.parametrize("shipped", [elastic.SHIPPED, restituted.SHIPPED])
 def test_a_damaged_file_is_refused(shipped, tmp_path):
     path = tmp_path / "table.npz"
     made = read(shipped)
     terms = made.arrays["terms"].copy()
-    terms[1, 2, 1] = np.nextafter(terms[1, 2, 1], 1.0)
+    place = 1, 2, *[1] * (terms.ndim - 2)
+    terms[place] = np.nextafter(terms[place], terms.dtype.type(1.0))
     with np.load(shipped) as file:
         content = {name: file[name] for name in file.files}
     np.savez(path, **{**content, "terms": terms})
@@ -61,6 +62,7 @@ def test_nothing_in_a_file_is_run(tmp_path):
 
 def test_file_is_small_and_tells_where_it_came_from():
     assert elastic.SHIPPED.stat().st_size <= 400_000
+    assert restituted.SHIPPED.stat().st_size <= 300_000
     made = read(elastic.SHIPPED)
     assert made.version
     assert made.built > "2026"
@@ -74,6 +76,8 @@ def test_nothing_is_loaded_before_it_is_called():
         "contactlab.rebound(1.2, 1.44); "
         "assert 'contactlab_laws.tables.elastic' in sys.modules; "
         "assert 'contactlab_laws.fronts.path' not in sys.modules; "
+        "contactlab.rebound(1.2, 1.44, restitution=0.5); "
+        "assert 'contactlab_laws.viscoelastic.batch' not in sys.modules; "
         "assert 'scipy' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", probe], check=True)

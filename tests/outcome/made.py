@@ -32,7 +32,7 @@ def scene(**changes):
 def motion(shape=(), **changes):
     """Return a motion with e = 1/2, of which slip loses 2 m/s."""
     entries = {
-        "slip_velocity_change": -2.0, "friction_work": 1.5, "duration": 1e-3,
+        "slip_velocity_change": -2.0, "friction_work": 1.25, "shear_loss": 0.25, "duration": 1e-3,
         "normal_velocity": -1.0, "maximum_radius": 0.0125, "maximum_approach": 1e-3,
         "maximum_force": 100.0, "exchange": 0.0,
     }  # fmt: skip

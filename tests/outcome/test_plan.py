@@ -27,7 +27,8 @@ UNDECLARED = "not declared; run(scene, estimate_error=True) estimates it"
 SPRINGS = {"tangential": "springs", "integrator": "symplectic"}
 
 MARCHED = (
-    "tangential motion: Symplectic(steps=200, refine=True) over Springs(springs=50, grid='largest')"
+    "tangential motion: Symplectic(steps=200, refine=True) over "
+    "Springs(springs=50, grid='largest', shear_loss=1.0, table=False)"
 )
 
 

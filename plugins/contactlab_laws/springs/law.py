@@ -142,7 +142,9 @@ class Springs(ProfileLaw):
             return super().cautions(scene, normal)
         from contactlab_laws.viscoelastic import evidence  # springs without loss need none of it
 
-        own = (*differences.choice(scene, normal, shared=True), *evidence.cautions(scene, normal))
+        fitted = self.shear_loss != 1.0
+        own = evidence.cautions(scene, normal, fitted=fitted)
+        own = (*differences.choice(scene, normal, shared=True), *own)
         return (*TangentialLaw.cautions(self, scene, normal), *own)
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:

@@ -97,12 +97,16 @@ class Patches:
 
     def _gathered(self, patch: Numbers, *at: Array) -> Array:
         """Return values at places in any order."""
-        local = np.stack(at)
-        local -= self.origins.take(patch, axis=1)
-        (rows, columns), size = self.table.shape[1:], patch.size
-        x_powers = powers(local[0], np.empty((rows, size), local.dtype))
-        y_powers = self._products(local[1:], np.empty((columns, size), local.dtype))
-        y_powers = y_powers.T.copy()[..., None]
+        local, size = np.concatenate(at), patch.size
+        local -= self.origins.take(patch, axis=1).reshape(-1)
+        room = np.empty((max(self.terms.shape[1:]), local.size), local.dtype)
+        all_powers = powers(local, room).reshape(-1, len(at), size).swapaxes(0, 1)
+        x_powers, y_powers, *more = (
+            each[:count] for each, count in zip(all_powers, self.terms.shape[1:], strict=True)
+        )
+        for each in more:
+            y_powers = (y_powers[:, None] * each).reshape(-1, size)
+        y_powers, rows = y_powers.T.copy()[..., None], len(x_powers)
         sums = np.empty((size, rows, 1), local.dtype)
         for first in range(0, size, GATHERED):
             part = slice(first, first + GATHERED)

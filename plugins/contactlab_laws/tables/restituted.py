@@ -1,7 +1,6 @@
 """psi2 of spheres with a restitution: one loss for pressure and shear, tabulated (theory §15).
 
-Coordinates in which psi2(psi1, chi, e) is smooth: theory §15, "The table". Impacts that slip
-throughout, and those of e = 0, are known in closed form.
+Impacts that slip throughout, and those of e = 0, are known in closed form.
 """
 
 from __future__ import annotations
@@ -10,159 +9,31 @@ import math
 from collections.abc import Callable
 from functools import cache, lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-import attrs
 import numpy as np
-from numpy.typing import NDArray
 
-from contactlab.compose.rebound import RESTITUTED_CHI, TABULATED_CHI
+from contactlab.compose.rebound import TABULATED_CHI
 from contactlab.numeric.checks import Real
 from contactlab_laws.tables import elastic
-from contactlab_laws.tables.file import Stored, read
-from contactlab_laws.tables.patches import Array, Patches, Single, powers_of_chebyshev
+from contactlab_laws.tables.file import read
+from contactlab_laws.tables.patches import Array, Single
+from contactlab_laws.tables.restituted_regions import (
+    NODES,
+    REGIONS,
+    SLIPPING,
+    Table,
+    border,
+    index,
+)
 
 SHIPPED = Path(__file__).with_name("restituted.npz")
-#: Powers of each coordinate in a patch: of that of psi1, of chi and of e.
-NODES = (8, 6, 6)
 #: Fewer impacts than this are computed one by one; so many are taken together at most.
 FEW, BLOCK = 12, 1 << 15
 #: e above which psi2 goes over to the elastic table, so that no jump is seen at 1.
 JOINED = 0.99
 #: Imaginary step for derivatives: its square vanishes.
 STEP = 1e-30
-
-
-class Region(NamedTuple):
-    """Impacts that stick from the start, psi1 < 1, or slip first; a range of chi."""
-
-    slips: bool
-    low: float
-    high: float
-
-
-#: In a region that sticks the coordinates are psi1, chi and e, and psi2/psi1 is tabulated; in one
-#: that slips 1 - sqrt((K - psi1)/(K - 1)), chi and e, and psi2 is, where K is ``border``.
-REGIONS = (
-    Region(False, RESTITUTED_CHI[0], 0.5),
-    Region(False, 0.5, RESTITUTED_CHI[1]),
-    Region(True, 0.5, 1.5),
-    Region(True, 1.5, 2.0),
-    Region(True, 2.0, RESTITUTED_CHI[1]),
-)
-#: Borders of chi between the regions that slip.
-SLIPPING = (1.5, 2.0)
-
-
-def border(chi: Any, e: Any) -> Any:
-    """Return psi1 from which an impact that has slipped first slips throughout; for chi > 1/2."""
-    return 2.0 * chi * (1.0 + e) - e
-
-
-@attrs.frozen(eq=False)
-class Table:
-    """The table as it is evaluated, over three coordinates, or over two at one restitution.
-
-    Attributes
-    ----------
-    grid : array of int16
-        The patch at each place of the fine grids of the regions, one after the other.
-    starts : array of int, shape (regions,)
-        Where the grid of each region begins.
-    sizes : array of int, shape (coordinates, regions)
-        Of the fine grids.
-    patches : Patches
-    """
-
-    grid: NDArray[np.int16]
-    starts: NDArray[np.int32]
-    sizes: NDArray[np.int32]
-    patches: Patches
-
-    @classmethod
-    def of(cls, stored: Stored) -> Table:
-        """Return the table of a file.
-
-        ``cells`` are region, levels and indices of dyadic cells along the three coordinates;
-        ``terms`` those by Chebyshev's polynomials of the local coordinates in [-1, 1].
-        """
-        cells, terms = stored.arrays["cells"].astype(np.int32), stored.arrays["terms"]
-        region, level, place = cells[:, 0], cells[:, 1:4], cells[:, 4:]
-        low = np.array([(0.0, each.low, 0.0) for each in REGIONS])[region]
-        width = np.array([(1.0, each.high - each.low, 1.0) for each in REGIONS])[region]
-        half = 0.5 * width * 0.5**level
-        origins = low + (2 * place + 1) * half
-        by_powers = terms.astype(np.float64)
-        for axis, count in enumerate(NODES):
-            matrix = powers_of_chebyshev(count, stretch=1.0, shift=0.0)
-            by_powers = np.moveaxis(np.tensordot(by_powers, matrix, (axis + 1, 1)), -1, axis + 1)
-            shape = np.ones(4, dtype=int)
-            shape[[0, axis + 1]] = len(cells), count
-            by_powers *= (half[:, axis, None] ** -np.arange(count)).reshape(shape)
-        sizes = np.array([2 ** level[region == r].max(axis=0) for r in range(len(REGIONS))])
-        grids = [np.full(size, -1, dtype=np.int16) for size in sizes]
-        for number, (r, *cell) in enumerate(cells.tolist()):
-            parts = zip(sizes[r], cell[:3], cell[3:], strict=True)
-            where = tuple(slice((i * n) >> m, ((i + 1) * n) >> m) for n, m, i in parts)
-            grids[r][where] = number
-        return cls._over(grids, Patches(origins.T.copy(), by_powers, _whole(by_powers)))
-
-    @classmethod
-    def _over(cls, grids: list[NDArray[np.int16]], patches: Patches) -> Table:
-        """Return the table of the grids of all regions."""
-        starts = np.cumsum([0, *(grid.size for grid in grids[:-1])]).astype(np.int32)
-        sizes = np.array([grid.shape for grid in grids], dtype=np.int32).T
-        return cls(np.concatenate([each.ravel() for each in grids]), starts, sizes, patches)
-
-    def at(self, e: float) -> Table:
-        """Return the table at one restitution."""
-        grids = []
-        for start, size in zip(self.starts, self.sizes.T, strict=True):
-            grid = self.grid[start : start + size.prod()].reshape(size)
-            grids.append(grid[:, :, _index(e, size[2])])
-        numbers = np.unique(np.concatenate([each.ravel() for each in grids]))
-        renumbered = np.full(len(self.patches.terms), -1, dtype=np.int16)
-        renumbered[numbers] = np.arange(numbers.size)
-        origins = self.patches.origins[:, numbers]
-        terms = self.patches.terms[numbers]
-        by_e = (e - origins[2])[:, None] ** np.arange(terms.shape[3])
-        terms = np.matmul(terms.reshape(len(terms), -1, terms.shape[3]), by_e[..., None])
-        terms = terms.reshape(-1, *NODES[:2])
-        patches = Patches(origins[:2].copy(), terms, _whole(terms))
-        return self._over([renumbered[each] for each in grids], patches)
-
-    def values(self, slips: NDArray[np.bool_], u: Array, *others: Array) -> Array:
-        """Return the tabulated quantity at places."""
-        chi = others[0]
-        region = (chi.real >= REGIONS[0].high).view(np.int8) + slips
-        for bound in SLIPPING:
-            region += slips & (chi.real >= bound)
-        place = self.starts.take(region)
-        index = _along(u, self.sizes[0].take(region))
-        share = (chi.real - LOW.take(region)) * PER_WIDTH.take(region)
-        index = index * self.sizes[1].take(region) + _along(share, self.sizes[1].take(region))
-        for each, size in zip(others[1:], self.sizes[2:], strict=True):
-            index = index * size.take(region) + _along(each, size.take(region))
-        return self.patches.values(self.grid.take(place + index), u, *others)
-
-
-LOW = np.array([each.low for each in REGIONS])
-PER_WIDTH = np.array([1.0 / (each.high - each.low) for each in REGIONS])
-
-
-def _whole(terms: Array) -> list[list[int]]:
-    """Return the powers that are left in each patch: all."""
-    return [[terms.shape[1]] * len(terms), [math.prod(terms.shape[2:])] * len(terms)]
-
-
-def _index(share: float, size: int) -> int:
-    """Return the place of a coordinate in [0, 1] in a grid."""
-    return min(int(share * size), size - 1)
-
-
-def _along(share: Array, size: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Return the places of coordinates in [0, 1] in grids."""
-    return np.minimum((share.real * size).astype(np.int32), size - 1)
 
 
 @cache
@@ -231,19 +102,19 @@ def _together(speed: Array, chi: Array, e: Real) -> Array:
     near = np.asarray(own > JOINED)
     if near.any():
         rows = np.flatnonzero(np.broadcast_to(near, p.shape) & (x <= TABULATED_CHI))
-        own = own if isinstance(own, float) else own[rows]
-        found[rows] += _share(own) * _step(p[rows], x[rows])
+        here = own if isinstance(own, float) else own[rows]
+        found[rows] += _share(here) * _step(p[rows], x[rows])
     if np.any(own == 0.0):
         found = np.where(own == 0.0, without_rebound(p, x), found)
     # no impact gains energy, nor more impulse than full slip gives: not even by an error
     found = np.maximum(found, psi2[who])
     psi2[who] = np.clip(found, -p, p)
-    return psi2
+    return np.asarray(psi2)
 
 
-def full_slip(speed: Any, chi: Any, e: Any) -> Any:
+def full_slip(speed: Array, chi: Array, e: Real) -> Array:
     """Return psi2 of slip throughout."""
-    return speed - 2.0 * chi * (1.0 + e)
+    return np.asarray(speed - 2.0 * chi * (1.0 + e))
 
 
 def sticks(speed: Any, chi: Any, e: Any) -> Any:
@@ -323,10 +194,10 @@ def _plain() -> tuple[list[int], list[list[int]], list[int]]:
 def single(psi1: float, chi: float, e: float) -> float:
     """Return psi2 of one impact, in plain floats."""
     speed = abs(psi1)
-    least = full_slip(speed, chi, e)
+    least = speed - 2.0 * chi * (1.0 + e)
     end = border(chi, e)
     if speed >= 1.0 and speed >= end:
-        return float(least if psi1 >= 0.0 else -least)
+        return least if psi1 >= 0.0 else -least
     if e == 0.0:
         psi2 = (1.0 - 2.0 * chi) * speed ** (1.0 / (1.0 - 2.0 * chi)) if chi < 0.5 else 0.0
     else:
@@ -348,8 +219,8 @@ def _single(speed: float, chi: float, e: float, end: float) -> float:
         region, u, unit = int(chi >= 0.5), speed, speed
     grid, sizes, starts = _plain()
     (rows, columns, layers), (_, low, high) = sizes[region], REGIONS[region]
-    i, j = _index(u, rows), _index((chi - low) / (high - low), columns)
-    patch = grid[starts[region] + (i * columns + j) * layers + _index(e, layers)]
+    i, j = index(u, rows), index((chi - low) / (high - low), columns)
+    patch = grid[starts[region] + (i * columns + j) * layers + index(e, layers)]
     kept = _kept(e)
     value = kept.get(patch)
     if value is None:

@@ -21,13 +21,15 @@ METAL = 2e10
 ELASTIC = 0.995
 
 
-def cautions(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-    """Return how far the tangential rebound is trusted; nothing where all impacts slip through."""
+def cautions(scene: Scene, normal: NormalMotion, *, fitted: bool) -> tuple[str, ...]:
+    """Return how far the tangential rebound is trusted; nothing where all impacts slip through.
+
+    A loss in shear that is ``fitted`` clears the caution of the theory's.
+    """
     if not scene.rubs:
         return ()
-    e = -np.asarray(normal.final_rate) / np.asarray(scene.normal_speed)
-    grips = np.broadcast_to(np.abs(scene.psi1) < slips_throughout_from(scene.chi, e), scene.shape)
-    grips = grips & (e < ELASTIC)
+    e = np.broadcast_to(-np.asarray(normal.final_rate) / scene.normal_speed, scene.shape)
+    grips = (np.abs(scene.psi1) < slips_throughout_from(scene.chi, e)) & (e < ELASTIC)
     if not np.any(grips):
         return ()
     least = float(np.min(e, where=grips, initial=1.0))
@@ -36,7 +38,7 @@ def cautions(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         f"one loss for pressure and shear: e_T = -psi2/psi1 is trusted to {size:.2g} at "
         f"e = {least:.2g}, by eight measured balls (model; shear_loss fits it)"
     )
-    return (said, *_deep(scene, normal), *_metal(scene))
+    return (*(() if fitted else (said,)), *_deep(scene, normal), *_metal(scene))
 
 
 def slips_throughout_from(chi: Any, e: Any) -> Any:

@@ -8,9 +8,7 @@ import numpy as np
 
 from contactlab.compose.rebound import RESTITUTED_CHI
 from contactlab_laws.tables import restituted
-from contactlab_laws.viscoelastic.batch import rebound as springs_of
-from contactlab_laws.viscoelastic.motion import Array
-from contactlab_laws.viscoelastic.relaxation import number_of
+from contactlab_laws.tables.patches import Array
 
 #: Springs and steps up to the largest chi of the table; beyond it as its fourth and square root.
 SPRINGS, STEPS = 100, 800
@@ -62,6 +60,9 @@ def beyond(speed: Array, chi: Array, e: Array) -> Array:
 
 def _followed(speed: Array, chi: Array, e: Array) -> Array:
     """Return psi2 by springs, those together whose chi lie within a factor of two."""
+    from contactlab_laws.viscoelastic import batch  # a table needs none of this
+    from contactlab_laws.viscoelastic.relaxation import number_of
+
     psi2 = np.empty_like(speed)
     octave = np.ceil(np.log2(np.maximum(chi / RESTITUTED_CHI[1], 1.0)))
     for level in np.unique(octave).tolist():
@@ -70,5 +71,5 @@ def _followed(speed: Array, chi: Array, e: Array) -> Array:
             "springs": round(SPRINGS * 2.0 ** (level / 4)),
             "steps": 2 * round(STEPS * 2.0 ** (level / 2 - 1)),
         }
-        psi2[part] = springs_of(speed[part], chi[part], number_of(e[part]), **grid)
+        psi2[part] = batch.rebound(speed[part], chi[part], number_of(e[part]), **grid)
     return psi2

@@ -12,19 +12,19 @@ from numpy.polynomial.chebyshev import chebvander
 
 from contactlab_laws.tables.file import Stored, write
 from contactlab_laws.tables.patches import Array, chebyshev_of_values, nodes
-from contactlab_laws.tables.restituted import NODES, REGIONS, border
+from contactlab_laws.tables.restituted_regions import NODES, REGIONS, border
 from contactlab_laws.viscoelastic.batch import extrapolated
 from contactlab_laws.viscoelastic.relaxation import number_of
 
 #: Largest error of psi2 between the nodes of a cell, by region; it is looked for where the sum of
 #: the last terms along each coordinate is less than ``CLOSE`` times as much.
-TOLERANCES = (3.5e-5, 3.5e-5, 3.5e-5, 3.5e-5, 1.1e-4)
-CLOSE = 8.0
-#: Where it is looked for, as shares of a cell along each coordinate.
+TOLERANCES = (4e-5, 4e-5, 4e-5, 4e-5, 1.35e-4)
+CLOSE = 6.0
+#: Where it is looked for, as shares of a cell along each coordinate: far from nodes.
 BETWEEN = (
-    np.array([0.02, 0.12, 0.6, 1.0]),
-    np.array([0.02, 0.38, 0.98]),
-    np.array([0.02, 0.98]),
+    np.array([0.045, 0.31, 0.69, 1.0]),
+    np.array([0.0, 0.26, 0.74, 1.0]),
+    np.array([0.07, 0.5, 0.93]),
 )
 #: Springs, and steps from an e on, extrapolated from half as many of both: psi2 to 2e-5 up to
 #: chi = 3, 1e-5 up to 2. Below chi = 1/2 the least steps suffice.

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import time
+from typing import Any
 
 import numpy as np
 
 import contactlab
 from contactlab.compose.rebound import restituted_error
 from contactlab_laws.tables.file import read
-from contactlab_laws.tables.restituted import REGIONS, SHIPPED, border, rebound
+from contactlab_laws.tables.restituted import SHIPPED, rebound
+from contactlab_laws.tables.restituted_regions import REGIONS, border
 from contactlab_laws.viscoelastic.batch import extrapolated
 from contactlab_laws.viscoelastic.relaxation import number_of
 
@@ -28,7 +30,7 @@ def verify(count: int, seed: int) -> int:
     draw, good = np.random.default_rng(seed), True
     size = max(count // DRAWS // len(REGIONS), 1)
     for region in REGIONS:
-        rows = []
+        rows: list[Any] = []
         for number in range(DRAWS):
             e = draw.uniform(0.001, 0.99)
             if number % 3 == 0:
