@@ -466,10 +466,3 @@ def test_the_table_of_losses_is_the_one_that_is_built(builders):
     table = text.partition(restituted.FILES["contactlab_bounce.mjs"])[2].split(",")
     first = int(table[0])
     assert np.abs(built - np.array(table[first : first + built.size], dtype=int)).max() <= 1
-
-
-def test_the_package_is_of_this_version():
-    package = json.loads((KERNELS / "package.json").read_text("utf-8"))
-    assert package["version"] == contactlab.__version__
-    named = {*package["files"], *(each.removeprefix("./") for each in package["exports"].values())}
-    assert named == {each.name for each in KERNELS.iterdir()} - {"package.json", "README.md"}
