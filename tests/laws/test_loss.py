@@ -193,6 +193,18 @@ def test_bodies_of_the_theory(psi1, chi, lam, eta, a, rate, psi2):
     assert off[-1] < 5e-6
 
 
+def test_the_plan_says_whose_restitution_it_is():
+    """That of the contact: a body's own follows, and is that of a sphere where nothing couples."""
+    told = "restitution: of the contact without coupling; that of the bodies follows from it"
+    for lam, eta, own in ((0.2, 1.7, False), (0.0, 0.0, True)):
+        scene = PLANAR(psi1=0.7, chi=1.3, lam=lam, eta=eta)
+        result = springs(viscoelastic(0.8)).run(scene).check()
+        assert (told in map(str, result.plan.computed)) is not own
+        assert (abs(result.normal_restitution - 0.8) < 1e-6) is own
+    coupled = PLANAR(psi1=0.7, chi=1.3, lam=0.2, eta=1.7)
+    assert told not in map(str, springs(viscoelastic(1.0)).plan(coupled).computed)
+
+
 def test_a_rod_in_space():
     """The rod of theory §14 with loss, whose slip turns: springs' own limit."""
     scene = rod(-35.0, slip=0.3, across=0.6).scene
