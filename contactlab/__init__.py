@@ -43,10 +43,9 @@ from contactlab.numeric.names import imported_on_use
 if TYPE_CHECKING:
     from contactlab.compose.collide import collide
     from contactlab.compose.collision import Collision
+    from contactlab.compose.hooks import PluginError, hookimpl
     from contactlab.compose.load_path import load_path
-    from contactlab.compose.loading import hookimpl
     from contactlab.compose.rebound import rebound
-    from contactlab.compose.registry import PluginError
     from contactlab.compose.simulation import Simulation
     from contactlab.contracts.status import Status
     from contactlab.fitting import fit
@@ -122,7 +121,7 @@ MODULES = {
     "ImpactError": "outcome.answer",
     "ImpactResult": "outcome.result",
     "Material": "impact.material",
-    "PluginError": "compose.registry",
+    "PluginError": "compose.hooks",
     "RigidBody": "impact.rigid_body",
     "Scene": "impact.scene",
     "Simulation": "compose.simulation",
@@ -130,7 +129,7 @@ MODULES = {
     "Status": "contracts.status",
     "collide": "compose.collide",
     "fit": "fitting",
-    "hookimpl": "compose.loading",
+    "hookimpl": "compose.hooks",
     "load_path": "compose.load_path",
     "materials": "impact.material",
     "read_scene": "scene_file",

@@ -1,4 +1,4 @@
-"""Profiles of hypothesis: quick and always the same by default, long with -m slow."""
+"""Profiles of hypothesis, quick by default, long with -m slow; distributions made on the spot."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import sys
 # One thread for each process: the tests themselves run side by side (pytest -n auto).
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 #: Examples of each property in the long run, and in the quick one.
@@ -22,6 +23,29 @@ settings.register_profile(
     "long", settings.get_profile("quick"), max_examples=LONG, derandomize=False
 )
 settings.load_profile("long" if "CONTACTLAB_EXAMPLES" in os.environ else "quick")
+
+
+@pytest.fixture
+def install(tmp_path, monkeypatch):
+    """Return a function that installs a distribution with one module and its entry points."""
+    monkeypatch.syspath_prepend(str(tmp_path))
+    modules = []
+
+    def install(distribution, module, source, *names):
+        path = module.partition(":")[0]
+        (tmp_path / f"{path}.py").write_text(source, encoding="utf-8")
+        info = tmp_path / f"{distribution}-1.5.dist-info"
+        info.mkdir()
+        (info / "METADATA").write_text(
+            f"Metadata-Version: 2.1\nName: {distribution}\nVersion: 1.5\n"
+        )
+        points = "\n".join(f"{name} = {module}" for name in names)
+        (info / "entry_points.txt").write_text(f"[contactlab]\n{points}\n")
+        modules.append(path)
+
+    yield install
+    for module in modules:
+        sys.modules.pop(module, None)
 
 
 def pytest_terminal_summary(terminalreporter):

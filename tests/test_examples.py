@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import contactlab
 from contactlab.cli.main import main
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -184,6 +185,24 @@ def test_third_party_plugin_is_put_through_the_stability_report(plugin_path, tmp
     ran = python(*command, folder=tmp_path, path=plugin_path)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     assert json.loads(ran.stdout)["tried"] > 200
+
+
+def test_the_guide_shows_the_command_of_another_distribution():
+    page = (Path(contactlab.__file__).parent / "guide" / "extending-command.md").read_text("utf-8")
+    source = (EXAMPLES / "third_party_command" / "contactlab_hello.py").read_text("utf-8")
+    assert f"```python\n{source}```" in page
+    assert len(source.splitlines()) <= 24
+
+
+@pytest.mark.slow
+def test_a_command_of_another_distribution_installs_with_pip(tmp_path):
+    """Needs a package index for the build back end."""
+    target = tmp_path / "site"
+    install = ("-m", "pip", "install", "-q", "--no-deps", "--target", target)
+    done = python(*install, EXAMPLES / "third_party_command", folder=tmp_path, warnings="ignore")
+    assert done.returncode == 0, done.stderr
+    greeted = python("-m", "contactlab", "hello", "Ada", folder=tmp_path, path=target)
+    assert greeted.stdout == "Hello Ada, a ball leaves at psi2 = -0.180\n"
 
 
 def test_without_the_plugin_its_law_is_unknown(capsys):

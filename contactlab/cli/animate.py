@@ -16,6 +16,7 @@ from typing import Any
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import add_scene, inputs
 from contactlab.compose.collision import Collision
+from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.rigid_body import RigidBody
@@ -24,13 +25,15 @@ from contactlab.impact.rigid_body import RigidBody
 GHOST_NAMES = {"coulomb": "rigid", "mindlin_cap": "capped spring"}
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+@hookimpl
+def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the scene, the laws and the file."""
     add_scene(parser)
     words = "tangential laws whose bodies part from this one after the contact, as outlines"
     shared.add_names(parser, "--ghost", words, default=[])
     shared.add_file(parser, "--out", ".gif", required=True)
     shared.add_progress(parser)
+    return execute
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -10,19 +10,21 @@ import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 
 from contactlab.cli.progress import progress as progress  # exported to the subcommands
-from contactlab.compose.normal_spin_words import with_normal_spin
-from contactlab.compose.registry import KINDS
-from contactlab.impact.encounter import Encounter
+from contactlab.cli.statuses import BAD_INPUT as BAD_INPUT
+from contactlab.cli.statuses import FAILED as FAILED
+from contactlab.cli.statuses import INTERRUPTED as INTERRUPTED
+from contactlab.cli.statuses import OK as OK
+from contactlab.compose.names import KINDS
 from contactlab.outcome.files import distinct, unwritable, write_table
-from contactlab.scene_file import SceneFile
 
-#: Exit statuses; the last two are those of a shell for a program that a signal ended.
-OK, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141
+if TYPE_CHECKING:
+    from contactlab.impact.encounter import Encounter
+    from contactlab.scene_file import SceneFile
 
 
 def finite(text: str) -> float:
@@ -215,6 +217,8 @@ def tell_normal_spin(encounter: Encounter | None) -> None:
     """Say on stderr what spin about the normal would change, where no plan is shown."""
     if encounter is None:
         return
+    from contactlab.compose.normal_spin_words import with_normal_spin  # only for vectors
+
     _, _, cautions = with_normal_spin(((), (), ()), encounter)
     for sentence in cautions:
         print(f"contactlab: caution: {sentence}", file=sys.stderr)

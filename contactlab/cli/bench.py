@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from contactlab.cli import arguments as shared
+from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.tables import time
 from contactlab.outcome.text_table import table
@@ -24,12 +25,14 @@ from contactlab.study.benchmark import Benchmark, Row
 from contactlab.study.work_precision import bench
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+@hookimpl
+def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the laws, the size, and the outputs."""
     shared.add_report(parser)
     parser.add_argument(
         "--markdown", action="store_true", help="print a row or two for each law, as Markdown"
     )
+    return execute
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -14,13 +14,16 @@ from contactlab.cli import arguments as shared
 from contactlab.cli.compare import own_law, simulations
 from contactlab.cli.scene import add_file, read
 from contactlab.compose.citations import bibtex, references, software
+from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.scene_file import LawChoice
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+@hookimpl
+def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the scene, whose data are cited, and the laws."""
     add_file(parser)
     shared.add_laws(parser, many=True)
+    return execute
 
 
 def execute(arguments: argparse.Namespace) -> int:

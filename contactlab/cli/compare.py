@@ -27,6 +27,7 @@ import numpy as np
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import add_file, add_ranges, check_alone, read
+from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.compose.names import KINDS, full_name, kind_of
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
@@ -50,7 +51,8 @@ from contactlab.study.scores import (
 DEFAULT_LAWS = ["annulus", "coulomb"]
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+@hookimpl
+def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the scene, the laws, the quantities and the outputs."""
     add_file(parser, "a scene or a sweep (default: psi2 over psi1 of a solid sphere, chi = 49/34)")
     add_ranges(parser)
@@ -72,6 +74,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     shared.add_json(form, "tables")
     form.add_argument("--csv", action="store_true", help="print CSV instead of tables")
     shared.add_progress(parser)
+    return execute
 
 
 def execute(arguments: argparse.Namespace) -> int:

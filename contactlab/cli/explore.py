@@ -13,6 +13,7 @@ import inspect
 from pathlib import Path
 
 from contactlab.cli import arguments as shared
+from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.outcome.files import written
 from contactlab.pages.explore import RANGES, explore_page
 
@@ -22,7 +23,8 @@ UNITS = {
 }  # fmt: skip
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+@hookimpl
+def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the first values of the sliders, and the file."""
     defaults = inspect.signature(explore_page).parameters
     for name in RANGES:
@@ -41,6 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="(default: explore.html)",
     )  # fmt: skip
     shared.add_progress(parser)
+    return execute
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -15,12 +15,14 @@ from pathlib import Path
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import composed
+from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.outcome.files import write_table
 from contactlab.scene_file import LawChoice
 from contactlab.study.paper_figures import CAPTIONS, FigureData, paper_data
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+@hookimpl
+def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the folder, the figures, their form and the laws."""
     parser.add_argument(
         "--out", required=True, type=Path, metavar="DIR", help="folder for the files"
@@ -41,6 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     shared.add_look(parser)
     shared.add_laws(parser)
     shared.add_progress(parser)
+    return execute
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -21,6 +21,7 @@ from contactlab.cli import arguments as shared
 from contactlab.cli.fit_report import describe, further_cautions, ranking, write_residuals
 from contactlab.cli.scene import add_allow_code
 from contactlab.compose.composition import DEFAULT_NORMAL
+from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.compose.simulation import Simulation
 from contactlab.fitting import Fit, Ranked, fit, in_order, rank, read_measurements
 from contactlab.fitting.estimation import default_laws, parameters_of
@@ -37,7 +38,8 @@ EXACT = "exact"
 SAMPLES = 200
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+@hookimpl
+def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the data, the parameters, the laws and the outputs."""
     parser.add_argument(
         "files",
@@ -71,6 +73,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     shared.add_file(parser, "--csv", ".csv", words="write the residuals")
     shared.add_json(parser, "tables")
     shared.add_progress(parser)
+    return execute
 
 
 def execute(arguments: argparse.Namespace) -> int:

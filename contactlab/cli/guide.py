@@ -15,6 +15,7 @@ import re
 import shutil
 
 from contactlab.cli.formulas import readable
+from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
 
@@ -30,6 +31,7 @@ TOPICS = tuple(topic for group in GROUPS.values() for topic in group)
 PARTS = {
     "extending": (
         "extending-contact", "extending-impacts", "extending-integrator", "extending-kit",
+        "extending-command",
     ),
     "theory": (
         "theory-impact", "theory-springs", "theory-methods", "theory-coupling",
@@ -45,7 +47,8 @@ LATEX = str.maketrans("", "", "\\_{}$")
 SECTION = re.compile(r"^## (\d+)\. ", re.MULTILINE)
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+@hookimpl
+def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the topic and the section."""
     parser.add_argument(
         "topic", nargs="?", metavar="TOPIC", help="or a part of one; leave it out for the list"
@@ -53,6 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "section", nargs="?", metavar="SECTION", help="number of a section, for theory"
     )
+    return execute
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -12,6 +12,7 @@ from importlib import resources
 from pathlib import Path
 
 from contactlab.cli import arguments as shared
+from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.files import written
 
@@ -23,11 +24,13 @@ FILES = (
 )  # fmt: skip
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+@hookimpl
+def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the folder."""
     parser.add_argument(
         "--out", type=Path, required=True, metavar="DIR", help="folder; made if it is not there"
     )
+    return execute
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -3,37 +3,29 @@
 from __future__ import annotations
 
 import argparse
+import ast
 import contextlib
-import importlib
+import inspect
 import os
 import re
 import sys
 import traceback
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from importlib.machinery import PathFinder
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import contactlab
-from contactlab.cli.arguments import (
-    BAD_INPUT,
-    BROKEN_PIPE,
-    FAILED,
-    INTERRUPTED,
-    check_outputs,
-)
+from contactlab.cli.statuses import BAD_INPUT, BROKEN_PIPE, FAILED, INTERRUPTED
 from contactlab.cli.terminal import fitted
-from contactlab.compose.registry import PluginWarning
-from contactlab.contracts.status import Status
+from contactlab.compose.hooks import PluginError, ask
+from contactlab.compose.installed import PluginWarning, command, commands
+from contactlab.compose.names import PROJECT, PluginInfo
 from contactlab.numeric.names import nearest
 
 if TYPE_CHECKING:
     from _typeshed import SupportsWrite
-
-#: Subcommands, each a module of this package.
-COMMANDS = (
-    "run", "sweep", "compare", "fit", "bench", "stability", "validate", "figures", "animate",
-    "explore", "report", "kernel", "cite", "materials", "plugins", "guide",
-)  # fmt: skip
 
 EPILOG = """examples:
   contactlab run --psi1 1.2 --chi 1.4412
@@ -81,14 +73,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except BrokenPipeError:
             _leave_stdout()  # the reader has closed the pipe
             return BROKEN_PIPE
-        except (ValueError, contactlab.PluginError, contactlab.ImpactError, OSError) as error:
+        except (ValueError, PluginError, contactlab.ImpactError, OSError) as error:
             if parsed.traceback:
                 traceback.print_exc()
             name = f"contactlab {parsed.command}".strip()
             print(f"{name}: error: {_one_line(error)}", file=sys.stderr)
             if isinstance(error, OSError):
                 _leave_stdout()
-            if isinstance(error, contactlab.ImpactError) and error.status is Status.INTERRUPTED:
+            stopped = isinstance(error, contactlab.ImpactError) and error.status
+            if stopped is contactlab.Status.INTERRUPTED:
                 return INTERRUPTED
             return BAD_INPUT if isinstance(error, ValueError) else FAILED
     return status
@@ -97,12 +90,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _execute(words: list[str], parsed: argparse.Namespace) -> int:
     """Parse the words into ``parsed``, run the subcommand and return its status."""
     try:
-        _, unknown = _parser(_needed(words)).parse_known_args(words, parsed)
+        _, unknown = _parser(*_needed(words)).parse_known_args(words, parsed)
         if unknown:
             parsed.parser.error(f"unrecognized arguments: {' '.join(unknown)}")
     except SystemExit as stop:  # argparse has printed help, version or the error
         return stop.code if isinstance(stop.code, int) else BAD_INPUT
-    check_outputs(parsed)
+    if any(isinstance(value, Path) for value in vars(parsed).values()) or "figure" in parsed:
+        from contactlab.cli.arguments import check_outputs  # loads what a command of laws needs
+
+        check_outputs(parsed)
     status: int = parsed.execute(parsed)
     return status
 
@@ -133,19 +129,18 @@ def _leave_stdout() -> None:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _needed(words: Sequence[str]) -> Sequence[str]:
-    """Return the subcommands that the parser needs: the one in ``words``, or all for help."""
-    for word in words:
-        if word in COMMANDS:
-            return (word,)
-        if word.startswith("--v") or word.startswith("--t"):
-            continue
-        return COMMANDS
-    return ()
+def _needed(words: Sequence[str]) -> tuple[Mapping[str, PluginInfo], bool]:
+    """Return the subcommands that the parser needs, and whether they are called, not listed."""
+    word = next((word for word in words if not word.startswith("-")), None)
+    if word is not None and (called := command(word)):
+        return {word: called}, True
+    if word is None and words and all(word.startswith(("--v", "--t")) for word in words):
+        return {}, False
+    return commands(), False
 
 
-def _parser(names: Sequence[str]) -> argparse.ArgumentParser:
-    """Return the parser with the subcommands ``names``, importing only their modules."""
+def _parser(names: Mapping[str, PluginInfo], called: bool) -> argparse.ArgumentParser:
+    """Return the parser with subcommands; it imports their modules if they are called."""
     raw = argparse.RawDescriptionHelpFormatter
     parser = Parser(
         prog="contactlab",
@@ -157,24 +152,37 @@ def _parser(names: Sequence[str]) -> argparse.ArgumentParser:
     parser.add_argument(
         "--traceback", action="store_true", help="show the traceback of an error (before COMMAND)"
     )
-    commands = parser.add_subparsers(
+    subparsers = parser.add_subparsers(
         dest="command", metavar="COMMAND", required=True, parser_class=Parser
     )
-    for name in names:
-        module = importlib.import_module(f"contactlab.cli.{name}")
-        summary, _, examples = str(module.__doc__).partition("\n\n")
-        examples = examples.replace("Examples\n--------", "examples:")
-        command = commands.add_parser(
-            name,
-            help=summary,
-            description=summary,
-            epilog=examples,
-            formatter_class=raw,
-            allow_abbrev=False,
-        )
-        module.add_arguments(command)
-        command.set_defaults(execute=module.execute, parser=command)
+    for name, info in names.items():
+        if called:
+            added = subparsers.add_parser(name, formatter_class=raw, allow_abbrev=False)
+            execute = ask(info, "contactlab_command", parser=added)
+            if not callable(execute):
+                raise PluginError(f"{info.source} returned {execute!r}, which runs no command")
+            text = inspect.cleandoc(sys.modules[info.module].__doc__ or "")
+            added.description, _, examples = text.partition("\n\n")
+            added.epilog = examples.replace("Examples\n--------", "examples:")
+            added.set_defaults(execute=execute, parser=added)
+        else:
+            summary = _docstring(info.module).partition("\n\n")[0].replace("%", "%%")
+            ours = info.distribution == PROJECT
+            origin = "" if ours else f" ({info.distribution} {info.version})"
+            subparsers.add_parser(name, help=summary + origin)
     return parser
+
+
+def _docstring(module: str) -> str:
+    """Return the docstring of a module, read without an import; "" if there is none to read."""
+    spec: Any = None
+    with contextlib.suppress(Exception):  # whatever is broken is told when it is called
+        parts = module.split(".")
+        for count in range(1, len(parts) + 1):  # find_spec of a submodule imports the package
+            folders = spec and spec.submodule_search_locations
+            spec = PathFinder.find_spec(".".join(parts[:count]), folders)
+        return ast.get_docstring(ast.parse(spec.loader.get_source(module))) or ""
+    return ""
 
 
 def _join_negative_numbers(words: list[str]) -> list[str]:

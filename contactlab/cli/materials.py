@@ -15,14 +15,17 @@ import re
 import attrs
 
 from contactlab.cli import arguments as shared
+from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.impact import material as materials
 from contactlab.outcome.text_table import table
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+@hookimpl
+def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the name and the output."""
     parser.add_argument("name", nargs="?", metavar="NAME", help="leave it out for the list")
     shared.add_json(parser)
+    return execute
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -19,13 +19,15 @@ from typing import Any
 from contactlab.cli.arguments import FAILED, OK, add_progress, print_json, progress
 from contactlab.compose.citations import references
 from contactlab.compose.composition import WAYS
+from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.compose.options import Option, options
 from contactlab.compose.registry import REGISTRY, PluginInfo
 from contactlab.contracts import Integrator, TangentialLaw
 from contactlab.outcome.text_table import WIDTH, table
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+@hookimpl
+def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add ``list``, ``show NAME`` and ``check NAME``."""
     actions = parser.add_subparsers(dest="action", metavar="list|show|check", required=True)
     listing = actions.add_parser("list", help="name, kind, distribution and version of every law")
@@ -38,6 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_progress(check)
     for action in (listing, show, check):
         action.add_argument("--json", action="store_true", help="print JSON")
+    return execute
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import add_file
+from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.compose.names import full_name, short_name
 from contactlab.outcome.files import written
 from contactlab.scene_file import read_scene
@@ -23,7 +24,8 @@ from contactlab.study.comparison import compare
 DEFAULT_LAWS = ("fronts", "coulomb")
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+@hookimpl
+def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the scene, the laws and the file."""
     add_file(parser, needed=True)
     words = (
@@ -38,6 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     shared.add_measured(parser)
     shared.add_file(parser, "--out", ".html", required=True)
     shared.add_progress(parser)
+    return execute
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -24,6 +24,7 @@ from contactlab.cli import arguments as shared
 from contactlab.cli.describe import describe
 from contactlab.cli.scene import add_scene, inputs
 from contactlab.compose.collision import Collision
+from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.outcome import export
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.export import WRITERS
@@ -32,7 +33,8 @@ from contactlab.outcome.result import ImpactResult
 from contactlab.study.interrupts import was_interrupted
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+@hookimpl
+def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the scene, the laws and the outputs."""
     add_scene(parser)
     shared.add_json(parser)
@@ -49,6 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="estimate the numerical error of a single impact by finer runs (the default)",
     )
     shared.add_progress(parser)
+    return execute
 
 
 def execute(arguments: argparse.Namespace) -> int:

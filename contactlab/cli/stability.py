@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from contactlab.cli import arguments as shared
+from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.text_table import table
 from contactlab.study.bench_methods import Method, methods
@@ -31,9 +32,11 @@ LISTED = 40
 WORDS = ("answered", "coarse", "refused", SKIPPED, RAISED, WRONG)
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+@hookimpl
+def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the laws, the size, and the outputs."""
     shared.add_report(parser)
+    return execute
 
 
 def execute(arguments: argparse.Namespace) -> int:

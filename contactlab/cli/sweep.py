@@ -30,6 +30,7 @@ from contactlab.cli.scene import (
     composed,
     read,
 )
+from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.columns import components, csv_heading
@@ -49,7 +50,8 @@ SHOWN = ("psi1", "chi", "psi2")
 MOST_ROWS = 25
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+@hookimpl
+def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the scenes, the laws and the outputs."""
     add_file(parser, "a sweep, instead of ranges")
     add_ranges(parser)
@@ -63,6 +65,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--workers", type=int, metavar="N", help="share the work among N processes")
     shared.add_figure(parser, "also draw psi2 over psi1")
     shared.add_progress(parser)
+    return execute
 
 
 def execute(arguments: argparse.Namespace) -> int:

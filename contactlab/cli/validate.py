@@ -17,6 +17,7 @@ from typing import Any
 import attrs
 
 from contactlab.cli import arguments as shared
+from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.tables import heading
 from contactlab.outcome.text_table import WIDTH, table
@@ -32,13 +33,15 @@ DRAWN = (
 )
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+@hookimpl
+def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the outputs."""
     parser.add_argument(
         "--figures", type=Path, metavar="DIR", help="draw a picture of each source in this folder"
     )
     shared.add_json(parser, "the tables")
     shared.add_progress(parser)
+    return execute
 
 
 def execute(arguments: argparse.Namespace) -> int:

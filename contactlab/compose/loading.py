@@ -1,52 +1,25 @@
-"""Loading of a law: imports its module or file, calls its hook and checks its class."""
+"""Loading of a law: asks its plug-in for the class or runs its file, and checks the class."""
 
 from __future__ import annotations
 
-import contextlib
 import copyreg
 import os
 import sys
-import traceback
-from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeGuard
 
 import numpy as np
-import pluggy
 
 from contactlab.compose import sources
-from contactlab.compose.names import FILE, PROJECT, PluginInfo, Untrusted
+from contactlab.compose.hooks import PluginError, ask, guarded
+from contactlab.compose.names import FILE, PluginInfo, Untrusted
 from contactlab.contracts.law import API_VERSION, Law
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
 
-#: Marks a plug-in's implementation: ``@contactlab.hookimpl``.
-hookimpl = pluggy.HookimplMarker(PROJECT)
 #: Laws that were loaded from files.
 IN_FILES: dict[type[Law], PluginInfo] = {}
-
-
-class PluginError(RuntimeError):
-    """A plug-in is broken or conflicts with another; the message names plug-in and distribution."""
-
-
-@pluggy.HookspecMarker(PROJECT)(firstresult=True)
-def contactlab_law(name: str) -> type | None:
-    """Return the class of the law called ``name``, or None; never called in a step.
-
-    Parameters
-    ----------
-    name : str
-        The entry point's name, kind and law: ``"tangential.annulus"``. A module with a single
-        entry point may leave the argument out.
-
-    Returns
-    -------
-    type
-        A subclass of ``NormalLaw``, ``TangentialLaw`` or ``Integrator`` whose parameters are
-        keyword arguments.
-    """
 
 
 def law_class(info: PluginInfo) -> type[Law]:
@@ -57,32 +30,9 @@ def law_class(info: PluginInfo) -> type[Law]:
     PluginError
         If the plug-in cannot be imported or has no hook, or its law breaks the contract.
     """
-    from importlib import metadata
-
-    source = info.source
-    with _guarded(source, "could not be imported"):
-        law = metadata.EntryPoint(info.name, info.module, PROJECT).load()
-    if isinstance(law, ModuleType):
-        law = _from_hook(law, info)
-    return _checked(law, info.kind, source)
-
-
-def _from_hook(module: ModuleType, info: PluginInfo) -> object:
-    """Return what the hook of a module returns for an entry point."""
-    manager = pluggy.PluginManager(PROJECT)  # of its own: modules do not see each other
-    manager.add_hookspecs(sys.modules[__name__])
-    try:
-        manager.register(module, name=info.module)
-        manager.check_pending()
-    except Exception as error:
-        raise PluginError(f"{info.source} does not fit the hooks: {short(error)}") from error
-    if not manager.get_hookcallers(module):
-        raise PluginError(
-            f"{info.source} has no hook: name the class in the entry point, {info.module}:Class, "
-            "or define @contactlab.hookimpl def contactlab_law(name)"
-        )
-    with _guarded(info.source, "raised when asked for its law"):
-        return manager.hook.contactlab_law(name=info.name)
+    with np.errstate():  # a plug-in does not change numpy's settings
+        law = ask(info, "contactlab_law")
+    return _checked(law, info.kind, info.source)
 
 
 def law_at(place: str) -> type[Law]:
@@ -112,10 +62,13 @@ def law_at(place: str) -> type[Law]:
         except OSError as error:
             remedy = f"the path begins in {Path.cwd()}" if not path.is_absolute() else ""
             raise refuse("name", place, f"{where}: {error.strerror}", remedy) from None
-        with _guarded(repr(place), "could not be loaded"):
+        with np.errstate(), guarded(repr(place), "could not be loaded"):
             module = _module(str(path.resolve()))
     else:
-        with _guarded(repr(place), "could not be imported (a file is named by its path, x.py)"):
+        with (
+            np.errstate(),
+            guarded(repr(place), "could not be imported (a file is named by its path, x.py)"),
+        ):
             module = import_module(where)
     law = getattr(module, title, None)
     if not _is_law(law):
@@ -173,22 +126,6 @@ def _blank(place: str) -> Law:
     return law.__new__(law)
 
 
-@contextlib.contextmanager
-def _guarded(source: str, failed: str) -> Iterator[None]:
-    """Keep a plug-in from ending the program, printing to stdout or changing numpy's settings."""
-    # Every exception but an interruption becomes a PluginError. Output goes to stderr, because a
-    # program may read stdout.
-    try:
-        with np.errstate(), contextlib.redirect_stdout(sys.stderr):
-            yield
-    except KeyboardInterrupt:
-        raise
-    except BaseException as error:
-        last = traceback.extract_tb(error.__traceback__)[-1]
-        place = f" ({Path(last.filename).name}, line {last.lineno})"
-        raise PluginError(f"{source} {failed}: {short(error)}{place}") from error
-
-
 def _checked(law: object, kind: str, source: str) -> type[Law]:
     """Return ``law``, or raise PluginError unless it is a law's class of right kind and version."""
     if not (isinstance(law, type) and issubclass(law, Law)):
@@ -215,8 +152,3 @@ def outdated(law: type[Law]) -> str | None:
         f"{law.__name__}.api_version is {version!r}, contactlab has {API_VERSION}; if the law "
         f"keeps to these contracts, write api_version: ClassVar[int] = {API_VERSION} in its class"
     )
-
-
-def short(error: BaseException) -> str:
-    """Return the class and the message of an exception."""
-    return f"{type(error).__name__}: {error}"

@@ -1,4 +1,4 @@
-"""Names of laws: ``kind.name``, or ``distribution:kind.name`` if two distributions offer it.
+"""Names of plug-ins: ``kind.name``, or ``distribution:kind.name`` if two distributions offer it.
 
 A law that is not installed is named by its place: ``my_law.py:Stribeck``, a class in a file, or
 ``package.module:Stribeck``. Such a name has neither distribution nor kind.
@@ -16,6 +16,8 @@ import attrs
 PROJECT = "contactlab"
 BLOCK_VARIABLE = "CONTACTLAB_BLOCK_PLUGINS"
 KINDS = ("normal", "tangential", "integrator")
+#: The kind of an entry point that offers a subcommand: ``command.hello``.
+COMMAND = "command"
 #: The place of a law: a Python file, or a module and a class, which begins with a capital.
 PLACE = re.compile(r"\.py(:|$)|:[A-Z]\w*$")
 #: Stands in place of the distribution for laws in files; their version is a checksum.
@@ -66,7 +68,7 @@ def short_name(name: str) -> str:
     """Return a name without its kind: ``"my-laws:hertz"`` for ``"my-laws:normal.hertz"``."""
     distribution, plain = parted(name)
     kind, _, short = plain.partition(".")
-    if is_place(name) or kind not in KINDS or not short:
+    if is_place(name) or kind not in (*KINDS, COMMAND) or not short:
         return name
     return f"{distribution}:{short}" if distribution else short
 
@@ -95,16 +97,16 @@ def blocked_names() -> set[str]:
 
 @attrs.frozen
 class PluginInfo:
-    """One installed law as its entry point describes it; its module is not imported.
+    """One installed law or command as its entry point describes it; its module is not imported.
 
     Attributes
     ----------
     name, distribution, version, module : str
         Name and module of the entry point, and the distribution that it belongs to.
     blocked : bool
-        True if ``CONTACTLAB_BLOCK_PLUGINS`` blocks the law: see ``Registry``.
+        True if ``CONTACTLAB_BLOCK_PLUGINS`` blocks the plug-in: see ``Registry``.
     meant : bool
-        True if the name without a distribution means this law.
+        True if the name without a distribution means this plug-in.
     """
 
     name: str
@@ -140,7 +142,8 @@ class PluginInfo:
     def malformed(self) -> bool:
         """True if the name is not a kind, a dot and a name; such a law cannot be made."""
         # the name of a place would mean a file or a module of that name
-        return self.kind not in KINDS or not self.name.partition(".")[2] or is_place(self.name)
+        kinds = (*KINDS, COMMAND)
+        return self.kind not in kinds or not self.name.partition(".")[2] or is_place(self.name)
 
     @property
     def usable(self) -> bool:

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import contextlib
 import os
-import sys
 import warnings
 from functools import cached_property, lru_cache
 from typing import Any
 
-import attrs
-
-from contactlab.compose.loading import IN_FILES, PluginError, law_at, law_class, short
+from contactlab.compose.hooks import PluginError
+from contactlab.compose.installed import PluginWarning, by_name, described, entry_points, stamp
+from contactlab.compose.loading import IN_FILES, law_at, law_class
 from contactlab.compose.names import (
     BLOCK_VARIABLE,
+    COMMAND,
     KINDS,
     PROJECT,
     PluginInfo,
@@ -29,11 +29,9 @@ from contactlab.contracts.law import Law
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
 
-__all__ = ["BLOCK_VARIABLE", "KINDS", "REGISTRY", "PluginError", "PluginInfo", "Registry"]
-
-
-class PluginWarning(UserWarning):
-    """A blocked name is not installed, or the entry points of a distribution are unreadable."""
+__all__ = [
+    "BLOCK_VARIABLE", "KINDS", "REGISTRY", "PluginError", "PluginInfo", "PluginWarning", "Registry",
+]  # fmt: skip
 
 
 class Registry:
@@ -65,17 +63,12 @@ class Registry:
 
     def installed(self) -> list[PluginInfo]:
         """Return every installed law, sorted by kind and name, without an import."""
-        now = _stamp()
+        now = stamp()
         if now != self._stamp:
             self._found, self._stamp = entry_points(), now
-        blocking = blocked_names()
-        infos = [PluginInfo(*found, blocks(blocking, *found[:2])) for found in self._found]
+        infos = described(self._found)
         self._warn_of_unknown(infos)
-        laws = [
-            attrs.evolve(info, meant=info is meant(rivals))
-            for rivals in _by_name(infos).values()
-            for info in rivals
-        ]
+        laws = [info for info in infos if info.kind != COMMAND]
         rank = {kind: place for place, kind in enumerate(KINDS)}  # unknown kinds come last
         return sorted(
             laws, key=lambda each: (rank.get(each.kind, len(rank)), each.name, each.distribution)
@@ -99,7 +92,7 @@ class Registry:
 
     def clashes(self) -> list[str]:
         """Return a sentence on each name that several distributions offer, with its meaning."""
-        offers = _by_name([info for info in self.installed() if info.usable])
+        offers = by_name([info for info in self.installed() if info.usable])
         return [clash(rivals) for rivals in offers.values() if len(rivals) > 1]
 
     def info(self, name: str) -> PluginInfo:
@@ -221,42 +214,6 @@ class Registry:
         return refuse(
             "name", name, "no such law is installed", f"{hint}installed: {', '.join(names)}"
         )
-
-
-def entry_points() -> set[tuple[str, str, str, str]]:
-    """Return name, distribution, version and module of every entry point of the group."""
-    from importlib import metadata  # takes 20 ms to import
-
-    entries, seen = set(), list[str]()
-    for distribution in metadata.distributions():
-        try:
-            points = list(distribution.entry_points.select(group=PROJECT))
-            if not points:  # only then are the papers read: each reading opens a file
-                continue
-            name, version = str(distribution.metadata["Name"]), distribution.version
-        except Exception as error:
-            where = getattr(distribution, "_path", "a distribution")
-            text = f"the entry points of {where} cannot be read and are passed over: {short(error)}"
-            warnings.warn(text, PluginWarning, stacklevel=4)
-            continue
-        if not any(same_distribution(name, other) for other in seen):  # the first is imported
-            entries |= {(point.name, name, version, point.value) for point in points}
-        seen.append(name)
-    return entries
-
-
-def _stamp() -> object:
-    """Return the folders of ``sys.path`` with their times: an installation changes the value."""
-    folders = [folder or "." for folder in sys.path]
-    return [(each, os.path.exists(each) and os.stat(each).st_mtime_ns) for each in folders]
-
-
-def _by_name(infos: list[PluginInfo]) -> dict[str, list[PluginInfo]]:
-    """Return laws by their names without a distribution."""
-    offers: dict[str, list[PluginInfo]] = {}
-    for info in infos:
-        offers.setdefault(info.name, []).append(info)
-    return offers
 
 
 @lru_cache(maxsize=256)

@@ -19,7 +19,7 @@ import attrs
 import numpy as np
 
 from contactlab.compose.composition import Laws, versions
-from contactlab.compose.loading import short
+from contactlab.compose.hooks import short
 from contactlab.compose.pieces import Chunk, Piece, unsolved
 from contactlab.compose.solve import solved
 from contactlab.contracts.status import Status

@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 
 from contactlab.cli.guide import text
-from contactlab.cli.main import COMMANDS
+from contactlab.compose.installed import commands
 from contactlab.compose.names import KINDS, full_name, kind_of
 from contactlab.compose.registry import REGISTRY
 
+COMMANDS = commands("contactlab")
 EXAMPLES = Path(__file__).parents[2] / "examples"
 PAGE = text("command-line")
 SECTIONS = dict(re.findall(r"^## `(\w+)`\n(.*?)(?=^## )", PAGE, re.MULTILINE | re.DOTALL))

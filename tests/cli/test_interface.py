@@ -9,10 +9,17 @@ import shlex
 import pytest
 
 from contactlab.cli import main as module
+from contactlab.compose.installed import commands
+
+COMMANDS = commands("contactlab")
 
 
 def parser_of(command):
-    (parser,) = module._parser([command])._subparsers._group_actions[0].choices.values()
+    (parser,) = (
+        module._parser({command: COMMANDS[command]}, True)
+        ._subparsers._group_actions[0]
+        .choices.values()
+    )
     return parser
 
 
@@ -26,7 +33,7 @@ def arguments(parser):
             yield action
 
 
-@pytest.mark.parametrize("command", module.COMMANDS)
+@pytest.mark.parametrize("command", COMMANDS)
 def test_every_argument_is_told_in_the_help(run, command):
     told = run(command, "--help").out
     for action in arguments(parser_of(command)):
@@ -37,7 +44,7 @@ def test_every_argument_is_told_in_the_help(run, command):
             assert action.metavar or action.type.__name__ == "finite"
 
 
-@pytest.mark.parametrize("command", module.COMMANDS)
+@pytest.mark.parametrize("command", COMMANDS)
 def test_the_examples_of_the_help_are_accepted(tmp_path, monkeypatch, command):
     monkeypatch.chdir(tmp_path)
     parser = parser_of(command)
@@ -48,7 +55,7 @@ def test_the_examples_of_the_help_are_accepted(tmp_path, monkeypatch, command):
         assert parser.parse_args(shlex.split(words))
 
 
-@pytest.mark.parametrize("command", module.COMMANDS)
+@pytest.mark.parametrize("command", COMMANDS)
 def test_an_option_is_written_in_full(run, command):
     """A letter less could mean another option in a later version."""
     for action in arguments(parser_of(command)):
@@ -62,4 +69,4 @@ def test_the_arguments_before_a_command(run):
     told = run("--help").out
     assert "show the traceback of an error (before COMMAND)" in told
     assert "exit status: 0 success, 1 a run failed, 2 bad input, 130 interrupted" in told
-    assert all(f"\n    {command} " in told for command in module.COMMANDS)
+    assert all(f"\n    {command} " in told for command in COMMANDS)

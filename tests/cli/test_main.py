@@ -13,8 +13,10 @@ import pytest
 import contactlab
 from contactlab.cli import main as module
 from contactlab.cli import run as run_command
+from contactlab.compose.installed import commands
 from contactlab.contracts.integrator import CHUNK
 
+COMMANDS = commands("contactlab")
 COMMAND = [sys.executable, "-m", "contactlab"]
 PSI = ["run", "--psi1", "6", "--chi", "1", "--tangential", "coulomb"]
 
@@ -23,7 +25,7 @@ def test_version(run):
     assert run("--version") == (0, contactlab.__version__ + "\n", "")
 
 
-@pytest.mark.parametrize("command", module.COMMANDS)
+@pytest.mark.parametrize("command", COMMANDS)
 def test_help_of_every_command_has_examples(run, command):
     ran = run(command, "--help")
     assert ran.status == 0
@@ -42,10 +44,10 @@ def test_only_the_subcommand_that_is_named_is_imported():
     command = [sys.executable, "-X", "utf8", "-c", probe]
     done = subprocess.run(command, capture_output=True, encoding="utf-8", check=True)
     told = [line.split() for line in done.stdout.splitlines() if line.startswith("modules:")]
-    imported = (set(), {"plugins"}, {"plugins", "guide"}, set(module.COMMANDS))
+    imported = (set(), {"plugins"}, {"plugins", "guide"}, {"plugins", "guide"})
     for names, needed in zip(told, imported, strict=True):
         commands = {name.rpartition(".")[2] for name in names if name.startswith("contactlab.cli.")}
-        assert commands & set(module.COMMANDS) == needed
+        assert commands & COMMANDS.keys() == needed
         heavy = [name for name in names if name.partition(".")[0] in ("scipy", "matplotlib")]
         assert heavy + [name for name in names if name.startswith("contactlab_")] == []
 
@@ -53,7 +55,7 @@ def test_only_the_subcommand_that_is_named_is_imported():
 def test_help_lists_every_command_with_its_summary(run):
     for words in (["--help"], ["-h"], ["--traceback", "-h"]):
         out = " ".join(run(*words).out.split())
-        for command in module.COMMANDS:
+        for command in COMMANDS:
             imported = importlib.import_module(f"contactlab.cli.{command}")
             summary = " ".join(imported.__doc__.partition("\n\n")[0].split())
             assert f"{command} {summary}" in out

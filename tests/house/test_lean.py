@@ -64,6 +64,18 @@ def test_a_public_name_is_imported_on_its_first_use():
     subprocess.run([sys.executable, "-c", "\n".join(lines)], check=True)
 
 
+@pytest.mark.parametrize("word", ["--version", "--help"])
+def test_the_command_line_starts_without_numpy(word):
+    lines = (
+        "import sys",
+        "from contactlab.cli.main import main",
+        f"main(['{word}'])",
+        "heavy = {'numpy', 'contactlab.compose.registry', 'contactlab.cli.run'}",
+        "assert not heavy & set(sys.modules)",
+    )
+    subprocess.run([sys.executable, "-c", "\n".join(lines)], check=True, capture_output=True)
+
+
 def test_listing_the_laws_imports_none(stages):
     assert stages[1] == [[], []]
 
