@@ -18,13 +18,13 @@ from contactlab_laws.viscoelastic.relaxation import number_of
 
 #: Largest error of psi2 between the nodes of a cell, by region; it is looked for where the sum of
 #: the last terms along each coordinate is less than ``CLOSE`` times as much.
-TOLERANCES = (4.2e-5, 4.2e-5, 4.2e-5, 4.2e-5, 1.4e-4)
+TOLERANCES = (4e-5, 4e-5, 3e-5, 3e-5, 1.35e-4)
 CLOSE = 6.0
 #: Where it is looked for, as shares of a cell along each coordinate: far from nodes.
 BETWEEN = (
-    np.array([0.045, 0.31, 0.69, 0.955, 1.0]),
-    np.array([0.0, 0.26, 0.5, 0.74, 1.0]),
-    np.array([0.07, 0.26, 0.5, 0.74, 0.93]),
+    np.array([0.045, 0.31, 0.69, 1.0]),
+    np.array([0.0, 0.26, 0.74, 1.0]),
+    np.array([0.07, 0.5, 0.93]),
 )
 #: Springs, and steps from an e on, extrapolated from half as many of both: psi2 to 2e-5 up to
 #: chi = 3, 1e-5 up to 2. Below chi = 1/2 the least steps suffice.
