@@ -8,8 +8,9 @@ import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
 from contactlab_laws.dashpot.oscillator import restitution as of_damping
 from contactlab_laws.viscoelastic.relaxation import restitution_of
-from tests.compose.test_eccentric import rod
+from tests.compose.test_eccentric import random_in_space, random_planar, rod
 from tests.laws.exact_laws import order
+from tests.longer import longer
 
 PLANAR = Scene.nondimensional
 CHI = 49 / 34
@@ -322,3 +323,23 @@ def test_a_relaxation_time_gives_each_speed_its_restitution():
     assert lost[1:] / lost[:-1] == pytest.approx(2.0, rel=0.05)
     alone = [springs(law, 12, 50).run(scene.take(k)).psi2 for k in range(3)]
     assert result.psi2 == pytest.approx(alone, abs=1e-9)
+
+
+@pytest.mark.parametrize("count", [60, *longer(4000)])
+def test_bodies_gain_no_energy(count):
+    """Planar and in space, those that jam among them, at few springs and steps."""
+    for e in (0.2, 0.9):
+        for scene in (random_planar(count, 5), random_in_space(count, 6)):
+            result = springs(viscoelastic(e), 12, 50).run(scene).check()
+            assert (result.energy.end <= result.energy.start).all()
+            assert np.abs(result.energy.relative_imbalance).max() < 2e-2
+
+
+def test_books_of_bodies_close_to_second_order():
+    """Over the whole energy 3e-4 at 50/200 down to e = 0.4."""
+    scene, sizes, worst = random_planar(60, 8), (25, 50, 100), []
+    for parts in sizes:
+        result = springs(viscoelastic(0.4), parts, 4 * parts).run(scene).check()
+        worst.append(np.abs(result.energy.relative_imbalance).max())
+    assert worst[1] < 3e-4
+    assert order(sizes, worst) > 1.8
