@@ -56,6 +56,12 @@ def test_links_and_pictures_lead_to_files():
             assert anchor in {re.sub(r"[^\w -]", "", h).lower().replace(" ", "-") for h in headings}
 
 
+def test_the_commands_take_any_python_of_the_least_version():
+    least = re.search(r'requires-python = ">=(.*)"', (ROOT / "pyproject.toml").read_text("utf-8"))
+    assert f"Python {least[1]}" in TEXT
+    assert re.findall(r"python3[\d.]*(?= -m venv)", TEXT) == ["python3", "python3"]
+
+
 def test_the_moving_picture_is_small():
     assert (ROOT / "examples" / "pictures" / "impact.gif").stat().st_size < 1_500_000
 

@@ -121,6 +121,19 @@ def test_a_command_can_be_blocked(hello, run, monkeypatch, blocked):
     assert run("materials").status == 2
 
 
+def test_one_module_offers_a_law_and_a_command(install, run):
+    law = "\n@contactlab.hookimpl\ndef contactlab_law(name):\n    return Mine\n"
+    source = HELLO + (
+        "from contactlab_laws.coulomb import Coulomb\n"
+        "class Mine(Coulomb):\n    api_version = Coulomb.api_version\n"
+    )
+    install("both", "both_hooks", source + law, "command.hello", "tangential.mine")
+    assert run("hello", "Ada").status == 0
+    ran = run("run", "--psi1", "9", "--chi", "1.4412", "--tangential", "mine")
+    assert ran.status == 0
+    assert "mine (both 1.5)" in ran.out
+
+
 def test_a_command_is_no_law(hello, run):
     listed = run("plugins", "list")
     assert listed.err == ""
