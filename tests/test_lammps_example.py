@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from contactlab import Scene, Simulation, create, rebound
 from tests.kernels.motions import wandering
 from tests.kernels.test_kernels import COMPILER, HERE, KERNELS, driven, needs_c
 from tests.longer import longer
@@ -18,7 +19,7 @@ from tests.present import PACKAGE
 
 FOLDER = Path(__file__).parents[1] / "examples" / "lammps"
 PAGE = (FOLDER / "README.md").read_text("utf-8")
-SCRIPTS = ("build", "rebounds", "loss", "checks", "cost", "gas", "dense_flow", "drum")
+SCRIPTS = ("build", "dem05", "rebounds", "loss", "checks", "cost", "gas", "dense_flow", "drum")
 
 
 def shown():
@@ -54,7 +55,7 @@ def test_every_option_that_is_shown_exists(name):
 
 def test_the_page_lists_every_file():
     files = {path.name for path in FOLDER.iterdir() if path.is_file()} - {"README.md"}
-    listed = set(re.findall(r"`([\w-]+\.(?:py|cpp|h|yaml))`", PAGE)) | {
+    listed = set(re.findall(r"`([\w-]+\.(?:py|cpp|h|yaml|oblique))`", PAGE)) | {
         "gran_sub_mod_tangential_springs.cpp"
     }
     assert {name for name in files if not name.endswith(".png")} <= listed
@@ -126,7 +127,10 @@ def tree(merging, tmp_path):
         lines = "".join(f"{anchor} etc.\n\n" for anchor, _ in inserted)
         lines = lines.replace("particularly", "`, particularly")
         (lammps / page).write_text(f"A page\n{lines}The end\n", "utf-8")
-    for folder in ("src/GRANULAR", "unittest/force-styles/tests"):
+    for folder in (
+        *("src/GRANULAR", "unittest/force-styles/tests", "unittest/granular/tests"),
+        "examples/granular",
+    ):
         (lammps / folder).mkdir(parents=True)
     head = "/* A header\n   of two lines */\n"
     (lammps / "src" / "GRANULAR" / "gran_sub_mod.h").write_text(f"{head}\ncode;\n", "utf-8")
@@ -150,10 +154,62 @@ def test_a_merged_tree_holds_code_pages_and_test_once(merging, tree):
         assert "contactlab_springs" not in text
     assert "static double springs_damped_step(" in text
     assert "static double springs_step(" in text
-    assert "Contributing authors: the authors of contactlab" in text
+    assert "Contributing authors: The contactlab developers" in text
+    assert (tree / "examples" / "granular" / merging.INPUT).is_file()
+    assert {*merging.IMPACTS} == {
+        path.name for path in (tree / "unittest" / "granular" / "tests").iterdir()
+    }
     assert tree / "unittest" / "force-styles" / "tests" / merging.UNIT_TEST in once
     merging.merge(tree)
     assert contents(tree) == once
+
+
+def test_a_tree_of_before_2026_has_no_tests_of_impacts(merging, tree):
+    shutil.rmtree(tree / "unittest" / "granular")
+    merging.merge(tree)
+    assert not (tree / "unittest" / "granular").exists()
+
+
+def points(merging, name):
+    """Return psi1 and psi2 of the points of the analytic model."""
+    block = re.search(rf"Points {name} = \{{(.*?)}};", merging.PARTIAL_SLIP, re.DOTALL)[1]
+    return np.array(re.findall(r"\{([\d.-]+), ([\d.-]+)\}", block), dtype=float).T
+
+
+def test_the_points_of_the_analytic_model_are_psi2(merging):
+    """For nu = 0.3: the exact solution for e = 1, springs under Tsuji's damping for e = 0.9."""
+    chi = 1.75 * 2.0 * 0.7 / 1.7
+    exact = np.linspace(0.01, 4.76, 300)
+    found = np.interp(exact, *points(merging, "elastic"))
+    assert np.abs(found - rebound(exact, chi)).max() < 0.0026
+    simulation = Simulation(
+        normal=create("normal.tsuji", restitution=0.9),
+        tangential=create("tangential.springs", springs=200),
+    )
+    damped = np.linspace(0.01, 5.4, 100)
+    result = simulation.run(Scene.nondimensional(psi1=damped, chi=chi))
+    found = np.interp(damped, *points(merging, "damped"))
+    assert np.abs(found - result.psi2).max() < 0.0026
+    for name, e in (("elastic", 1.0), ("damped", 0.9)):
+        psi1, psi2 = points(merging, name)[:, -1]
+        assert psi2 - psi1 == pytest.approx(-2.0 * chi * (1.0 + e), abs=1e-3)
+
+
+@pytest.mark.parametrize(("file", "e"), [("springs", 0.9), ("springs-elastic", 1.0)])
+def test_impacts_recorded_in_lammps_are_within_the_tolerance(file, e, monkeypatch):
+    monkeypatch.syspath_prepend(FOLDER)
+    text = (FOLDER / f"dem05-mindlin-{file}-3d.yaml").read_text("utf-8")
+    last = {
+        name: np.array(
+            [line.split()[2:] for line in text.partition(f"run_{name}:")[2].splitlines()[6:11]],
+            dtype=float,
+        )
+        for name in ("vel", "omega")
+    }
+    found = np.stack([last["vel"][:, 0], last["vel"][:, 2], last["omega"][:, 1]], axis=-1)
+    expected = module("dem05").exact(e, springs=100)[:5]
+    assert found == pytest.approx(expected, rel=0.0085)
+    assert "analytic_tol: 0.015" in text
 
 
 def test_sources_of_another_year_are_told(merging, tree, tmp_path):

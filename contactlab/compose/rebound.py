@@ -105,7 +105,7 @@ def rebound(
     derivatives : bool
         Return d psi2/d psi1 and d psi2/d chi too, and with ``restitution`` d psi2/d e. Elastic
         ones are tabulated up to chi = 2.5, to 1e-6 (5e-5 for psi1 just above 1, chi 1.83 to 1.92);
-        with a restitution below 1 they are tabulated for chi from 0.3 to 3, to 0.01.
+        with a restitution below 1 they are tabulated for chi from 0.3 to 3, to 0.02.
     restitution : float or array_like
         e of the normal motion, from 0 (clay) to 1, broadcast against ``psi1``. Below 1 the law is
         ``normal.viscoelastic``: one relaxation time for pressure and shear. In the table psi2 holds

@@ -1,4 +1,4 @@
-"""``mindlin_springs`` in a source tree of LAMMPS: sub-model with the kernel, pages, unit test.
+"""``mindlin_springs`` in a source tree of LAMMPS: sub-model with the kernel, pages, tests, input.
 
 ``python build.py merge lammps-4Feb2025`` applies all. Headers and style are the tree's own.
 """
@@ -15,9 +15,13 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 SUB_MODEL = ("gran_sub_mod_tangential_springs.h", "gran_sub_mod_tangential_springs.cpp")
 UNIT_TEST = "atomic-pair-granular_mindlin_springs.yaml"
+#: Impacts on a wall for ``unittest/granular``, which sources of 2026 have, and their model.
+IMPACTS = ("dem05-mindlin-springs-3d.yaml", "dem05-mindlin-springs-elastic-3d.yaml")
+PARTIAL_SLIP = (HERE / "partial_slip.cpp").read_text("utf-8")
+INPUT = "in.oblique"
 AUTHOR = """
 /* ----------------------------------------------------------------------
-   Contributing authors: the authors of contactlab
+   Contributing authors: The contactlab developers
    The springs are contactlab's kernel, which is under the MIT license
 ------------------------------------------------------------------------- */
 """
@@ -114,11 +118,17 @@ PAGES: dict[str, tuple[tuple[str, str], ...]] = {
     "doc/src/Bibliography.rst": (
         ("   Mattice", "\n**(Maw et al, 1976)**\n   " + MAW.replace("\n", " ") + "\n"),
     ),
-    "doc/utils/sphinx-config/false_positives.txt": (("Mattson", "Maw\n"),),
+    "doc/utils/sphinx-config/false_positives.txt": (("Fava", "Fawcett\n"), ("Mattson", "Maw\n")),
+    "unittest/granular/test_analytic_models.cpp": (
+        ('"spin_no_friction: spurious vy";', PARTIAL_SLIP),
+        ("#include <string>", "#include <utility>\n#include <vector>\n"),
+    ),
     "src/.gitignore": (
         ("/gran_sub_mod_tangential.h", "".join(f"/{name}\n" for name in SUB_MODEL[::-1])),
     ),
 }  # fmt: skip
+#: Files that a tree lacks which is no clone, or of before 2026.
+MAYBE = ("src/.gitignore", "unittest/granular/test_analytic_models.cpp")
 
 
 def plain(text: str) -> str:
@@ -144,15 +154,18 @@ def merge(lammps: Path) -> None:
         text = (HERE / name).read_text("utf-8")
         text = text[text.index("*/") + 3 :]
         text = re.sub(r'#include "contactlab_springs.h".*', lambda _: kernel(), text)
-        author = AUTHOR if name.endswith(".cpp") else ""
-        (granular / name).write_text(f"{head}{author}\n{plain(text).strip()}\n", "utf-8")
+        (granular / name).write_text(f"{head}{AUTHOR}\n{plain(text).strip()}\n", "utf-8")
     if shutil.which("clang-format"):
         subprocess.run(["clang-format", "-i", *SUB_MODEL], cwd=granular, check=True)
     shutil.copy(HERE / UNIT_TEST, lammps / "unittest" / "force-styles" / "tests")
+    shutil.copy(HERE / INPUT, lammps / "examples" / "granular")
+    if (lammps / "unittest" / "granular").exists():
+        for name in IMPACTS:
+            shutil.copy(HERE / name, lammps / "unittest" / "granular" / "tests")
     for page, inserted in PAGES.items():
         path = lammps / page
-        if page == "src/.gitignore" and not path.exists():
-            continue  # a tree that is no clone
+        if page in MAYBE and not path.exists():
+            continue
         text = path.read_text("utf-8")
         for anchor, more in inserted:
             if more in text:
@@ -161,7 +174,7 @@ def merge(lammps: Path) -> None:
             if at < 0:
                 sys.exit(f"{path}: no line has {anchor!r}: sources of another year?")
             end = text.index("\n", at) + 1
-            if text[end : end + 1] == " ":  # the entry goes on
+            if path.suffix == ".rst" and text[end : end + 1] == " ":  # the entry goes on
                 end = text.index("\n", end) + 1
             text = text[:end] + more + text[end:]
         path.write_text(text, "utf-8")
@@ -169,7 +182,8 @@ def merge(lammps: Path) -> None:
 
 def style(lammps: Path) -> int:
     """Run the checks of style of a tree; return how many lines they say of our files."""
-    names, told = (*SUB_MODEL, UNIT_TEST, *(Path(page).name for page in PAGES)), []
+    names = (*SUB_MODEL, UNIT_TEST, *IMPACTS, INPUT, *(Path(page).name for page in PAGES))
+    told = []
     for check in ("whitespace", "permissions", "homepage", "errordocs", "fmtlib"):
         words = [sys.executable, lammps / "tools" / "coding_standard" / f"{check}.py", lammps]
         run = subprocess.run(words, capture_output=True, text=True, check=False)

@@ -82,6 +82,21 @@ def test_a_moving_half_space():
     assert moving.target_contact_velocity.tolist() == wall.tolist()
 
 
+@pytest.mark.parametrize("restitution", [1.0, 0.8])
+def test_of_the_moduli_only_the_ratio_counts(restitution):
+    def scaled(material, factor):
+        return attrs.evolve(material, shear_modulus=material.shear_modulus * factor)
+
+    for target in (STEEL, GLASS):
+        made = []
+        for factor in (1.0, 1e-7):
+            pair = Sphere(0.01, scaled(STEEL, factor)), HalfSpace(scaled(target, factor))
+            met = meeting(body=pair[0], target=pair[1], spin=(0.0, -20.0, 3.0))
+            made.append(collide(met, restitution=restitution))
+        assert made[0].velocity == pytest.approx(made[1].velocity, abs=1e-13)
+        assert made[0].spin == pytest.approx(made[1].spin, abs=1e-11)
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [

@@ -101,7 +101,7 @@ def test_a_batch_of_which_some_pass_and_some_have_another_restitution():
         "collision (1 of 4 impacts): the bodies separate, they pass through untouched",
     ]
     assert made.result.normal_restitution == pytest.approx([1.0, 0.5, 1.0])
-    assert made.result.laws["normal"].startswith("tsuji")
+    assert made.result.laws["normal"].startswith("viscoelastic")
 
 
 def test_a_ball_that_passes_is_told_by_its_words():

@@ -8,8 +8,9 @@ import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
 from contactlab_laws.dashpot.oscillator import restitution as of_damping
 from contactlab_laws.viscoelastic.relaxation import restitution_of
-from tests.compose.test_eccentric import rod
+from tests.compose.test_eccentric import random_in_space, random_planar, rod
 from tests.laws.exact_laws import order
+from tests.longer import longer
 
 PLANAR = Scene.nondimensional
 CHI = 49 / 34
@@ -193,6 +194,18 @@ def test_bodies_of_the_theory(psi1, chi, lam, eta, a, rate, psi2):
     assert off[-1] < 5e-6
 
 
+def test_the_plan_says_whose_restitution_it_is():
+    """That of the contact: a body's own follows, and is that of a sphere where nothing couples."""
+    told = "restitution: of the contact without coupling; that of the bodies follows from it"
+    for lam, eta, own in ((0.2, 1.7, False), (0.0, 0.0, True)):
+        scene = PLANAR(psi1=0.7, chi=1.3, lam=lam, eta=eta)
+        result = springs(viscoelastic(0.8)).run(scene).check()
+        assert (told in map(str, result.plan.computed)) is not own
+        assert (abs(result.normal_restitution - 0.8) < 1e-6) is own
+    coupled = PLANAR(psi1=0.7, chi=1.3, lam=0.2, eta=1.7)
+    assert told not in map(str, springs(viscoelastic(1.0)).plan(coupled).computed)
+
+
 def test_a_rod_in_space():
     """The rod of theory §14 with loss, whose slip turns: springs' own limit."""
     scene = rod(-35.0, slip=0.3, across=0.6).scene
@@ -310,3 +323,23 @@ def test_a_relaxation_time_gives_each_speed_its_restitution():
     assert lost[1:] / lost[:-1] == pytest.approx(2.0, rel=0.05)
     alone = [springs(law, 12, 50).run(scene.take(k)).psi2 for k in range(3)]
     assert result.psi2 == pytest.approx(alone, abs=1e-9)
+
+
+@pytest.mark.parametrize("count", [60, *longer(4000)])
+def test_bodies_gain_no_energy(count):
+    """Planar and in space, those that jam among them, at few springs and steps."""
+    for e in (0.2, 0.9):
+        for scene in (random_planar(count, 5), random_in_space(count, 6)):
+            result = springs(viscoelastic(e), 12, 50).run(scene).check()
+            assert (result.energy.end <= result.energy.start).all()
+            assert np.abs(result.energy.relative_imbalance).max() < 2e-2
+
+
+def test_books_of_bodies_close_to_second_order():
+    """Over the whole energy 3e-4 at 50/200 down to e = 0.4."""
+    scene, sizes, worst = random_planar(60, 8), (25, 50, 100), []
+    for parts in sizes:
+        result = springs(viscoelastic(0.4), parts, 4 * parts).run(scene).check()
+        worst.append(np.abs(result.energy.relative_imbalance).max())
+    assert worst[1] < 3e-4
+    assert order(sizes, worst) > 1.8

@@ -1,0 +1,73 @@
+"""Oblique impacts on a wall, LAMMPS's benchmark DEM-05, from partial slip to gross slip.
+
+The spin after the impact by each tangential sub-model, beside contactlab with the same restitution
+and its loss shared by pressure and shear: errors in per cent. The input script is ``in.oblique``.
+
+Examples
+--------
+  python dem05.py --lmp build/lmp
+  python dem05.py --lmp lmp --plugin build/springsplugin.so
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from engine import Array, Engine, arguments, engine, folder
+
+from contactlab import Encounter, HalfSpace, Material, Simulation, Sphere, collide, create
+
+DECK = Path(__file__).resolve().parent / "in.oblique"
+SLIPS = np.array([0.2, 0.4, 0.7, 1.0, 4.0, 6.0])
+MU = 0.3
+LAWS = {
+    name: f"{name} NULL 0.0 {MU}" for name in ("mindlin", "mindlin/force", "mindlin_rescale/force")
+} | {
+    "springs8, elastic": f"mindlin_springs NULL 0.0 {MU} 8",
+    "springs8": f"mindlin_springs NULL NULL {MU} 8",
+}
+
+
+def exact(restitution: float, springs: int = 400) -> Array:
+    """Return velocities along and up, and spins, shape (n, 3), by contactlab."""
+    material = Material(young_modulus=1e5, poisson_ratio=0.3, density=1.0)
+    sphere, wall = Sphere(0.5, material), HalfSpace(material)
+    velocity = np.stack([SLIPS, 0.0 * SLIPS, -1.0 + 0.0 * SLIPS], axis=-1)
+    met = Encounter(sphere, wall, MU, normal=[0, 0, -1], velocity=velocity)
+    simulation = None
+    if restitution < 1.0:
+        simulation = Simulation(
+            normal=create("normal.tsuji", restitution=restitution),
+            tangential=create("tangential.springs", springs=springs),
+        )
+    made = collide(met, simulation)
+    return np.stack([made.velocity[:, 0], made.velocity[:, 2], made.spin[:, 1]], axis=-1)
+
+
+def in_lammps(lammps: Engine, law: str, restitution: float, step: float = 2e-4) -> Array:
+    """Return velocities along and up, and spins, shape (n, 3), in LAMMPS."""
+    given = {"pair": lammps.pair, "wall": lammps.wall, "law": f'"{law}"'}
+    given |= {"e": f"{restitution}", "dt": f"{step}"}
+    head = "".join(f"variable {name} index {value}\n" for name, value in given.items())
+    with folder() as name:
+        lammps.run(head + DECK.read_text("utf-8"), Path(name))
+        lines = (Path(name) / "out.oblique").read_text().splitlines()
+    return np.array([line.split()[1:] for line in lines[-len(SLIPS) :]], dtype=float)
+
+
+def main() -> None:
+    """Print a table for each restitution."""
+    given = arguments(__doc__.splitlines()[0]).parse_args()
+    lammps = engine(given)
+    for restitution in (1.0, 0.9):
+        true = exact(restitution)
+        print(f"\ne = {restitution}: vx" + "".join(f"{slip:9.1f}" for slip in SLIPS))
+        print(f"{'exact spin':20}" + "".join(f"{spin:9.4f}" for spin in true[:, 2]))
+        for name, law in LAWS.items():
+            error = 100.0 * (in_lammps(lammps, law, restitution)[:, 2] / true[:, 2] - 1.0)
+            print(f"{name:20}" + "".join(f"{each:+8.1f}%" for each in error))
+
+
+if __name__ == "__main__":
+    main()
