@@ -60,14 +60,14 @@ def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
             if motion.scene is not scene:
                 raise ValueError("motion returned the motion of another scene")
             return motion
+    if law.similar:
+        one = Scene.nondimensional(psi1=0.0, chi=1.0)
+        alone = _common(law, one)
+        if alone is not None and alone.status[0] is Status.SUCCESS:
+            return SolvedMotion(law, scene, alone, Units.of(scene, one))
     table = _common(law, scene)
     if table is not None:
         return SolvedMotion(law, scene, table)
-    if scene.shape and law.similar and math.prod(scene.shape) > 1:
-        first = scene.take((0,) * len(scene.shape))
-        alone = normal_motion(law, first)
-        if isinstance(alone, SolvedMotion) and alone.status is Status.SUCCESS:
-            return SolvedMotion(law, scene, alone.table, Units.of(scene, first))
     with np.errstate(all="ignore"):
         return _Solver(law, scene).solve()
 

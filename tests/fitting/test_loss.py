@@ -68,7 +68,7 @@ def test_residuals_that_climb_with_the_angle_are_told_with_their_size():
     assert [float(end) for end in ends.groups()] == pytest.approx(off, abs=0.05)
 
 
-@pytest.mark.parametrize("loss", [2.0, *longer(0.5)])
+@pytest.mark.parametrize("loss", longer(0.5, 2.0))
 def test_a_loss_in_shear_comes_back(loss):
     """Made by springs; nothing is lost in shear alone."""
     laws = Simulation(

@@ -89,7 +89,7 @@ def test_the_impacts_of_a_cell_of_restitutions():
 def test_a_cell_that_is_a_polynomial_holds_it(monkeypatch):
     """With psi2 = psi1² chi (1 + e) in place of springs."""
     monkeypatch.setattr(build, "solve", lambda psi1, chi, e: psi1**2 * chi * (1.0 + e))
-    cells = [build.Cell(1, (1, 0, 0), (1, 0, 0)), build.Cell(3, (0, 0, 0), (0, 0, 0))]
+    cells = [build.Cell(1, (1, 0, 0), (1, 0, 0)), build.Cell(3, (1, 0, 0), (0, 0, 0))]
     terms = build.terms_of(cells)
     found = chebval3d(0.5, -0.25, 0.0, terms[0])
     assert found == pytest.approx(0.875 * (0.5 + 2.5 * 0.375) * 1.5)  # of psi2/psi1, at e = 1/2

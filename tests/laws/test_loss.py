@@ -68,7 +68,9 @@ def other(name, number):
     return contactlab.create("normal.hunt_crossley", damping=number)
 
 
-@pytest.mark.parametrize(("a", "chi"), PSI2)
+@pytest.mark.parametrize(
+    ("a", "chi"), [*list(PSI2)[3:5], *longer(*list(PSI2)[:3], *list(PSI2)[5:])]
+)
 def test_psi2_of_the_theory(a, chi):
     simulation = springs(viscoelastic(restitution_of(a)), 100, 800)
     result = simulation.run(PLANAR(psi1=np.array(AT), chi=chi)).check()
@@ -77,6 +79,7 @@ def test_psi2_of_the_theory(a, chi):
     assert np.abs(result.psi2 - PSI2[a, chi]).max() < 1.5 * np.max(result.plan.psi2_error)
 
 
+@pytest.mark.slow
 def test_psi2_of_rings():
     for psi1, chi, a, psi2 in BY_RINGS:
         result = springs(viscoelastic(restitution_of(a)), 100, 800).run(PLANAR(psi1=psi1, chi=chi))
@@ -183,7 +186,9 @@ def test_the_loss_in_shear_is_a_number():
         assert -psi2 / psi1 == pytest.approx(expected, abs=1.5e-3)
 
 
-@pytest.mark.parametrize(("psi1", "chi", "lam", "eta", "a", "rate", "psi2"), BODIES)
+@pytest.mark.parametrize(
+    ("psi1", "chi", "lam", "eta", "a", "rate", "psi2"), [BODIES[0], *longer(BODIES[1])]
+)
 def test_bodies_of_the_theory(psi1, chi, lam, eta, a, rate, psi2):
     scene = PLANAR(psi1=psi1, chi=chi, lam=lam, eta=eta)
     off = []
@@ -206,6 +211,7 @@ def test_the_plan_says_whose_restitution_it_is():
     assert told not in map(str, springs(viscoelastic(1.0)).plan(coupled).computed)
 
 
+@pytest.mark.slow
 def test_a_rod_in_space():
     """The rod of theory §14 with loss, whose slip turns: springs' own limit."""
     scene = rod(-35.0, slip=0.3, across=0.6).scene
@@ -223,8 +229,8 @@ def test_a_rod_in_space():
 def test_vectors_of_a_sphere_are_the_sphere():
     """In space, turned by 0.7 rad: psi2 of the plane, and nothing across."""
     along = np.array([np.cos(0.7), np.sin(0.7)])
-    for a, expected in ((0.1, PSI2[0.1, CHI]), (0.4, PSI2[0.4, CHI])):
-        for psi1, psi2 in ((0.5, expected[1]), (2.0, expected[4])):
+    for a in (0.1, 0.4):
+        for psi1, psi2 in ((2.0, PSI2[a, CHI][4]),):
             scene = PLANAR(psi1=psi1 * along, chi=CHI * np.eye(2), lam=(1e-12, 0.0), rho=0.3)
             found = np.asarray(springs(viscoelastic(restitution_of(a))).run(scene).check().psi2)
             assert found @ along == pytest.approx(psi2, abs=4e-4)
@@ -325,7 +331,7 @@ def test_a_relaxation_time_gives_each_speed_its_restitution():
     assert result.psi2 == pytest.approx(alone, abs=1e-9)
 
 
-@pytest.mark.parametrize("count", [60, *longer(4000)])
+@pytest.mark.parametrize("count", [20, *longer(4000)])
 def test_bodies_gain_no_energy(count):
     """Planar and in space, those that jam among them, at few springs and steps."""
     for e in (0.2, 0.9):
@@ -335,6 +341,7 @@ def test_bodies_gain_no_energy(count):
             assert np.abs(result.energy.relative_imbalance).max() < 2e-2
 
 
+@pytest.mark.slow
 def test_books_of_bodies_close_to_second_order():
     """Over the whole energy 3e-4 at 50/200 down to e = 0.4."""
     scene, sizes, worst = random_planar(60, 8), (25, 50, 100), []

@@ -50,6 +50,7 @@ def test_the_motion_ends_at_the_restitution():
     assert path.duration.sum(axis=0)[0] == pytest.approx(2.943, abs=1e-3)  # Hertz's
 
 
+@pytest.mark.slow
 def test_a_stiff_impact_settles():
     """chi = 300 at strong loss: psi follows the springs, and does not ring."""
     chi, psi1 = np.full(3, 300.0), np.array([0.5, 10.0, 250.0])
