@@ -151,7 +151,7 @@ def check_outputs(arguments: argparse.Namespace) -> None:
     drawn = any(values.get(name) for name in ("figure", "loops", "stick_slip"))
     if "figure" in values and not drawn:
         for name in ("style", "width"):
-            if values[name] not in (None, "print"):
+            if values.get(name) not in (None, "print"):
                 raise ValueError(f"--{name}: is that of a figure; add --figure FILE")
     outputs = {f"--{name}": path for name, path in values.items() if isinstance(path, Path)}
     distinct({"SCENE.toml": values.get("scene"), **outputs})
