@@ -19,6 +19,7 @@ from contactlab.cli.statuses import BAD_INPUT as BAD_INPUT
 from contactlab.cli.statuses import FAILED as FAILED
 from contactlab.cli.statuses import INTERRUPTED as INTERRUPTED
 from contactlab.cli.statuses import OK as OK
+from contactlab.compose.hooks import Execute
 from contactlab.compose.names import KINDS
 from contactlab.outcome.files import distinct, unwritable, write_table
 
@@ -145,13 +146,23 @@ def look(arguments: argparse.Namespace) -> dict[str, Any]:
     return {"look": arguments.style, "width": arguments.width}
 
 
+def checked(execute: Execute) -> Execute:
+    """Return a command that refuses outputs which cannot all be written before it runs."""
+
+    def run(arguments: argparse.Namespace) -> int:
+        check_outputs(arguments)
+        return execute(arguments)
+
+    return run
+
+
 def check_outputs(arguments: argparse.Namespace) -> None:
     """Refuse an output that is the same file as another or the scene, and a look of no figure."""
     values = vars(arguments)
     drawn = any(values.get(name) for name in ("figure", "loops", "stick_slip"))
     if "figure" in values and not drawn:
         for name in ("style", "width"):
-            if values.get(name) not in (None, "print"):
+            if values[name] not in (None, "print"):
                 raise ValueError(f"--{name}: is that of a figure; add --figure FILE")
     outputs = {f"--{name}": path for name, path in values.items() if isinstance(path, Path)}
     distinct({"SCENE.toml": values.get("scene"), **outputs})

@@ -51,7 +51,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         help="estimate the numerical error of a single impact by finer runs (the default)",
     )
     shared.add_progress(parser)
-    return execute
+    return shared.checked(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:
