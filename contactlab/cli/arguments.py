@@ -19,6 +19,7 @@ from contactlab.cli.statuses import BAD_INPUT as BAD_INPUT
 from contactlab.cli.statuses import FAILED as FAILED
 from contactlab.cli.statuses import INTERRUPTED as INTERRUPTED
 from contactlab.cli.statuses import OK as OK
+from contactlab.compose.hooks import Execute
 from contactlab.compose.names import KINDS
 from contactlab.outcome.files import distinct, unwritable, write_table
 
@@ -143,6 +144,16 @@ def add_look(parser: argparse.ArgumentParser) -> None:
 def look(arguments: argparse.Namespace) -> dict[str, Any]:
     """Return the options ``look`` and ``width`` of ``contactlab.figures.files.save``."""
     return {"look": arguments.style, "width": arguments.width}
+
+
+def checked(execute: Execute) -> Execute:
+    """Return a command that refuses outputs which cannot all be written before it runs."""
+
+    def run(arguments: argparse.Namespace) -> int:
+        check_outputs(arguments)
+        return execute(arguments)
+
+    return run
 
 
 def check_outputs(arguments: argparse.Namespace) -> None:

@@ -32,7 +32,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     parser.add_argument(
         "--markdown", action="store_true", help="print a row or two for each law, as Markdown"
     )
-    return execute
+    return shared.checked(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -23,7 +23,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the scene, whose data are cited, and the laws."""
     add_file(parser)
     shared.add_laws(parser, many=True)
-    return execute
+    return shared.checked(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

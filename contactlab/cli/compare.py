@@ -74,7 +74,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     shared.add_json(form, "tables")
     form.add_argument("--csv", action="store_true", help="print CSV instead of tables")
     shared.add_progress(parser)
-    return execute
+    return shared.checked(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

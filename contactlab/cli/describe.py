@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from contactlab.compose.collision import VECTORS_AFTER, Collision
 from contactlab.impact.scene import entry_unit
 from contactlab.outcome.numerical_error import error_cautions
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import answer, closing, largest_imbalance, sections, sweep_section
 from contactlab.outcome.text_table import table
+
+if TYPE_CHECKING:
+    from contactlab.compose.collision import Collision
 
 
 def describe(
@@ -37,6 +39,8 @@ def describe(
 
 def in_space(collision: Collision) -> str:
     """Return a table with the vectors of both bodies and the impulse."""
+    from contactlab.compose.collision import VECTORS_AFTER  # only for vectors
+
     rows = []
     for name, unit in VECTORS_AFTER:
         before = getattr(collision.encounter, name, None)

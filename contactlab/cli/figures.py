@@ -43,7 +43,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     shared.add_look(parser)
     shared.add_laws(parser)
     shared.add_progress(parser)
-    return execute
+    return shared.checked(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -73,7 +73,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     shared.add_file(parser, "--csv", ".csv", words="write the residuals")
     shared.add_json(parser, "tables")
     shared.add_progress(parser)
-    return execute
+    return shared.checked(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

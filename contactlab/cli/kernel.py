@@ -30,7 +30,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     parser.add_argument(
         "--out", type=Path, required=True, metavar="DIR", help="folder; made if it is not there"
     )
-    return execute
+    return shared.checked(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

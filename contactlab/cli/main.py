@@ -13,7 +13,6 @@ import traceback
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from importlib.machinery import PathFinder
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import contactlab
@@ -95,10 +94,6 @@ def _execute(words: list[str], parsed: argparse.Namespace) -> int:
             parsed.parser.error(f"unrecognized arguments: {' '.join(unknown)}")
     except SystemExit as stop:  # argparse has printed help, version or the error
         return stop.code if isinstance(stop.code, int) else BAD_INPUT
-    if any(isinstance(value, Path) for value in vars(parsed).values()) or "figure" in parsed:
-        from contactlab.cli.arguments import check_outputs  # loads what a command of laws needs
-
-        check_outputs(parsed)
     status: int = parsed.execute(parsed)
     return status
 

@@ -17,8 +17,6 @@ from collections import Counter
 from typing import Any
 
 from contactlab.cli.arguments import FAILED, OK, add_progress, print_json, progress
-from contactlab.compose.citations import references
-from contactlab.compose.composition import WAYS
 from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.compose.options import Option, options
 from contactlab.compose.registry import REGISTRY, PluginInfo
@@ -67,6 +65,9 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def _show(arguments: argparse.Namespace) -> int:
     """Print origin, contract and options of a law; only this action imports the law."""
+    from contactlab.compose.citations import references
+    from contactlab.compose.composition import WAYS
+
     entry: dict[str, Any] = _entry(REGISTRY.info(arguments.name))
     law = REGISTRY.law_class(arguments.name)
     entry["summary"] = (inspect.getdoc(law) or "").partition("\n")[0]

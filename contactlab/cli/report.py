@@ -40,7 +40,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     shared.add_measured(parser)
     shared.add_file(parser, "--out", ".html", required=True)
     shared.add_progress(parser)
-    return execute
+    return shared.checked(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

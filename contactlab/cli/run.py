@@ -16,14 +16,13 @@ import argparse
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.describe import describe
 from contactlab.cli.scene import add_scene, inputs
-from contactlab.compose.collision import Collision
 from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.outcome import export
 from contactlab.outcome.columns import json_value
@@ -31,6 +30,9 @@ from contactlab.outcome.export import WRITERS
 from contactlab.outcome.numerical_error import error_cautions
 from contactlab.outcome.result import ImpactResult
 from contactlab.study.interrupts import was_interrupted
+
+if TYPE_CHECKING:
+    from contactlab.compose.collision import Collision
 
 
 @hookimpl
@@ -51,7 +53,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         help="estimate the numerical error of a single impact by finer runs (the default)",
     )
     shared.add_progress(parser)
-    return execute
+    return shared.checked(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -76,7 +78,11 @@ def execute(arguments: argparse.Namespace) -> int:
             )
     varied: Mapping[str, Any] = file.varied if file else {}
     encounter = file.encounter if file else None
-    collision = None if encounter is None else Collision.of(encounter, result)
+    collision = None
+    if encounter is not None:
+        from contactlab.compose.collision import Collision  # only for vectors
+
+        collision = Collision.of(encounter, result)
     if collision is not None:  # it knows more than the scene: contact vectors
         result = attrs.evolve(result, plan=collision.plan)
     saved = shared.save(

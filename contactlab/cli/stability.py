@@ -36,7 +36,7 @@ WORDS = ("answered", "coarse", "refused", SKIPPED, RAISED, WRONG)
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the laws, the size, and the outputs."""
     shared.add_report(parser)
-    return execute
+    return shared.checked(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

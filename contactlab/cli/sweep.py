@@ -65,7 +65,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     parser.add_argument("--workers", type=int, metavar="N", help="share the work among N processes")
     shared.add_figure(parser, "also draw psi2 over psi1")
     shared.add_progress(parser)
-    return execute
+    return shared.checked(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

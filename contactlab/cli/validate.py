@@ -41,7 +41,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     )
     shared.add_json(parser, "the tables")
     shared.add_progress(parser)
-    return execute
+    return shared.checked(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

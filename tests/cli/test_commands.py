@@ -90,6 +90,18 @@ def test_a_command_prints_nothing_on_stdout_before_it_runs(install, run):
     assert "imported" not in ran.out
 
 
+def test_a_command_has_options_of_its_own(install, run, tmp_path):
+    """Of a figure without a style, and a file that is only read."""
+    source = HELLO.replace(
+        "    return greet\n",
+        "    import pathlib\n    parser.add_argument('--figure', type=pathlib.Path)\n"
+        "    parser.add_argument('--scene', type=pathlib.Path)\n    return greet\n",
+    )
+    install("drawing", "drawing_command", source, "command.hello")
+    assert run("hello", "Ada").status == 0
+    assert run("hello", "Ada", "--scene", tmp_path / "a.toml").status == 0
+
+
 def test_the_class_of_a_law_is_no_command(install, run):
     install("wrong", "wrong_command:Law", "class Law: pass", "command.hello")
     ran = run("hello")
