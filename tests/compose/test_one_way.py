@@ -879,15 +879,9 @@ def test_a_rod_on_its_end_with_slip_between_its_axes_turns():
     assert EXACT.run(scene).check().psi2[1] != 0.0
 
 
-BY_THE_TABLE = pytest.mark.xfail(
-    strict=True,
-    reason="collide with a restitution asks rebound's table for spheres, and marches rings for "
-    "bodies whose impact is central: psi2 within the table's error, 80 ms in place of 0.2",
-)
-
-
-@pytest.mark.parametrize("restitution", [1.0, pytest.param(0.7, marks=BY_THE_TABLE)])
-def test_a_sphere_given_as_a_body_is_that_sphere(restitution):
+@pytest.mark.parametrize(("restitution", "room"), [(1.0, 1e-13), (0.7, 1e-9)])
+def test_a_sphere_given_as_a_body_is_that_sphere(restitution, room):
+    """The relaxation time of a restitution gives it to 2e-10."""
     moment = 0.4 * BALL.mass * BALL.radius**2
     same = RigidBody(
         mass=BALL.mass, principal=3 * (moment,), material=STEEL, curvature_radius=BALL.radius
@@ -898,9 +892,9 @@ def test_a_sphere_given_as_a_body_is_that_sphere(restitution):
         Encounter(same, FLOOR, 0.3, contact=(0.0, 0.0, -BALL.radius), **numbers),
         restitution=restitution,
     )
-    assert made.velocity == pytest.approx(sphere.velocity, abs=1e-13)
-    assert made.spin == pytest.approx(sphere.spin, abs=1e-11)
-    assert made.energy.friction_work == pytest.approx(sphere.energy.friction_work, rel=1e-9)
+    assert made.velocity == pytest.approx(sphere.velocity, abs=room)
+    assert made.spin == pytest.approx(sphere.spin, abs=100.0 * room)
+    assert made.energy.friction_work == pytest.approx(sphere.energy.friction_work, rel=1e-8)
     assert made.result.counters == sphere.result.counters
     assert made.result.laws == sphere.result.laws
 
