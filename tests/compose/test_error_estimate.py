@@ -68,6 +68,7 @@ def test_a_batch_is_estimated_as_its_impacts_are_alone():
     assert together == pytest.approx([one.psi2_error_estimate for one in alone], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_of_an_integrator_with_a_tolerance_the_law_is_refined_too():
     """Few springs on a damped contact, beside many."""
     scene = Scene.nondimensional(psi1=1.2, chi=3.0)

@@ -751,7 +751,15 @@ def follow(error, laws):
 
 
 @coupled_scene
-@pytest.mark.parametrize("laws", [*REMEDIED, *IN_SPACE_ALONE], ids=str)
+@pytest.mark.parametrize(
+    "laws",
+    [
+        *REMEDIED[:1],
+        *IN_SPACE_ALONE,
+        *(pytest.param(one, marks=pytest.mark.slow) for one in REMEDIED[1:]),
+    ],
+    ids=str,
+)
 def test_a_remedy_that_is_followed_works(scene, laws):
     """And plan and sweep refuse what run refuses, in the same words."""
     simulation = Simulation(**laws)

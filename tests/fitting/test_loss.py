@@ -37,6 +37,7 @@ def told(parameters, **more):
         return str(error)
 
 
+@pytest.mark.slow
 def test_the_notes_lead_from_soft_data_to_the_friction_it_was_made_with():
     first = told([MU])
     assert "fit restitution too: that of normal=viscoelastic" in first

@@ -80,6 +80,7 @@ def test_jkr_restitution_is_the_work_of_its_cycle(ratio):
     assert found == pytest.approx(np.sqrt(1.0 - ratio**-2), abs=1e-8)
 
 
+@pytest.mark.slow
 def test_jkr_bodies_that_come_too_slowly_do_not_part():
     law, given = jkr(), scene()
     sticking = np.sqrt(2.0 * lost(law, given, least_approach(given)) / given.pair.normal_mass)

@@ -157,6 +157,7 @@ def test_it_sticks_from_the_start_below_psi1_of_one():
             assert rate[first] == pytest.approx((2 * chi - psi1) / (2 * chi - 1.0), abs=1e-2)
 
 
+@pytest.mark.slow
 def test_without_loss_in_shear_they_are_the_springs_of_before():
     """At ``shear_loss`` 0, at e = 1 and as the loss vanishes."""
     scene = PLANAR(psi1=np.array(AT), chi=CHI)
@@ -226,6 +227,7 @@ def test_a_rod_in_space():
     assert off[-1] < 1e-4
 
 
+@pytest.mark.slow
 def test_vectors_of_a_sphere_are_the_sphere():
     """In space, turned by 0.7 rad: psi2 of the plane, and nothing across."""
     along = np.array([np.cos(0.7), np.sin(0.7)])

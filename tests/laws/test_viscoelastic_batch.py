@@ -16,6 +16,7 @@ def test_values_of_another_program():
     assert found == pytest.approx(np.concatenate([*REFERENCES.values()]), abs=4e-4)
 
 
+@pytest.mark.slow
 def test_each_its_own_relaxation_time():
     psi1, chi, a, psi2 = np.array(SINGLES).T
     found = extrapolated(psi1, chi, a, springs=60, steps=480)

@@ -145,6 +145,7 @@ def test_an_unexpected_pass_is_reported():
         check_law(type("Expecting", (impacts.Whole,), said)())
 
 
+@pytest.mark.slow
 def test_a_fault_in_one_law_harms_no_other():
     for broken in (laws.Raises, laws.HiddenMemory, laws.ReturnsNone):
         failed(broken())

@@ -16,6 +16,7 @@ SPRINGS, STEPS = 100, 800
 LEAST = 1e-3
 
 
+@np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
 def rebound(psi1: Any, chi: Any, restitution: Any, *, derivatives: bool = False) -> Any:
     """Return psi2, odd in psi1 to the last bit, abs(psi2) <= abs(psi1).
 
