@@ -16,7 +16,6 @@ SPRINGS, STEPS = 100, 800
 LEAST = 1e-3
 
 
-@np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
 def rebound(psi1: Any, chi: Any, restitution: Any, *, derivatives: bool = False) -> Any:
     """Return psi2, odd in psi1 to the last bit, abs(psi2) <= abs(psi1).
 
@@ -46,6 +45,7 @@ def rebound(psi1: Any, chi: Any, restitution: Any, *, derivatives: bool = False)
     return psi2
 
 
+@np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
 def beyond(speed: Array, chi: Array, e: Array) -> Array:
     """Return psi2 of psi1 = speed >= 0 without the table, shape (impacts,)."""
     psi2 = restituted.full_slip(speed, chi, e)
