@@ -122,6 +122,7 @@ def test_cautions_are_told_of_every_law(run):
     assert all(text.count(one) == 1 for one in [*exact, *coulomb])
 
 
+@pytest.mark.slow
 def test_the_notes_lead_from_a_csv_of_soft_data_to_its_friction(run, tmp_path):
     """Each command does what the words before it say; made with mu .35, e .75, e_T .1."""
     data, bodies = tmp_path / "soft.csv", tmp_path / "bodies.toml"
@@ -212,6 +213,7 @@ def test_the_data_are_not_written_over(run, impacts):
     assert impacts.read_text(encoding="utf-8") == before
 
 
+@pytest.mark.slow
 def test_a_law_that_cannot_be_fitted_is_said_and_the_others_stay(run):
     ran = run("fit", KHARAZ, *E_T, "--fit", "stiffness_ratio", "--laws", "exact,coulomb",
               "--bootstrap", 0)  # fmt: skip

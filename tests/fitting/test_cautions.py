@@ -80,6 +80,7 @@ def test_a_shift_by_coupling_is_told_as_a_shift_of_the_parameter(ball, plate, fr
     assert abs(found["friction_coefficient"] - friction) == pytest.approx(size, rel=0.5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("laws", [*longer(None), Simulation(tangential="coulomb")])
 def test_a_restitution_that_elastic_laws_cannot_meet_is_told_with_what_another_law_gives(laws):
     data = measured(lossy(0.85), "tangential_restitution", "normal_restitution")
@@ -115,6 +116,7 @@ def test_a_common_error_of_the_angles_is_told(off):
     assert float(told[3]) == pytest.approx(0.12, rel=0.03)
 
 
+@pytest.mark.slow
 def test_what_the_data_do_not_tell_of_the_restitution_is_a_caution():
     """In gross slip only mu (1 + e) counts: half the restitution is 4/3 of the friction."""
     data = table(1.0 - 0.2 / np.tan(np.radians(SLIPPING)) + 0.004 * SCATTER, SLIPPING)

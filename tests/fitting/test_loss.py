@@ -122,6 +122,7 @@ def test_a_restitution_that_the_laws_do_not_have_is_told(e, words, velocity):
     assert words or "a restitution of" not in notes
 
 
+@pytest.mark.slow
 def test_laws_fit_what_they_have_over_the_same_numbers():
     laws = {
         "hertz": None,

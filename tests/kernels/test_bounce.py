@@ -126,6 +126,7 @@ def test_with_a_restitution_it_is_collide_to_a_ten_thousandth(bounced, wall):
     assert gaps(answers, met, made).max() < 5e-5
 
 
+@pytest.mark.slow
 def test_a_dense_core_is_left_to_sixteen_springs(bounced):
     rows, met, made = rows_and_laws(4, False, 0.3, FEW)
     chi = met.take(made.collided).scene.chi
@@ -144,6 +145,7 @@ def books(rows, vectors):
     return momentum, energy.sum(axis=1)
 
 
+@pytest.mark.slow
 def test_momentum_stays_and_energy_falls(bounced):
     """10⁵ encounters, half of them elastic; chi from 0.5 to 2.4."""
     rows, random = np.repeat(rows_and_laws(5, False, 0.6)[0], 100, axis=0), np.random.default_rng(5)
@@ -183,6 +185,7 @@ def psi2_of(rows, after):
     return (after[:, 1] - after[:, 5] * radius) * kappa / (friction * approach)
 
 
+@pytest.mark.slow
 def test_at_every_corner_of_the_rebound(bounced):
     """psi1 at 0, 1, 2 chi, 4 chi - 1 and beside them; chi from 0.84 to 2.5 and beyond."""
     chi = np.repeat([0.84, 1.0, 1.44, 1.75, 2.0, 2.5, np.nextafter(2.5, 3.0)], 15)
@@ -264,6 +267,7 @@ def impacts(lower, upper):
     return psi1, chi, e, extrapolated(psi1, chi, number_of(e), springs=200, steps=1000)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("lower", "upper", "bound"),
     [(0.5, 2.0, 7e-5), *longer((0.34, 0.5, 4e-4), (2.0, 4.0, 4e-3), (4.0, 10.0, 8e-3))],

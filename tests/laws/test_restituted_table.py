@@ -193,6 +193,7 @@ def test_no_impact_gains():
     assert (np.sign(psi1) * psi2 >= np.abs(psi1) - 2.0 * chi * (1.0 + e) - 1e-14).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("chi", "bound"), [(0.01, 1e-5), (0.2, 5e-5), (4.0, BEYOND_ERROR * (4 / 3) ** 0.5)]
 )

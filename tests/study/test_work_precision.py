@@ -124,6 +124,7 @@ def test_budget_ends_it_and_says_so(capsys):
     assert "not complete" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_command_writes_table_csv_and_picture(tmp_path, capsys):
     files = [str(tmp_path / name) for name in ("b.png", "b.csv")]
     words = ["bench", "--quick", "--law", "coulomb", "--json", "--figure"]
