@@ -3,6 +3,7 @@
 import attrs
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
@@ -273,7 +274,7 @@ def test_the_loss_in_shear_of_slip_throughout():
     velocity = scene.slip_velocity - friction * sample.load_impulse / scene.pair.tangential_mass
     taken = friction * sample.contact.force * friction * rate / kappa
     passed = friction * sample.contact.force * velocity
-    spent = np.trapezoid(taken, sample.time) / np.trapezoid(passed, sample.time)
+    spent = trapezoid(taken, sample.time) / trapezoid(passed, sample.time)
     assert radius.max() > 0.0
     assert share == pytest.approx(spent, rel=1e-3)
 
