@@ -22,7 +22,7 @@ from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
 from contactlab.contracts.status import Status
-from contactlab.contracts.tangential import SteppedTangentialLaw, TangentialLaw
+from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.cautions import rigid_bodies, three_numbers, unit_slips, unlikely
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, some, spread, taken
@@ -177,15 +177,9 @@ def _loses_in_pressure_alone(laws: Laws, scene: Scene) -> bool:
     """Return whether the normal law is viscous, and the tangential law does not share its loss."""
     if not laws.normal.viscous or "partial_slip" not in laws.tangential.offers:
         return False
-    if _shares_loss(laws):
+    if laws.tangential.shares_loss(laws.normal):
         return False
     return scene.rubs if scene.inverse_mass is None else together.at_larger_slip(scene).rubs
-
-
-def _shares_loss(laws: Laws) -> bool:
-    """Return whether the tangential law shares the loss of the normal law."""
-    tangential: Any = laws.tangential
-    return isinstance(tangential, SteppedTangentialLaw) and tangential.shares_loss(laws.normal)
 
 
 def _in_place(laws: Laws, used: Laws) -> str:
@@ -236,7 +230,7 @@ def _cautions(
         ends = _ends(laws.normal, central, None if coupled else motion, known)
         for law in (laws.normal, laws.tangential):
             asked += _asked(law, law.cautions, whole, ends)
-        if coupled and _shares_loss(laws):
+        if coupled and laws.tangential.shares_loss(laws.normal):
             asked += _of_grip(laws.tangential, together.at_smaller_slip(part), known, ends)
         if coupled:  # that of yield and of a large contact hold for any bodies
             said += NormalLaw.cautions(laws.normal, whole, ends)

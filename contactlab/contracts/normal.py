@@ -82,7 +82,7 @@ class NormalLaw(Law):
 
     @property
     def similar(self) -> bool:
-        """True if all motions are one in units of Hertz's impact (clause 8)."""
+        """True if all motions are one in units of Hertz's impact (clause 9)."""
         return False
 
     def dissipation(self, motion: NormalMotion) -> Real:

@@ -129,6 +129,9 @@ class TangentialLaw(Law):
     8. A law with the word ``together`` answers impacts in which friction changes the approach:
        ``impacts_together`` returns normal and tangential motion, and ``errors_together`` their
        errors. With the word ``vectors`` it does so where the slip turns too.
+    9. ``shares_loss(normal_law)`` is True if the force depends on the slip velocity too, through
+       the loss of a viscous normal law. Increments then have ``sampled``, and integrators
+       grade their steps at first touch, where such a force grows as the root of time.
 
     Parameters of methods
     ---------------------
@@ -180,6 +183,15 @@ class TangentialLaw(Law):
         ----------
         accuracy : float or None
             The error that the integrator controls: answers with a larger one are not used.
+        """
+        return False
+
+    def shares_loss(self, normal: Law) -> bool:
+        """Return whether the law shares the loss of a normal law (clause 9); False by default.
+
+        Parameters
+        ----------
+        normal : NormalLaw
         """
         return False
 
@@ -328,10 +340,7 @@ class SteppedTangentialLaw(TangentialLaw):
        returns its state there; ``normal`` is the approach without friction, from which a law may
        take scales; the motion that follows may be another, with a larger contact, or with several
        compressions. ``stiffness`` is an upper bound for the contacts of the approach alone.
-    8. ``shares_loss(normal_law)`` is True if the force depends on the slip velocity too, through
-       the loss of a viscous normal law. Increments then have ``sampled``, and integrators
-       grade their steps at first touch, where such a force grows as the root of time.
-    9. With the word ``vectors`` a law without future takes displacements and slip velocities of
+    8. With the word ``vectors`` a law without future takes displacements and slip velocities of
        shape (..., 2) from the state of ``begin(..., vectors=True)``, and returns a force of this
        shape; friction work has the batch shape. A rotation of all vectors rotates the forces; the
        length of the force does not exceed mu times the friction load.
@@ -375,15 +384,6 @@ class SteppedTangentialLaw(TangentialLaw):
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return an upper bound of the tangential stiffness, in N/m, of the batch shape."""
         return 0.0
-
-    def shares_loss(self, normal: Law) -> bool:
-        """Return whether the law shares the loss of a normal law (clause 8); False by default.
-
-        Parameters
-        ----------
-        normal : NormalLaw
-        """
-        return False
 
     def path_cautions(self) -> tuple[str, ...]:
         """Return one sentence for each doubt about the law along a prescribed path; none here."""

@@ -65,14 +65,16 @@ def hertz_stiffness(scene: Scene) -> Real:
     return (4.0 / 3.0) * scene.pair.effective_modulus * scene.pair.radius**0.5
 
 
-def slips_throughout_elastic(psi1: Real, chi: Real) -> Mask:
-    """Return True where an elastic impact is in gross slip throughout, eqs (44) and (46).
+def slips_throughout(psi1: Real, chi: Real, restitution: Real = 1.0) -> Mask:
+    """Return True where an impact is in gross slip throughout, eqs (44) and (46) if elastic.
 
-    The condition is ``|psi1| >= max(1, 4 chi - 1)``. For chi < 1/2 eq. (46) alone does not
-    suffice: below ``|psi1| = 1`` the contact sticks from the start (44).
+    The condition is ``|psi1| >= max(1, 2 chi (1 + e) - e)``, with one loss for pressure and shear
+    too (theory §15). For chi < 1/2 eq. (46) alone does not suffice: below ``|psi1| = 1`` the
+    contact sticks from the start (44).
     """
-    greater: Any = max if isinstance(chi, float) else np.maximum
-    slips: Mask = abs(psi1) >= greater(1.0, 4.0 * chi - 1.0)
+    end = 2.0 * chi * (1.0 + restitution) - restitution
+    greater: Any = max if isinstance(end, float) else np.maximum
+    slips: Mask = abs(psi1) >= greater(1.0, end)
     return slips
 
 

@@ -142,17 +142,12 @@ def judging_laws(normal: NormalLaw, judged: TangentialLaw) -> list[type[Tangenti
         except (ValueError, PluginError):  # blocked, broken, or an option has no default
             continue
         suits = converges(law) and law.needs <= {"radius"} and misfit(normal, law) is None
-        suits = suits and shares_loss(law, normal) is shares_loss(judged, normal)
+        suits = suits and law.shares_loss(normal) is judged.shares_loss(normal)
         if suits and _refines(law) and type(law) is not type(judged):
             pointwise = (POINTWISE in law.expected_failures, POINTWISE in judged.expected_failures)
             (same_limit if pointwise[0] is pointwise[1] else other_limit).append(type(law))
     itself_too = [type(judged)] if not same_limit and _refines(judged) else []
     return [*same_limit, *itself_too, *other_limit]
-
-
-def shares_loss(law: TangentialLaw, normal: NormalLaw) -> bool:
-    """Return whether a law loses in shear as a viscous normal law does in pressure."""
-    return isinstance(law, SteppedTangentialLaw) and law.shares_loss(normal)
 
 
 def _refines(law: TangentialLaw) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contactlab.contracts import NormalMotion, WholeImpact, sliding
-from contactlab.impact.hertz import slips_throughout_elastic
+from contactlab.impact.hertz import slips_throughout
 from contactlab.impact.scene import Scene
 
 
@@ -11,7 +11,7 @@ def gross_slip(scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
     """Return the answers of eq. (45), for impacts of elastic Hertz contacts; else none."""
     if "elastic_hertz" not in normal.offers:
         return ()
-    where = slips_throughout_elastic(scene.psi1, scene.chi)
+    where = slips_throughout(scene.psi1, scene.chi)
     if where is False:  # a single impact; a batch has a mask
         return ()
     reason = "the impact slips from start to end, eq. (45)"

@@ -98,7 +98,7 @@ class State(NamedTuple):
     scales : Scales
         Units: floats, or arrays of shape (items,).
     radius : float or array
-        Radius of the pair in m.
+        Radius of the pair in m, as the scales.
     speed : float or array
         Rate at first touch in m/s.
     law, parts : NormalLaw, object
@@ -148,7 +148,7 @@ def start(
     return State(
         shape,
         scales,
-        scene.pair.radius,
+        flat(scene.pair.radius, shape) if shape else scene.pair.radius,
         scene.normal_speed,
         law,
         law.start(scene),
@@ -176,7 +176,8 @@ def advance(
         value = np.asarray(value)
         return row(value[..., 0]) + 1j * row(value[..., 1])
 
-    contact = _contact(state, row(after.radius), row(after.friction_load), sampled)
+    approach, rate = (None, None) if sampled is None else sampled[:2]
+    contact = told(state, after, approach, rate, row)
     limit, acting = (row(each) for each in (after.friction_load, increment.friction_load))
     friction = scales.force / scales.normal_force
     still = np.zeros(memory.deflection.shape[1:])
@@ -192,45 +193,38 @@ def advance(
         scales.displacement,
     )
     force, work, loss, memory = moved(memory, contact, drive, state.grows, state.splits)
-    loss = loss * scales.metres
-    work = work * scales.metres
-    state = state._replace(memory=memory)
+    work, loss = (_shaped(each * scales.metres, shape) for each in (work, loss))
     if vectors:
-        both = np.stack((force.real, force.imag), axis=-1).reshape(*shape, 2)
-        return TangentialResponse(both, _shaped(work, shape), True, _shaped(loss, shape)), state
-    answers = (_shaped(each, shape) for each in (force, work, loss))
-    force, work, loss = answers
-    return TangentialResponse(force, work, True, loss), state
+        acts = np.stack((force.real, force.imag), axis=-1).reshape(*shape, 2)
+    else:
+        acts = _shaped(force, shape)
+    return TangentialResponse(acts, work, True, loss), state._replace(memory=memory)
 
 
 def _shaped(values: Array, shape: tuple[int, ...]) -> Any:
+    """Return values of shape (items,) in the shape of the batch, or as a plain number."""
     return values.reshape(shape) if shape else values.item()
 
 
-def _contact(state: State, radius: Array, load: Array, sampled: Any) -> Contact:
-    """Return what the contact tells the springs."""
-    scales, shape = state.scales, state.shape
-    b, excess = limits(radius / scales.radius, load / scales.normal_force)
-    if sampled is None:  # slow
+def told(state: State, contact: NormalContact, approach: Any, rate: Any, spread: Any) -> Contact:
+    """Return what contacts tell the springs, in the arrangement of ``spread``.
+
+    Their rates of approach are in m/s; None of a path that is slow.
+    """
+    scales = state.scales
+    b, excess = limits(
+        spread(contact.radius) / scales.radius, spread(contact.friction_load) / scales.normal_force
+    )
+    if rate is None:
         return Contact(b * b, 0.0 * excess, 0.0 * excess)
     # the viscous force over the rate, asked while the surfaces approach: no tension cuts it there
-    rate = np.maximum(np.abs(sampled.rate), SLOWEST * state.speed)
-    asked, _ = state.law.respond(state.parts, sampled.approach, rate)
-    time = relaxation_time(asked, rate, state.radius, scales, shape)
-    return Contact(b * b, excess, state.shear_loss * time)
-
-
-def relaxation_time(
-    contact: NormalContact, rate: Any, radius: Any, scales: Scales, shape: tuple[int, ...]
-) -> Array:
-    """Return A in s from a viscous contact at a rate of approach, shape (items,); 0 out of it."""
-    b = flat(contact.radius, shape) / scales.radius if shape else contact.radius / scales.radius
-    load = flat(contact.force, shape) if shape else contact.force
-    excess = limits(np.atleast_1d(b), np.atleast_1d(load / scales.normal_force))[1]
-    per_rate = np.square(scales.radius) / (
-        (flat(radius, shape) * flat(rate, shape)) if shape else radius * float(rate)
+    rate = np.maximum(np.abs(rate), SLOWEST * state.speed)
+    asked, _ = state.law.respond(state.parts, approach, rate)
+    _, push = limits(
+        spread(asked.radius) / scales.radius, spread(asked.force) / scales.normal_force
     )
-    return np.asarray(excess * per_rate)
+    time = push * np.square(scales.radius) / (state.radius * spread(rate))
+    return Contact(b * b, excess, state.shear_loss * time)
 
 
 def limits(b: Array, load: Array) -> tuple[Array, Array]:
@@ -267,9 +261,9 @@ def moved(
     if grows or splits:
         size, held, _ = fitted(size, held, np.sqrt(edge + 0.0 * size), 1.0, spans=not splits)
     squares = np.square(np.multiply.outer(np.arange(len(held)) + 0.5, size / len(held)))
-    least = _limit(squares, before.edge, before.excess)
-    most = _limit(squares, edge, excess)
-    part, first = _entered(squares, least, before, edge, excess)
+    least = profile(squares, before.edge, before.excess)
+    most = profile(squares, edge, excess)
+    part, first = entered(squares, least, (before.edge, before.excess), edge, excess)
     lead = contact.time * drive.scale
     move = part * drive.move
     deflection = held * np.exp(-decay * (1.0 - part)) if first is not least else held
@@ -351,31 +345,42 @@ def _column(value: Array, items: tuple[int, ...]) -> Array:
     return np.atleast_1d(common(value, items))
 
 
-def _limit(squares: Array, edge: Array, excess: Array) -> Array:
+def profile(squares: Array, edge: Array, excess: Array) -> Array:
     """Return l of the springs."""
     inside = edge - squares
     return np.where(inside > 0.0, inside + excess, 0.0)
 
 
-def _entered(
-    squares: Array, least: Array, before: Memory, edge: Array, excess: Array
+def entered(
+    squares: Array, least: Array, before: tuple[Array, Array], edge: Array, excess: Array
 ) -> tuple[Any, Array]:
-    """Return the part of the step for which springs move, and their limit at its begin."""
-    growth = edge - before.edge
+    """Return the part of the step for which springs move, and their limit at its begin.
+
+    ``before`` are b² and j of the step before, ``least`` the limit there.
+    """
+    growth = edge - before[0]
     if not (growth > 0.0).any():
         return 1.0, least
     inside = edge - squares
     entering = (inside > 0.0) & (least <= 0.0)
     part = np.where(entering, inside / np.where(growth > 0.0, growth, 1.0), 1.0)
     part = np.minimum(part, 1.0)
-    return part, np.where(entering, excess + (before.excess - excess) * part, least)
+    return part, np.where(entering, excess + (before[1] - excess) * part, least)
+
+
+def relaxing(first: Array, most: Array, decay: Any) -> tuple[Array, Array]:
+    """Return the share of w that relaxes in a step, and the limit of what comes in its place.
+
+    The limit of the springs goes evenly from ``first`` to ``most``.
+    """
+    gone = -np.expm1(-decay)
+    return gone, first * gone + (most - first) * (1.0 - gone / np.maximum(decay, TINY))
 
 
 def _slipped(held: Array, move: Any, _: Any, first: Array, most: Array, decay: Any) -> Array:
     """Return w along one line: held by the limit, which goes evenly from ``first`` to ``most``."""
-    gone = -np.expm1(-decay)
+    gone, span = relaxing(first, most, decay)
     free = held * (1.0 - gone)
-    span = first * gone + (most - first) * (1.0 - gone / np.maximum(decay, TINY))
     return np.asarray(np.minimum(np.maximum(held + move, free - span), free + span))
 
 
@@ -395,7 +400,7 @@ def fields(state: State) -> dict[str, Any]:
     memory, scales, shape = state.memory, state.scales, state.shape
     springs, items = memory.deflection.shape
     places = np.multiply.outer(np.arange(springs) + 0.5, memory.size / springs)
-    limit = _limit(places * places, memory.edge, memory.excess)
+    limit = profile(places * places, memory.edge, memory.excess)
     traction = memory.deflection + memory.lead
     traction = _cut(traction, limit)
     rows = (

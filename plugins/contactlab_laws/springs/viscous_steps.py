@@ -66,7 +66,7 @@ def advance_all(
             return table.reshape(count, 1)
         return np.broadcast_to(table, (count, *shape)).reshape(wide)
 
-    contact = _contacts(state, steps, rows)
+    contact = viscous.told(state, steps.contact, steps.approach, steps.rate, rows)
     drift, kick, acting = (rows(each) for each in (steps.drift, steps.kick, steps.friction_load))
     time = contact.time
     middle = np.concatenate((time[:1], 0.5 * (time[1:] + time[:-1])))
@@ -80,22 +80,6 @@ def advance_all(
     return _march(state, scene, grid, steps, (drift, kick, acting, time, rows), items)
 
 
-def _contacts(state: viscous.State, steps: Steps, rows: Any) -> viscous.Contact:
-    """Return what the contacts tell the springs, arrays (K, items) or (K, 1)."""
-    scales, speed = state.scales, state.speed
-    own = [np.asarray(each).reshape(1, -1) for each in (scales.radius, scales.normal_force)]
-    b, excess = viscous.limits(
-        rows(steps.contact.radius) / own[0], rows(steps.contact.friction_load) / own[1]
-    )
-    rate = np.maximum(np.abs(steps.rate), viscous.SLOWEST * speed)
-    asked, _ = state.law.respond(state.parts, steps.approach, rate)
-    _, push = viscous.limits(rows(asked.radius) / own[0], rows(asked.force) / own[1])
-    shape = np.shape(state.radius)
-    radius = np.reshape(state.radius, (1, -1)) if shape else state.radius
-    time = push * np.square(own[0]) / (radius * rows(rate))
-    return viscous.Contact(b * b, excess, state.shear_loss * time)
-
-
 def _alike(rows: Array) -> bool:
     """Return whether all impacts agree, to rounding, in each row."""
     first = rows[:, :1]
@@ -106,22 +90,16 @@ def _alike(rows: Array) -> bool:
 def _grid(springs: int, edge: Array, excess: Array, decay: Array) -> _Grid | None:
     """Return the springs of every step; None if springs leave and come again."""
     squares = np.square((np.arange(springs) + 0.5) / springs)
-    before = np.concatenate(([0.0], edge[:-1]))
-    inside = edge[:, None] - squares
-    most = np.where(inside > 0.0, inside + excess[:, None], 0.0)
+    edges, excesses = edge[:, None], excess[:, None]
+    most = viscous.profile(squares, edges, excesses)
     least = np.concatenate((np.zeros((1, springs)), most[:-1]))
     touching = (most > 0.0).sum(axis=1)
     top = int(touching.argmax())
     if (np.diff(touching[: top + 1]) < 0).any() or (np.diff(touching[top:]) > 0).any():
         return None
-    growth = np.where(edge > before, edge - before, 1.0)[:, None]
-    entering = (inside > 0.0) & (least <= 0.0)
-    part = np.where(entering, np.minimum(inside / growth, 1.0), 1.0)
-    born = np.concatenate(([0.0], excess[:-1]))[:, None]
-    first = np.where(entering, excess[:, None] + (born - excess[:, None]) * part, least)
-    relaxing = part * decay[:, None]
-    gone = -np.expm1(-relaxing)
-    span = first * gone + (most - first) * (1.0 - gone / np.maximum(relaxing, TINY))
+    born = np.concatenate(([[0.0]], edges[:-1])), np.concatenate(([[0.0]], excesses[:-1]))
+    part, first = viscous.entered(squares, least, born, edges, excesses)
+    gone, span = viscous.relaxing(first, most, part * decay[:, None])
     total = most.sum(axis=1)
     earlier = np.concatenate(([0], touching[:-1]))
     return _Grid(

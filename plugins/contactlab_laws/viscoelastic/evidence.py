@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from contactlab.contracts.motion import NormalMotion
+from contactlab.impact.cautions import named
+from contactlab.impact.hertz import slips_throughout
 from contactlab.impact.scene import Scene
 
 #: Largest change of e_T = -psi2/psi1 from half the loss in shear to twice as much, by restitution,
@@ -29,7 +29,8 @@ def cautions(scene: Scene, normal: NormalMotion, *, fitted: bool) -> tuple[str, 
     if not scene.rubs:
         return ()
     e = np.broadcast_to(-np.asarray(normal.final_rate) / scene.normal_speed, scene.shape)
-    grips = (np.abs(scene.psi1) < slips_throughout_from(scene.chi, e)) & (e < ELASTIC)
+    slips = slips_throughout(scene.psi1, scene.chi, e)
+    grips = np.logical_not(slips) & (e < ELASTIC)
     if not np.any(grips):
         return ()
     least = float(np.min(e, where=grips, initial=1.0))
@@ -38,18 +39,12 @@ def cautions(scene: Scene, normal: NormalMotion, *, fitted: bool) -> tuple[str, 
         f"one loss for pressure and shear: e_T = -psi2/psi1 is trusted to {size:.2g} at "
         f"e = {least:.2g}, by eight measured balls (model; shear_loss fits it)"
     )
-    return (*(() if fitted else (said,)), *_deep(scene, normal), *_metal(scene))
-
-
-def slips_throughout_from(chi: Any, e: Any) -> Any:
-    """Return the psi1 from which an impact slips from start to end."""
-    return np.maximum(1.0, 2.0 * chi * (1.0 + e) - e)
+    of_bodies = (*_deep(scene, normal), *_metal(scene)) if named(scene) else ()
+    return (*(() if fitted else (said,)), *of_bodies)
 
 
 def _deep(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
     """Return the caution of a contact whose depth moves the point of the force."""
-    if scene.sphere is None and scene.encounter is None:
-        return ()
     depth = float(np.nanmax(np.asarray(normal.maximum_approach / scene.pair.radius)))
     if not depth > DEEP:
         return ()
@@ -62,8 +57,6 @@ def _deep(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
 
 def _metal(scene: Scene) -> tuple[str, ...]:
     """Return the caution of a restitution of metals."""
-    if scene.sphere is None and scene.encounter is None:
-        return ()
     stiff = np.min(np.asarray(scene.pair.effective_modulus)) >= 0.5 * METAL
     if not stiff:
         return ()
