@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
 import attrs
 import numpy as np
 
-from contactlab.contracts import NormalContact, NormalLaw, without_tension
-from contactlab.contracts.restitution import one_of_two, restitution
-from contactlab.impact.hertz import hertz_scales, hertz_stiffness
-from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import NON_NEGATIVE, Real, quantity
+from contactlab.contracts import NormalContact, without_tension
+from contactlab.numeric.checks import Real
+from contactlab_laws.relaxing import Parts, Relaxing
 
-#: Default restitution, for laws with no relaxation time of their own.
-DEFAULT_RESTITUTION = 0.9
 #: Tolerance of the integration and of the calibration.
 TOLERANCE = 1e-12
 #: Greatest A v1/z_max in the calibration, times e: it gives less than any e >= 0.01.
@@ -60,16 +56,8 @@ def viscosity_number(coefficient: float) -> float:
     return float(number)
 
 
-class Parts(NamedTuple):
-    """Stiffness k in N/m^1.5, 1.5 A in s, and the pair's radius in m."""
-
-    stiffness: Real
-    time: Real
-    radius: Real
-
-
 @attrs.frozen(kw_only=True)
-class KuwabaraKono(NormalLaw):
+class KuwabaraKono(Relaxing):
     """Hertz contact of viscoelastic spheres, to first order in the viscosity.
 
     P = k z^0.5 (z + 1.5 A z'), k = (4/3) E* sqrt(R), P in N, positive in compression, z' positive
@@ -95,32 +83,10 @@ class KuwabaraKono(NormalLaw):
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius"})
 
-    restitution: float | None = restitution(default=None)
-    relaxation_time: float | None = quantity("s", rule=NON_NEGATIVE, default=None)
-
-    def __attrs_post_init__(self) -> None:
-        one_of_two(self, "restitution", "relaxation_time", default=DEFAULT_RESTITUTION)
-
-    @property
-    def viscous(self) -> bool:
-        """True if there is any loss."""
-        return self.restitution not in (None, 1.0) or bool(self.relaxation_time)
-
-    @property
-    def similar(self) -> bool:
-        """True for a restitution: then motions of all impacts are one but for their scale."""
-        return self.restitution is not None
-
-    def start(self, scene: Scene) -> Parts:
-        """Return stiffness and relaxation time of the pair; the law has no memory."""
-        time: Any = self.relaxation_time
-        if self.restitution is not None:
-            unit = hertz_scales(scene).approach / scene.normal_speed
-            time = viscosity_number(self.restitution) * unit
-        return Parts(hertz_stiffness(scene), 1.5 * time, scene.pair.radius)
+    number_of = staticmethod(viscosity_number)
 
     def respond(self, state: Parts, approach: Real, rate: Real) -> tuple[NormalContact, Parts]:
         """Return force and Hertz's radius (2)."""
         inside: Any = approach * (approach > 0.0)
-        force = state.stiffness * inside**0.5 * (inside + state.time * rate)
+        force = state.stiffness * inside**0.5 * (inside + 1.5 * state.time * rate)
         return without_tension(force, (state.radius * inside) ** 0.5, approach), state

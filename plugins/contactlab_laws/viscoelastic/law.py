@@ -2,31 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
 import attrs
 
-from contactlab.contracts import NormalContact, NormalLaw, Tabulated, without_tension
-from contactlab.contracts.restitution import one_of_two, restitution
-from contactlab.impact.hertz import hertz_scales, hertz_stiffness
-from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import NON_NEGATIVE, Real, quantity
+from contactlab.contracts import NormalContact, Tabulated, without_tension
+from contactlab.numeric.checks import Real
+from contactlab_laws.relaxing import Parts, Relaxing
 from contactlab_laws.viscoelastic.relaxation import number_of
-
-#: Default restitution, for laws with no relaxation time of their own.
-DEFAULT_RESTITUTION = 0.9
-
-
-class Parts(NamedTuple):
-    """Stiffness k in N/m^1.5, relaxation time A in s, and the pair's radius in m."""
-
-    stiffness: Real
-    time: Real
-    radius: Real
 
 
 @attrs.frozen(kw_only=True)
-class Viscoelastic(NormalLaw, Tabulated):
+class Viscoelastic(Relaxing, Tabulated):
     """A contact of Kelvin-Voigt bodies, whose loss in shear springs share.
 
     In loading P = k z^0.5 (z + 1.5 A z') over b² = R z, k = (4/3) E* sqrt(R), P in N, positive in
@@ -54,29 +41,7 @@ class Viscoelastic(NormalLaw, Tabulated):
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius", "kelvin_voigt"})
 
-    restitution: float | None = restitution(default=None)
-    relaxation_time: float | None = quantity("s", rule=NON_NEGATIVE, default=None)
-
-    def __attrs_post_init__(self) -> None:
-        one_of_two(self, "restitution", "relaxation_time", default=DEFAULT_RESTITUTION)
-
-    @property
-    def viscous(self) -> bool:
-        """True if there is any loss."""
-        return self.restitution not in (None, 1.0) or bool(self.relaxation_time)
-
-    @property
-    def similar(self) -> bool:
-        """True for a restitution: then motions of all impacts are one but for their scale."""
-        return self.restitution is not None
-
-    def start(self, scene: Scene) -> Parts:
-        """Return stiffness and relaxation time of the pair; the law has no memory."""
-        time: Any = self.relaxation_time
-        if self.restitution is not None:
-            unit = hertz_scales(scene).approach / scene.normal_speed
-            time = number_of(self.restitution) * unit
-        return Parts(hertz_stiffness(scene), time, scene.pair.radius)
+    number_of = staticmethod(number_of)
 
     def respond(self, state: Parts, approach: Real, rate: Real) -> tuple[NormalContact, Parts]:
         """Return force and radius; where the contact was left behind, it is Hertz's (2) anew."""

@@ -1,0 +1,59 @@
+"""What normal laws of a relaxation time share: options, and how a restitution becomes a time."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import Any, NamedTuple
+
+import attrs
+
+from contactlab.contracts import NormalLaw
+from contactlab.contracts.restitution import one_of_two, restitution
+from contactlab.impact.hertz import hertz_scales, hertz_stiffness
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import NON_NEGATIVE, Real, quantity
+
+#: Default restitution, for laws with no relaxation time of their own.
+DEFAULT_RESTITUTION = 0.9
+
+
+class Parts(NamedTuple):
+    """Stiffness k in N/m^1.5, relaxation time A in s, and the pair's radius in m."""
+
+    stiffness: Real
+    time: Real
+    radius: Real
+
+
+@attrs.frozen(kw_only=True)
+class Relaxing(NormalLaw):
+    """Base of laws of a relaxation time A, which a restitution gives at each speed."""
+
+    restitution: float | None = restitution(default=None)
+    relaxation_time: float | None = quantity("s", rule=NON_NEGATIVE, default=None)
+
+    def __attrs_post_init__(self) -> None:
+        one_of_two(self, "restitution", "relaxation_time", default=DEFAULT_RESTITUTION)
+
+    @staticmethod
+    @abstractmethod
+    def number_of(restitution: Any, /) -> Any:
+        """Return A v1/z_max at a restitution, z_max that of Hertz's impact."""
+
+    @property
+    def viscous(self) -> bool:
+        """True if there is any loss."""
+        return self.restitution not in (None, 1.0) or bool(self.relaxation_time)
+
+    @property
+    def similar(self) -> bool:
+        """True for a restitution: then motions of all impacts are one but for their scale."""
+        return self.restitution is not None
+
+    def start(self, scene: Scene) -> Parts:
+        """Return stiffness and relaxation time of the pair; the law has no memory."""
+        time: Any = self.relaxation_time
+        if self.restitution is not None:
+            unit = hertz_scales(scene).approach / scene.normal_speed
+            time = self.number_of(self.restitution) * unit
+        return Parts(hertz_stiffness(scene), time, scene.pair.radius)
