@@ -16,7 +16,7 @@ from contactlab.impact.cautions import unit_slips
 from contactlab.impact.coupling import coupling
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
-from contactlab.outcome.motion import Motion
+from contactlab.outcome.motion import ENDS, Motion
 from contactlab.outcome.plan import Clause, Plan, PlanColumns, Words
 from contactlab.outcome.result import ImpactResult
 
@@ -56,12 +56,7 @@ def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
     lossy = simulation is not None and simulation.normal.viscous
     laws: Any = simulation if lossy else Simulation()
     course = laws.normal_motion(scene)
-    numbers = {
-        "duration": course.duration,
-        "maximum_radius": course.maximum_radius,
-        "maximum_approach": course.maximum_approach,
-        "maximum_force": course.maximum_force,
-    }
+    ends = {name: getattr(course, source) for name, source in ENDS.items()}
     everywhere = np.ones(scene.shape, dtype=bool)
 
     def clauses() -> Words:
@@ -71,33 +66,31 @@ def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
         return (), (), tuple(Clause(text, everywhere) for text in said)
 
     restitution = laws.normal.restitution if lossy else 1.0
-    return _result(scene, restitution, course.final_rate, numbers, clauses)
+    return _result(scene, restitution, ends, clauses)
 
 
 def rebounds(scene: Scene, restitution: Real) -> ImpactResult:
     """Return impacts with a restitution each: velocities; the rest is NaN, and nothing is told."""
-    unknown = ("duration", "maximum_radius", "maximum_approach", "maximum_force")
     rate: Any = -restitution * np.asarray(scene.normal_speed)
-    return _result(scene, restitution, rate, dict.fromkeys(unknown, np.nan), lambda: ((), (), ()))
+    ends = dict.fromkeys(ENDS, np.nan) | {"normal_velocity": rate}
+    return _result(scene, restitution, ends, lambda: ((), (), ()))
 
 
 def _result(
     scene: Scene,
     restitution: Real,
-    normal_velocity: Real,
-    numbers: Mapping[str, Real],
+    ends: Mapping[str, Real],
     words: Callable[[], Words],
 ) -> ImpactResult:
     """Return the impacts of a batch with psi2 by the table."""
     shape, e = scene.shape, restitution
     each = e if isinstance(e, float) else np.broadcast_to(e, shape)
     psi2: Any = rebound(scene.psi1, scene.chi, restitution=each)
-    course: Any = {name: np.broadcast_to(number, shape) for name, number in numbers.items()}
+    course: Any = {name: np.broadcast_to(number, shape) for name, number in ends.items()}
     motion = Motion(
         slip_velocity_change=(psi2 - scene.psi1) / np.asarray(scene.psi_scale),
         friction_work=np.full(shape, np.nan),
         status=np.full(shape, Status.SUCCESS, dtype=object),
-        normal_velocity=np.broadcast_to(normal_velocity, shape),
         **course,
     )
     plan = Plan(PlanColumns.nothing(shape), words)
