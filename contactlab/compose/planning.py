@@ -23,7 +23,14 @@ from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import TangentialLaw
-from contactlab.impact.cautions import rigid_bodies, three_numbers, unit_slips, unlikely
+from contactlab.impact.cautions import (
+    of_ellipse,
+    rigid_bodies,
+    three_numbers,
+    unit_slips,
+    unlikely,
+)
+from contactlab.impact.hertz import elongation_of
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, some, spread, taken
 from contactlab.outcome.energy import ledger
@@ -146,6 +153,10 @@ def _words(
         how = "in closed form"
     law = f"{type(used.normal).__name__}, {how}{_defaults(used.normal)}"
     computed = [Clause(f"normal motion: {law}", masks.known)]
+    elongation = elongation_of(part.pair)
+    if some(elongation > 1.0):
+        text = "contact: an ellipse of semi-axes {:.3g} : 1, by the circle that is as stiff"
+        computed.append(Clause(text, masks.known, (spread(elongation, scene.shape),)))
     if used is not laws:
         computed.append(Clause(_in_place(laws, used), masks.known))
     if some(masks.marched):
@@ -238,6 +249,9 @@ def _cautions(
         marched = part if every(masks.marched) else part.take(masks.marched)
         ends = _ends(laws.normal, central, None if coupled else motion, masks.marched)
         asked += _asked(laws.integrator, laws.integrator.remarks, ends, laws.tangential, marched)
+    for law in (laws.normal, laws.tangential):
+        if not law.elliptic:
+            said += of_ellipse(whole, type(law).__name__)
     own = [text for text in dict.fromkeys(asked) if text not in said]
     said += own
     if coupled:

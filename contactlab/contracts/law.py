@@ -46,7 +46,10 @@ class Law(ABC):
        its nature to the reasons. It is a class variable, or a property if it depends on
        parameters.
     7. Arrays passed to a law are read-only; writing to them raises an error.
-    8. ``refuses(other)`` says why the law does not run beside another law; ``accept(scene)``
+    8. ``elliptic`` says that the law holds on an elliptic contact, of which ``Pair`` has the radius
+       of the circle as stiff, and G* along the slip. Of other laws the plan says there that they
+       were made for a circle.
+    9. ``refuses(other)`` says why the law does not run beside another law; ``accept(scene)``
        raises a ``ValueError`` for a scene that the law cannot run.
     """
 
@@ -56,6 +59,7 @@ class Law(ABC):
     offers: ClassVar[frozenset[str]] = frozenset()
     resolution: ClassVar[str | None] = None
     plain_options: ClassVar[bool] = True
+    elliptic: ClassVar[bool] = False
 
     @property
     def expected_failures(self) -> Mapping[str, str]:

@@ -6,12 +6,10 @@ import math
 from abc import abstractmethod
 from typing import Any, ClassVar
 
-import numpy as np
-
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import ClosedFormMotion, NormalMotion
-from contactlab.impact.cautions import large_contact, named, yielding
+from contactlab.impact.cautions import large_contact, named, size_of_contact, yielding
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 
@@ -97,8 +95,7 @@ class NormalLaw(Law):
         if not named(scene):
             return ()
         cautions = () if self.plastic else yielding(scene)
-        largest = float(np.max(motion.maximum_radius / scene.pair.radius))
-        return (*cautions, *large_contact(largest))
+        return (*cautions, *large_contact(size_of_contact(scene, motion.maximum_radius)))
 
 
 class ClosedFormNormalLaw(NormalLaw):

@@ -121,6 +121,15 @@ class Pair:
         M_t in kg: tangential force over the deceleration of slip.
     dundurs_beta : float or array
         Dundurs' beta, which couples pressure and shear; 0 for bodies of one material.
+    cross_stiffness_ratio : float or array
+        G* along t2 over that along t1, which is ``effective_shear_modulus``; 1 for a circle.
+    axis_ratio : float or array
+        Semi-axis of the elliptic contact along t2 over that along t1; 1 for a circle.
+
+    Notes
+    -----
+    Of an elliptic contact ``radius`` is that of the circular contact which is as stiff (theory
+    §16): a contact radius is that of this circle, and force and approach are those of the ellipse.
     """
 
     radius: Real = quantity("m", rule=POSITIVE, empty=True)
@@ -129,6 +138,8 @@ class Pair:
     normal_mass: Real = quantity("kg", rule=POSITIVE, empty=True)
     tangential_mass: Real = quantity("kg", rule=POSITIVE, empty=True)
     dundurs_beta: Real = quantity("1", default=0.0, empty=True)
+    cross_stiffness_ratio: Real = quantity("1", rule=POSITIVE, default=1.0, empty=True)
+    axis_ratio: Real = quantity("1", rule=POSITIVE, default=1.0, empty=True)
 
     @property
     def stiffness_ratio(self) -> Real:

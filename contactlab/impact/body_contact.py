@@ -1,4 +1,4 @@
-"""The contact of two bodies of any shape: arms, inverse mass and the scene (theory §14)."""
+"""The contact of two bodies of any shape: arms, inverse mass, gap and scene (theory §14, §16)."""
 
 from __future__ import annotations
 
@@ -25,6 +25,11 @@ from contactlab.numeric.vectors import cross, solved
 
 Array = NDArray[np.float64]
 
+#: Difference of principal curvatures over their sum that is a circle's rounding.
+ROUND = 1e-9
+#: Ratio of the curvatures of a gap up to which bodies touch along a line.
+LINE = 1e-12
+
 
 class Contact(NamedTuple):
     """Directions and speeds at the contact; vectors are tuples of three components.
@@ -44,6 +49,26 @@ class Contact(NamedTuple):
     slip: Any
 
 
+class Gap(NamedTuple):
+    """Curvatures of the gap between two bodies, h = (least x² + most y²)/2.
+
+    Attributes
+    ----------
+    least, most : array
+        Principal curvatures in 1/m; the mean where the contact is a circle.
+    major : array of complex
+        Direction of the least curvature, which is that of the major axis, along t1 + i t2.
+    elliptic, minor : array of bool
+        True where the contact is no circle, and where t1 is its minor axis.
+    """
+
+    least: Any
+    most: Any
+    major: Any
+    elliptic: Any
+    minor: Any = False
+
+
 class Frame(NamedTuple):
     """The frame of a contact: n, t1 and t2 as rows, W and the velocity in it.
 
@@ -52,11 +77,13 @@ class Frame(NamedTuple):
     axes, inverse_mass : array, shape (..., 3, 3)
     velocity : array, shape (..., 3)
         Velocity of the first body over the target at the contact, in m/s.
+    gap : Gap
     """
 
     axes: Array
     inverse_mass: Array
     velocity: Array
+    gap: Gap
 
 
 def arms(encounter: Any, normal: Array) -> tuple[Array, Array]:
@@ -134,48 +161,133 @@ def meeting_of_bodies(encounter: Any, normal: tuple[Any, Any, Any]) -> Contact:
 
 
 def frame(encounter: Any) -> Frame:
-    """Return the frame with t1 along W_nt, or along the slip without coupling."""
+    """Return the frame with t1 along W_nt, or along the slip without coupling.
+
+    Of an ellipse t1 is the axis that holds both, or else the major one.
+    """
     n = np.broadcast_to(encounter.normal, (*encounter.shape, 3))
     n = n / np.sqrt(np.einsum("...i,...i->...", n, n))[..., None]
     W = np.broadcast_to(inverse_mass_of(encounter, n), (*encounter.shape, 3, 3))
     velocity = np.broadcast_to(relative_velocity(encounter, n), n.shape)
     coupling = np.einsum("...ij,...j->...i", W, n)
     pressed = np.einsum("...i,...i->...", coupling, n)
+    coupling = coupling - pressed[..., None] * n
     slip = velocity - np.einsum("...i,...i->...", velocity, n)[..., None] * n
     # the first of coupling, slip and any axis that is not lost in rounding, as ``ways`` judges it
     mean = 0.5 * (np.trace(W, axis1=-2, axis2=-1) - pressed)
-    size = np.sqrt(pressed * mean)
     least = np.argmin(np.abs(n), axis=-1)
     axis = np.eye(3)[least]
-    candidates = (
-        (coupling - pressed[..., None] * n, inverse_mass.ROUNDING * size),
-        (slip, inverse_mass.ROUNDING * np.sqrt(np.einsum("...i,...i->...", velocity, velocity))),
-        (axis - np.einsum("...i,...i->...", axis, n)[..., None] * n, 0.0),
+    rounding = (
+        inverse_mass.ROUNDING * np.sqrt(pressed * mean),
+        inverse_mass.ROUNDING * np.sqrt(np.einsum("...i,...i->...", velocity, velocity)),
     )
+    any_axis = axis - np.einsum("...i,...i->...", axis, n)[..., None] * n
+    candidates = ((coupling, rounding[0]), (slip, rounding[1]), (any_axis, 0.0))
     t1 = np.zeros_like(n)
-    for vector, rounding in reversed(candidates):
+    for vector, least in reversed(candidates):
         size = np.sqrt(np.einsum("...i,...i->...", vector, vector))
         with np.errstate(all="ignore"):
-            t1 = np.where((size > rounding)[..., None], vector / size[..., None], t1)
-    axes = np.stack((n, t1, cross(n, t1)), axis=-2)
+            t1 = np.where((size > least)[..., None], vector / size[..., None], t1)
+    t2 = cross(n, t1)
+    gap = gap_of(encounter, t1, t2)
+    if np.any(gap.elliptic):
+        holds = candidates[:2]
+        t1, gap = _along_an_axis(gap, t1, t2, holds)
+        t2 = cross(n, t1)
+    axes = np.stack((n, t1, t2), axis=-2)
     return Frame(
         axes,
         np.einsum("...ia,...ab,...jb->...ij", axes, W, axes),
         np.einsum("...ia,...a->...i", axes, velocity),
+        gap,
     )
+
+
+def gap_of(encounter: Any, t1: Array, t2: Array) -> Gap:
+    """Return the curvatures of the gap between the bodies, the sum of both (theory §16).
+
+    Raises
+    ------
+    ValueError
+        If the bodies do not curve apart in every direction: they touch along a line or a face.
+    """
+    bodies = encounter.body, encounter.target
+    (one, other, axis), (two, another, across) = (_curvatures(body, t1, t2) for body in bodies)
+    mean = 0.5 * ((one + other) + (two + another))
+    elliptic: Any = False
+    if any(getattr(body, "cross_radius", None) is not None for body in bodies):
+        uneven: Any = 0.5 * ((one - other) * axis * axis + (two - another) * across * across)
+        size = np.abs(uneven)
+        elliptic = size > ROUND * np.abs(mean)
+    if not np.any(elliptic):
+        if not np.all(mean > 0.0):
+            _refuse_gap(encounter, "the bodies must curve apart at the contact", "two planes")
+        return Gap(mean, mean, np.asarray(1.0 + 0.0j), elliptic)
+    # the determinant of the sum, of which no term is negative between convex bodies
+    turned = axis * np.conj(across)
+    sine, cosine = np.square(turned.imag), np.square(turned.real)
+    product = one * other + two * another
+    product = product + (one * two + other * another) * sine
+    product = product + (one * another + other * two) * cosine
+    most = np.where(elliptic, mean + size, mean)
+    with np.errstate(all="ignore"):
+        least = np.where(elliptic, product / most, mean)
+    if not np.all((most > 0.0) & (least > LINE * most)):
+        _refuse_gap(encounter, "the bodies must curve apart in every direction", "a line")
+    with np.errstate(all="ignore"):
+        major = np.where(elliptic, np.sqrt(-uneven / size), 1.0)
+    return Gap(least, most, major, elliptic)
+
+
+def _curvatures(body: Any, t1: Array, t2: Array) -> tuple[Any, Any, Any]:
+    """Return both principal curvatures of a body in 1/m, and the direction of the first."""
+    if isinstance(body, RigidBody):
+        return body.curvatures(t1, t2)
+    curvature: Any = 0.0 if isinstance(body, HalfSpace) else 1.0 / np.asarray(body.radius)
+    return np.asarray(curvature), np.asarray(curvature), np.asarray(1.0 + 0.0j)
+
+
+def _refuse_gap(encounter: Any, rule: str, what: str) -> None:
+    """Refuse bodies that touch along a line or a face."""
+    given = tuple(
+        getattr(body, "curvature_radius", getattr(body, "radius", math.inf))
+        for body in (encounter.body, encounter.target)
+    )
+    remedy = f"a contact of {what} is no Hertz contact; round the face or edge: crown_radius="
+    raise refuse("curvature_radius", given, rule, remedy)
+
+
+def _along_an_axis(gap: Gap, t1: Array, t2: Array, holds: Any) -> tuple[Array, Gap]:
+    """Return t1 along the axis of the ellipse that holds coupling and slip, and the gap there."""
+    parts = []
+    for vector, rounding in holds:
+        seen = np.einsum("...i,...i->...", vector, t1) + 1j * np.einsum(
+            "...i,...i->...", vector, t2
+        )
+        parts.append((seen * np.conj(gap.major), rounding))
+    along = np.any([abs(part.real) > rounding for part, rounding in parts], axis=0)
+    aside = np.any([abs(part.imag) > rounding for part, rounding in parts], axis=0)
+    minor = gap.elliptic & aside & ~along
+    first = np.where(minor, 1j * gap.major, gap.major)
+    # t1 points along the coupling, or along the slip
+    sense = [(part * np.where(minor, -1j, 1.0)).real for part, _ in parts]
+    pressed = np.abs(sense[0]) > parts[0][1]
+    back = np.where(pressed, sense[0], sense[1]) < 0.0
+    first = np.where(gap.elliptic, np.where(back, -first, first), 1.0)[..., None]
+    return first.real * t1 + first.imag * t2, gap._replace(minor=minor)
 
 
 def scene_of_bodies(encounter: Any) -> Scene:
     """Return the scene in numbers; it keeps the inverse mass if any impact needs it."""
-    axes, W, velocity = frame(encounter)
+    axes, W, velocity, gap = frame(encounter)
+    pair = pair_of_bodies(encounter, W, gap)
     speed, slip = velocity[..., 0], velocity[..., 1:]
-    ways = np.asarray(inverse_mass.ways(W, speed, slip))
+    ways = np.asarray(inverse_mass.ways(W, speed, slip, pair.cross_stiffness_ratio))
     across = np.abs(slip[..., 1]) > inverse_mass.ROUNDING * (np.abs(speed) + np.abs(slip[..., 0]))
     planar = not (across | (ways == inverse_mass.SPATIAL)).any()
     number: Any = np.asarray if encounter.shape else float
     along = number(slip[..., 0]) if planar else slip
     entries: dict[str, Any] = {"inverse_mass": W, "planar": planar}
-    pair = pair_of_bodies(encounter, W)
     if (ways == inverse_mass.CENTRAL).all():
         mass = inverse_mass.mass_along(W, inverse_mass.along(slip))
         pair = attrs.evolve(pair, tangential_mass=number(mass))
@@ -185,30 +297,40 @@ def scene_of_bodies(encounter: Any) -> Scene:
     return Scene(None, None, friction, number(speed), along, pair=pair, **where, **entries)
 
 
-def pair_of_bodies(encounter: Any, inverse: Array) -> Pair:
+def pair_of_bodies(encounter: Any, inverse: Array, gap: Gap) -> Pair:
     """Return the numbers of two bodies that laws need; ``inverse`` is W in the contact's frame."""
     W = inverse
     first, second = encounter.body.material, encounter.target.material
     compliance = normal_compliance(first) + normal_compliance(second)
-    curvature: Any = 0.0
-    for body in (encounter.body, encounter.target):
-        if not isinstance(body, HalfSpace):
-            radius = body.radius if isinstance(body, Sphere) else body.curvature_radius
-            curvature = curvature + 1.0 / np.asarray(radius)
-    if not np.all(curvature > 0.0):
-        given = tuple(
-            getattr(b, "curvature_radius", math.inf) for b in (encounter.body, encounter.target)
-        )
-        rule = "one of the bodies must be curved at the contact"
-        raise refuse("curvature_radius", given, rule, "a contact of two planes is no Hertz contact")
     number: Any = (lambda v: v) if encounter.shape else float
-    return Pair(
-        radius=number(1.0 / curvature),
+    shear = 1.0 / (shear_compliance(first) + shear_compliance(second))
+    pair = Pair(
+        radius=number(1.0 / gap.most),
         effective_modulus=1.0 / compliance,
-        effective_shear_modulus=1.0 / (shear_compliance(first) + shear_compliance(second)),
+        effective_shear_modulus=shear,
         normal_mass=number(1.0 / W[..., 0, 0]),
         tangential_mass=number(2.0 / (W[..., 1, 1] + W[..., 2, 2])),
         dundurs_beta=coupling_compliance(first, second) / compliance,
+    )
+    if not np.any(gap.elliptic):
+        return pair
+    from contactlab.impact.elliptic import ellipse  # scipy, which few scenes need
+
+    shape = ellipse(np.where(gap.elliptic, gap.least / gap.most, 1.0))
+    weights = np.where(gap.minor, (shape.weight_minor, shape.weight_major), shape[4:])
+    along, across = (
+        (1.0 - first.poisson_ratio * weight) / (2.0 * first.shear_modulus)
+        + (1.0 - second.poisson_ratio * weight) / (2.0 * second.shear_modulus)
+        for weight in weights
+    )
+    ratio = shape.axis_ratio
+    round_, one = ~gap.elliptic, np.ones(np.shape(along))
+    return attrs.evolve(
+        pair,
+        radius=number(np.where(round_, pair.radius, 2.0 * shape.radius / (gap.least + gap.most))),
+        effective_shear_modulus=number(np.where(round_, shear, 1.0 / along)),
+        cross_stiffness_ratio=number(np.where(round_, one, along / across)),
+        axis_ratio=number(np.where(round_, one, np.where(gap.minor, 1.0 / ratio, ratio))),
     )
 
 

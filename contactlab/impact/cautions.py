@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from contactlab.impact.bodies import Sphere
-from contactlab.impact.body_contact import arms
+from contactlab.impact.body_contact import arms, gap_of
 from contactlab.impact.encounter import Encounter
-from contactlab.impact.hertz import hertz_scales, peak_pressure
+from contactlab.impact.hertz import elongation_of, hertz_scales, peak_pressure, semi_axes
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import for_share
@@ -43,7 +43,7 @@ STEP_DEG, NEAR_DEG = 5.0, 0.003
 
 
 def large_contact(ratio: float) -> tuple[str, ...]:
-    """Return the caution of a contact radius over R that is not small."""
+    """Return the caution of a contact that is not small; ``ratio`` is its ``size_of_contact``."""
     if not ratio > DOUBTFUL_SIZE_RATIO:
         return ()
     return (
@@ -52,18 +52,48 @@ def large_contact(ratio: float) -> tuple[str, ...]:
     )
 
 
+def size_of_contact(scene: Scene, radius: Any) -> float:
+    """Return the largest contact radius over R, for contact radii in m.
+
+    Between bodies that are no spheres: of the minor semi-axis over the least radius of curvature,
+    and of the major one over the distances of the centres of mass.
+    """
+    largest: Any = radius / scene.pair.radius
+    encounter = scene.encounter
+    if encounter is None or encounter.of_spheres:
+        return float(np.max(largest))
+    one, other = semi_axes(scene.pair)
+    minor, major = radius * np.minimum(one, other), radius * np.maximum(one, other)
+    normal = encounter.normal / np.linalg.norm(encounter.normal, axis=-1)[..., None]
+    if np.all(np.equal(one, other)):
+        major = 0.0 * major
+    else:
+        axes: Any = scene.frame
+        gap = gap_of(encounter, axes[..., 1, :], axes[..., 2, :])
+        largest = minor * gap.most
+    for body, arm in zip(named(scene).values(), arms(encounter, normal), strict=True):
+        if isinstance(body, RigidBody):
+            least = np.minimum(np.abs(body.curvature_radius), np.abs(body.crossing))
+            length = np.linalg.norm(arm, axis=-1)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                over = np.where(major > 0.0, major / length, 0.0)
+            largest = np.maximum(np.maximum(largest, minor / least), over)
+    return float(np.max(largest))
+
+
 def path_cautions(scene: Scene, deepest: float, *, plastic: bool) -> tuple[str, ...]:
     """Return the cautions of bodies that are pressed together by ``deepest`` m."""
     if not (named(scene) and deepest > 0.0):
         return ()
     ratio: Any = np.sqrt(deepest / scene.pair.radius)
-    pressure = (2.0 / math.pi) * scene.pair.effective_modulus * ratio
+    one, other = semi_axes(scene.pair)
+    pressure = (2.0 / math.pi) * scene.pair.effective_modulus * ratio / (one * other)
     cautions = () if plastic else yielding(scene, pressure)
-    return (*cautions, *large_contact(float(np.max(ratio))))
+    return (*cautions, *large_contact(size_of_contact(scene, ratio * scene.pair.radius)))
 
 
 def rigid_bodies(scene: Scene) -> tuple[str, ...]:
-    """Return the cautions of bodies that are no spheres: elliptic contacts, and ringing."""
+    """Return the cautions of bodies that are no spheres: they ring."""
     bodies = [body for body in named(scene).values() if isinstance(body, RigidBody)]
     if not bodies:
         return ()
@@ -95,6 +125,17 @@ def contact_vectors(encounter: Encounter) -> tuple[str, ...]:
                 "inertia in kg m²?"
             )
     return tuple(said)
+
+
+def of_ellipse(scene: Scene, name: str) -> tuple[str, ...]:
+    """Return the caution of a law, by its name, that takes an elliptic contact for a circle."""
+    ratio = float(np.max(elongation_of(scene.pair)))
+    if ratio == 1.0:
+        return ()
+    return (
+        f"the contact is an ellipse of semi-axes {ratio:.3g} : 1, and {name} was made for a "
+        "circle: it is given that of the same stiffness (model)",
+    )
 
 
 def yielding(scene: Scene, peak: Real | None = None) -> tuple[str, ...]:

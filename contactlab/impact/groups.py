@@ -29,6 +29,7 @@ def entries(
     poisson_ratio: Any,
     coupling_number: Any,
     friction_coefficient: Any,
+    cross_stiffness_ratio: Any = 1.0,
 ) -> dict[str, Any]:
     """Return the entries of ``Scene`` for the groups of ``Scene.nondimensional``."""
     incidence = real(
@@ -57,6 +58,8 @@ def entries(
             "coupling_number", coupling_number, remedy="Lambda = kappa beta/mu; 0 for like bodies"
         )
     )
+    remedy = "G* along t2 over that along t1; 1 for a circular contact"
+    cross = real("cross_stiffness_ratio", cross_stiffness_ratio, rule=POSITIVE, remedy=remedy)
     squared = _rho(inertia, drag, eta, rho, given, friction, in_space)
     mu, kappa = _friction_and_stiffness(squared, given, friction)
     pair = {
@@ -65,6 +68,7 @@ def entries(
         "effective_shear_modulus": kappa * MODULUS,
         "normal_mass": 1.0,
         "dundurs_beta": 0.0 if coupling_number is None else coupled * mu / kappa,
+        "cross_stiffness_ratio": cross,
     }
     scene = {"friction_coefficient": mu, "normal_speed": 1.0}
     scene |= {"unit_friction": friction is None and (squared is None or given is None)}
@@ -72,7 +76,7 @@ def entries(
     pair["tangential_mass"] = 0.5 * kappa / mean
     if squared is None or not (in_space or np.any(drag)):
         return scene | {"tangential_velocity": incidence * mu / kappa, "pair": Pair(**pair)}
-    slip, W = _scaled(mu, kappa, incidence, inertia, drag, in_space)
+    slip, W = _scaled(mu, kappa, cross, incidence, inertia, drag, in_space)
     return scene | {
         "tangential_velocity": slip,
         "pair": Pair(**pair),
@@ -133,7 +137,7 @@ def _friction_and_stiffness(squared: Any, kappa: Any, mu: Any) -> tuple[Any, Any
 
 
 def _scaled(
-    mu: Any, kappa: Any, psi1: Any, chi: Any, lam: Any, in_space: bool
+    mu: Any, kappa: Any, cross: Any, psi1: Any, chi: Any, lam: Any, in_space: bool
 ) -> tuple[Any, Array]:
     """Return slip velocity and inverse mass in units with v1 = R = C = 1/W_nn = 1."""
     shapes = {"psi1": np.shape(psi1), "chi": np.shape(chi), "lam": np.shape(lam)}
@@ -144,6 +148,7 @@ def _scaled(
             raise refuse(f"{name}.shape", whole, rule, "in the plane all are numbers")
         shapes[name] = whole[: -len(ends)]
     shapes |= {"rho": np.broadcast_shapes(np.shape(mu), np.shape(kappa))}
+    shapes |= {"cross_stiffness_ratio": np.shape(cross)}
     shape = batch.common_shape(
         shapes, what="Scene.nondimensional: the shapes", remedy="give arrays of equal length"
     )
@@ -152,8 +157,15 @@ def _scaled(
     W[..., 0, 0] = 1.0
     if in_space:
         coupling = np.asarray(lam) / mu[..., None]
-        W[..., 1:, 1:] = 2.0 * np.asarray(chi) / kappa[..., None, None]
-        slip = np.asarray(psi1) * (mu / kappa)[..., None]
+        sides = np.stack(np.broadcast_arrays(kappa, kappa * cross), axis=-1)
+        W[..., 1:, 1:] = 2.0 * np.asarray(chi) / sides[..., None]
+        skew = np.abs(W[..., 1, 2] - W[..., 2, 1])
+        if np.any(skew > ALIKE * np.sqrt(np.abs(W[..., 1, 1] * W[..., 2, 2]))):
+            rule = "W must be symmetric: each row of chi over the stiffness of its direction"
+            raise refuse(
+                "chi", np.asarray(chi).tolist(), rule, "chi_21 = cross_stiffness_ratio chi_12"
+            )
+        slip = np.asarray(psi1) * mu[..., None] / sides
         W[..., 0, 1:] = W[..., 1:, 0] = coupling
         return np.broadcast_to(slip, (*shape, 2)), W
     W[..., 1, 1] = W[..., 2, 2] = 2.0 * chi / kappa

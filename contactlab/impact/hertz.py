@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Mask, Real
 
@@ -49,9 +50,27 @@ def hertz_scales(scene: Scene) -> HertzScales:
 
 
 def peak_pressure(scene: Scene) -> Real:
-    """Return the greatest pressure in Pa of an elastic Hertz impact, p_0 = 3 P_max/(2 pi a²)."""
-    scales = hertz_scales(scene)
-    return 1.5 * (scales.force / scales.radius) / (math.pi * scales.radius)
+    """Return the greatest pressure in Pa of an elastic Hertz impact, p_0 = 3 P_max/(2 pi a b)."""
+    scales, (one, other) = hertz_scales(scene), semi_axes(scene.pair)
+    return 1.5 * (scales.force / scales.radius) / (math.pi * scales.radius) / (one * other)
+
+
+def semi_axes(pair: Pair) -> tuple[Real, Real]:
+    """Return the semi-axes along t1 and t2 over the radius of the circle as stiff (theory §16)."""
+    ratio = pair.axis_ratio
+    if np.all(np.equal(ratio, 1.0)):
+        return 1.0, 1.0
+    from contactlab.impact.elliptic import of_axes  # scipy, which few scenes need
+
+    shape, along = of_axes(np.minimum(ratio, 1.0 / np.asarray(ratio))), np.less_equal(ratio, 1.0)
+    axes = np.where(along, shape.major, shape.minor), np.where(along, shape.minor, shape.major)
+    return axes if np.ndim(ratio) else (float(axes[0]), float(axes[1]))
+
+
+def elongation_of(pair: Pair) -> Any:
+    """Return the major over the minor semi-axis of the contact, at least 1, as an array."""
+    ratio = np.asarray(pair.axis_ratio)
+    return np.maximum(ratio, 1.0 / ratio)
 
 
 def linear_stiffness(scene: Scene) -> Real:

@@ -32,7 +32,7 @@ def check(inverse: Array) -> None:
         raise refuse("inverse_mass", inverse.tolist(), rule)
 
 
-def ways(inverse: Array, speed: Any, slip: Array) -> Any:
+def ways(inverse: Array, speed: Any, slip: Array, cross_stiffness_ratio: Any = 1.0) -> Any:
     """Return the way of each impact: ``CENTRAL``, ``PLANAR`` or ``SPATIAL``.
 
     Parameters
@@ -43,9 +43,12 @@ def ways(inverse: Array, speed: Any, slip: Array) -> Any:
         Speed of approach in m/s.
     slip : array, shape (..., 2)
         Slip velocity along t1 and t2, in m/s.
+    cross_stiffness_ratio : float or array
+        That of the pair: where it is not 1, slip keeps its line along t1 only.
     """
+    uneven = np.not_equal(cross_stiffness_ratio, 1.0)
     if slip.ndim == 1:
-        return _way_of_one(inverse.tolist(), float(speed), slip.tolist())
+        return _way_of_one(inverse.tolist(), float(speed), slip.tolist(), bool(uneven))
     W = inverse
     size = np.sqrt(W[..., 0, 0] * 0.5 * (W[..., 1, 1] + W[..., 2, 2]))
     pressed = np.hypot(W[..., 0, 1], W[..., 0, 2]) > ROUNDING * size
@@ -53,21 +56,24 @@ def ways(inverse: Array, speed: Any, slip: Array) -> Any:
     turned = np.abs(across[..., 0] * slip[..., 1] - across[..., 1] * slip[..., 0])
     turns = turned > ROUNDING * W[..., 1, 1] * np.einsum("...i,...i->...", slip, slip)
     leaves = np.abs(slip[..., 1]) > ROUNDING * (np.abs(speed) + np.abs(slip[..., 0]))
+    turns |= uneven & leaves
     leaves |= np.abs(W[..., 0, 2]) > ROUNDING * size
     leaves |= np.abs(W[..., 1, 2]) > ROUNDING * W[..., 1, 1]
     coupled = np.where(leaves, SPATIAL, PLANAR)
     return np.where(pressed | turns, coupled, CENTRAL)
 
 
-def _way_of_one(inverse: list[list[float]], speed: float, slip: list[float]) -> int:
+def _way_of_one(inverse: list[list[float]], speed: float, slip: list[float], uneven: bool) -> int:
     """Return the way of one impact: ``ways`` in plain numbers, many times as fast."""
     W, (x, y) = inverse, slip
     size = math.sqrt(W[0][0] * 0.5 * (W[1][1] + W[2][2]))
     pressed = math.hypot(W[0][1], W[0][2]) > ROUNDING * size
     turned = abs((W[1][1] * x + W[1][2] * y) * y - (W[2][1] * x + W[2][2] * y) * x)
-    if not (pressed or turned > ROUNDING * W[1][1] * (x * x + y * y)):
+    leaves = abs(y) > ROUNDING * (abs(speed) + abs(x))
+    turns = turned > ROUNDING * W[1][1] * (x * x + y * y) or (uneven and leaves)
+    if not (pressed or turns):
         return CENTRAL
-    leaves = abs(y) > ROUNDING * (abs(speed) + abs(x)) or abs(W[0][2]) > ROUNDING * size
+    leaves = leaves or abs(W[0][2]) > ROUNDING * size
     return SPATIAL if leaves or abs(W[1][2]) > ROUNDING * W[1][1] else PLANAR
 
 

@@ -80,12 +80,15 @@ class Motions:
 
     @property
     def chi(self) -> Any:
-        """Inertia ratio, eq. (38); in space (kappa/2) W_tt/W_nn, shape (..., 2, 2)."""
+        """Inertia ratio, eq. (38); in space (kappa/2) W_tt/W_nn, shape (..., 2, 2).
+
+        On an ellipse each row has kappa of its direction, and the tensor is not symmetric.
+        """
         if self.inverse_mass is None:
             return self.pair.inertia_ratio
         W, half = self.inverse_mass, 0.5 * np.asarray(self.pair.stiffness_ratio)
         if not self.planar:
-            return half[..., None, None] * W[..., 1:, 1:] / W[..., :1, :1]
+            return (half[..., None] * self._sides)[..., None] * W[..., 1:, 1:] / W[..., :1, :1]
         chi = half * W[..., 1, 1] / W[..., 0, 0]
         return chi if self.shape else float(chi)
 
@@ -98,11 +101,19 @@ class Motions:
     def eta(self) -> Any:
         """Eta = kappa W_nt/(mu W_nn), what pressure adds to the slip; infinite without friction."""
         with np.errstate(all="ignore"):
-            return self.coupling(np.divide(self.pair.stiffness_ratio, self.friction_coefficient))
+            eta = self.coupling(np.divide(self.pair.stiffness_ratio, self.friction_coefficient))
+        return eta if self.planar else eta * self._sides
+
+    @property
+    def _sides(self) -> Array:
+        """Stiffness along t1 and t2 over that along t1, shape (..., 2); 1 on a circle."""
+        sides = np.ones((*self.shape, 2))
+        sides[..., 1] = self.pair.cross_stiffness_ratio
+        return sides
 
     @property
     def rho(self) -> Real:
-        """Rho = mu²/kappa."""
+        """Rho = mu²/kappa, on an ellipse that along t1."""
         mu: Any = self.friction_coefficient
         rho: Real = mu * mu / self.pair.stiffness_ratio
         return rho
@@ -202,7 +213,8 @@ class Motions:
     def _ways(self) -> Any:
         """Return the way in which each impact is solved."""
         W: Any = self.inverse_mass
-        return inverse_mass.ways(W, self.normal_speed, self.velocity[..., 1:])
+        cross = self.pair.cross_stiffness_ratio
+        return inverse_mass.ways(W, self.normal_speed, self.velocity[..., 1:], cross)
 
     def _going(self, way: int) -> Self:
         """Return this scene as it is solved in one way."""

@@ -20,6 +20,9 @@ Array = NDArray[np.float64]
 ROUNDING = 1e-9
 #: A flat surface has an infinite radius; ``real`` refuses infinity, so this one is put in for it.
 FLAT = 1e200
+CURVED = Rule(lambda radius: radius != 0.0, "must not be zero")
+#: Length of an axis in the tangent plane over its length, below which it has no direction there.
+LOST = 1e-9
 #: Ratio of first bending period to duration of contact from which a body rings: a half-sine pulse
 #: leaves the first mode at most 4 r/(4 - r²) of its static bending, a fifth at this ratio r.
 RINGING = 0.2
@@ -48,13 +51,23 @@ def _array(unit: str, ends: tuple[int, ...]) -> Any:
     )
 
 
-def _curvature(value: Any) -> Real:
-    """Return a radius of curvature in m; infinity for a flat surface."""
+def _radius(value: Any, field: attrs.Attribute[Any]) -> Real | None:
+    """Return a radius of curvature in m: infinite if flat, negative if hollow."""
+    if value is None and field.default is None:
+        return None
     flat = np.isinf(value) if isinstance(value, float | np.ndarray) else False
     if np.any(flat):
         value = np.where(flat, FLAT, value)
-    checked = real("curvature_radius", value, rule=POSITIVE, remedy="in m; math.inf if flat")
+    remedy = "in m; math.inf if flat, negative if hollow"
+    checked = real(field.name, value, rule=CURVED, remedy=remedy)
     return np.where(flat, np.inf, checked) if np.ndim(checked) else (np.inf if flat else checked)
+
+
+def _curved(**default: Any) -> Any:
+    """Return an attrs field for a radius of curvature."""
+    converter = attrs.Converter(_radius, takes_field=True)
+    metadata = {"unit": "m", "range": CURVED.sentence}
+    return attrs.field(**default, converter=converter, eq=key, metadata=metadata)
 
 
 @arguments_told
@@ -74,15 +87,20 @@ class RigidBody:
     material : Material
         Elastic material of the surface.
     curvature_radius : float or array
-        Radius of curvature of the surface at the contact, in m; ``math.inf`` for a flat surface.
+        Radius of curvature of the surface at the contact, in m: ``math.inf`` for a flat surface,
+        negative for a hollow one. With ``cross_radius`` the principal radius along
+        ``curvature_axis``.
     principal : array, shape (..., 3), optional
         Principal moments of inertia, in kg m².
     axes : array, shape (..., 3, 3), optional
         Unit vectors of the principal axes as columns, in the order of ``principal``; those of the
         frame by default.
-    curvature_ratio : float or array
-        Larger over smaller principal radius of curvature at the contact, at least 1. The answer
-        takes the contact for circular; the plan cautions above 1.
+    cross_radius : float or array, optional
+        The other principal radius at the contact, across ``curvature_axis``, in m; by default that
+        of all directions, ``curvature_radius``.
+    curvature_axis : array, shape (..., 3), optional
+        Direction in which ``curvature_radius`` is measured, in the frame of the encounter; its part
+        in the tangent plane counts. Needed where the radii differ.
     bending_period : float or array, optional
         Period of the first bending vibration, in s; the plan cautions where the contact does not
         last long beside it.
@@ -90,8 +108,9 @@ class RigidBody:
     Raises
     ------
     ValueError
-        If a number is out of range, or no body has such an inertia: it is not symmetric, a
-        principal moment is not positive or exceeds the sum of the other two.
+        If a number is out of range, no body has such an inertia (it is not symmetric, a
+        principal moment is not positive or exceeds the sum of the other two), or the radii differ
+        without an axis.
     """
 
     mass: Real = quantity("kg", rule=POSITIVE)
@@ -99,14 +118,11 @@ class RigidBody:
     material: Material = instance(
         Material, remedy="make one, Material(...), or by its name: Material.named('steel')"
     )
-    curvature_radius: Real = attrs.field(
-        converter=_curvature, eq=key, metadata={"unit": "m", "range": POSITIVE.sentence}
-    )
+    curvature_radius: Real = _curved()
     principal: Any = _array("kg m²", (3,))
     axes: Any = _array("1", (3, 3))
-    curvature_ratio: Real = quantity(
-        "1", rule=Rule(lambda ratio: ratio >= 1.0, "must be at least 1"), default=1.0
-    )
+    cross_radius: Real | None = _curved(default=None)
+    curvature_axis: Any = _array("1", (3,))
     bending_period: Real | None = quantity("s", rule=POSITIVE, default=None)
     #: Inertia about the centre of mass, in kg m², shape (..., 3, 3), whatever was given.
     inertia: Any = attrs.field(init=False, eq=False, repr=False)
@@ -132,9 +148,64 @@ class RigidBody:
             raise refuse("axes", self.axes, "belong to principal moments", "leave axes out")
         _check_inertia(inertia)
         object.__setattr__(self, "inertia", inertia)
-        shapes = (np.shape(each) for each in (self.mass, self.curvature_radius))
+        shapes = [np.shape(each) for each in (self.mass, self.curvature_radius)]
+        if self.cross_radius is not None:
+            shapes.append(np.shape(self.cross_radius))
+        if self.curvature_axis is not None:
+            shapes.append(self.curvature_axis.shape[:-1])
+        self._check_axis()
         shape = np.broadcast_shapes(*shapes, self.inertia.shape[:-2])
         object.__setattr__(self, "shape", shape)
+
+    def _check_axis(self) -> None:
+        """Refuse two radii without an axis, and an axis that says nothing."""
+        axis = self.curvature_axis
+        if axis is None and np.any(np.not_equal(self.curvature_radius, self.crossing)):
+            rule = "is needed where curvature_radius and cross_radius differ"
+            remedy = "give the direction, (3,), in which curvature_radius is measured"
+            raise refuse("curvature_axis", axis, rule, remedy)
+        if axis is not None and self.cross_radius is None:
+            rule = "belongs to two radii of curvature"
+            raise refuse("curvature_axis", axis.tolist(), rule, "give cross_radius= too")
+        if axis is not None and not axis.any(axis=-1).all():
+            raise refuse("curvature_axis", axis.tolist(), "must not be zero")
+
+    @property
+    def crossing(self) -> Real:
+        """Radius of curvature across ``curvature_axis``, in m."""
+        return self.curvature_radius if self.cross_radius is None else self.cross_radius
+
+    def curvatures(self, t1: Array, t2: Array) -> tuple[Any, Any, Any]:
+        """Return both principal curvatures in 1/m, and the direction of the first.
+
+        Parameters
+        ----------
+        t1, t2 : array, shape (..., 3)
+            Unit vectors of the tangent plane at right angles.
+
+        Returns
+        -------
+        tuple
+            Curvatures along and across the axis, and the axis as a complex number of size 1, along
+            t1 + i t2.
+
+        Raises
+        ------
+        ValueError
+            If the radii differ and ``curvature_axis`` is at right angles to the surface.
+        """
+        one, other = 1.0 / np.asarray(self.curvature_radius), 1.0 / np.asarray(self.crossing)
+        if self.curvature_axis is None:
+            return one, other, np.asarray(1.0 + 0.0j)
+        axis = self.curvature_axis / np.abs(self.curvature_axis).max(axis=-1)[..., None]
+        parts = (np.einsum("...i,...i->...", axis, each) for each in (t1, t2))
+        seen: Any = next(parts) + 1j * next(parts)
+        size = np.abs(seen)
+        if np.any((size < LOST) & (one != other)):
+            rule = "is at right angles to the surface: it has no part in the tangent plane"
+            remedy = "give the direction in which curvature_radius is measured"
+            raise refuse("curvature_axis", self.curvature_axis.tolist(), rule, remedy)
+        return one, other, np.where(size < LOST, 1.0, seen / np.where(size < LOST, 1.0, size))
 
     def __repr__(self) -> str:
         """Return the arguments that were given."""
@@ -158,14 +229,14 @@ class RigidBody:
         inertia = np.broadcast_to(self.inertia, (*shape, 3, 3))[part]
         entries = {
             name: taken(getattr(self, name), shape, part)
-            for name in ("mass", "material", "curvature_radius", "curvature_ratio")
+            for name in ("mass", "material", "curvature_radius", "cross_radius", "bending_period")
         }
-        if self.bending_period is not None:
-            entries["bending_period"] = taken(self.bending_period, shape, part)
+        if self.curvature_axis is not None:
+            entries["curvature_axis"] = np.broadcast_to(self.curvature_axis, (*shape, 3))[part]
         return RigidBody(inertia=inertia, **entries)
 
     def cautions(self, duration: float) -> list[str]:
-        """Return a sentence for each doubt about a rigid body with a circular contact.
+        """Return a sentence for each doubt about a rigid body.
 
         Parameters
         ----------
@@ -173,12 +244,6 @@ class RigidBody:
             Duration of the shortest contact, in s.
         """
         cautions = []
-        ratio = float(np.max(self.curvature_ratio))
-        if ratio > 1.0 + ROUNDING:
-            cautions.append(
-                f"curvature_ratio = {ratio:.3g}: the contact is elliptic, and is taken for "
-                "circular with the mean curvature (model)"
-            )
         if self.bending_period is not None:
             ratio = float(np.max(self.bending_period)) / duration
             if ratio > RINGING:

@@ -290,6 +290,7 @@ class Scene(Motions):
         poisson_ratio: Any = None,
         coupling_number: Any = None,
         friction_coefficient: Any = None,
+        cross_stiffness_ratio: Any = 1.0,
     ) -> Scene:
         """Return the scene of the paper's two parameters, eqs (29) and (38), and of theory §14.
 
@@ -327,6 +328,10 @@ class Scene(Motions):
             Lambda = kappa beta/mu, with Dundurs' beta of the two bodies; 0 for like bodies.
         friction_coefficient : float or array, optional
             Coulomb's mu, positive. Axisymmetric answers in psi do not depend on mu.
+        cross_stiffness_ratio : float or array
+            G* along t2 over that along t1, of an elliptic contact (theory §16); 1 for a circle.
+            kappa and rho are those of t1; psi1, chi and eta have kappa of each direction, so
+            that chi_21 = ``cross_stiffness_ratio`` chi_12.
 
         Raises
         ------
@@ -343,6 +348,7 @@ class Scene(Motions):
             poisson_ratio=poisson_ratio,
             coupling_number=coupling_number,
             friction_coefficient=friction_coefficient,
+            cross_stiffness_ratio=cross_stiffness_ratio,
         )
         return cls(None, None, **entries)
 
@@ -567,7 +573,9 @@ class Scene(Motions):
         """
         if isinstance(velocity, float) and not self.shape:
             return 0.0 if velocity == 0.0 else float(velocity) * self.psi_scale
-        scale = self.psi_scale if self.planar else np.asarray(self.psi_scale)[..., None]
+        scale = self.psi_scale
+        if not self.planar:
+            scale = np.asarray(scale)[..., None] * self._sides
         with np.errstate(invalid="ignore", over="ignore"):
             value = np.where(np.asarray(velocity) == 0.0, 0.0, velocity * scale)
         return float(value) if value.ndim == 0 else value
@@ -596,8 +604,10 @@ UNITS: dict[str, str] = {
     "lam": "1",
     "eta": "1",
     "rho": "1",
+    "cross_stiffness_ratio": "1",
     "tilt_deg": "deg",
     "curvature_radius": "m",
+    "cross_radius": "m",
     "young_modulus": "Pa",
 }
 

@@ -1,4 +1,4 @@
-"""Rod, box and ellipsoid: a ``RigidBody`` and its contact vector for an outward normal.
+"""Rod, disc, box and ellipsoid: a ``RigidBody`` and its contact vector for an outward normal.
 
 Each function takes the outward normal at the contact and the orientation of the body, in the frame
 of the encounter, and returns ``(body, contact)`` for ``Encounter(body, target, contact=contact)``.
@@ -16,12 +16,14 @@ from contactlab.impact.material import Material
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.checks import POSITIVE, real, refuse
 
-__all__ = ["box", "ellipsoid", "rod"]
+__all__ = ["box", "disc", "ellipsoid", "rod"]
 
 Array = NDArray[np.float64]
 
 #: Cosine of the normal with an edge or face below which the contact is a line or a face.
 FLUSH = 1e-9
+#: Gauss points along the quarter circle of a rim: more change nothing.
+RIM_POINTS = 32
 #: Square of the first root of cos x cosh x = 1: bending of a rod with free ends.
 FREE_ENDS = 4.730040744862704**2
 
@@ -36,7 +38,12 @@ def rod(
     end_radius: float | None = None,
     mass: float | None = None,
 ) -> tuple[RigidBody, Array]:
-    """Return a solid round rod that touches with a rounded end, and its contact vector in m.
+    """Return a solid round rod and its contact vector in m.
+
+    It touches with a rounded end, or, where the normal is at right angles to it, with its side: in
+    the middle, as far as this rod knows; add a multiple of ``axis`` to the contact for another
+    place. The side touches balls and rods that cross it; a plane it touches along a line, which an
+    ``Encounter`` refuses.
 
     Parameters
     ----------
@@ -59,8 +66,7 @@ def rod(
     Raises
     ------
     ValueError
-        If the contact is a line along the side or the sharp edge of a dome, or a number is out
-        of range.
+        If the contact is the sharp edge of a dome, or a number is out of range.
     """
     length, radius = _size("length", length), _size("radius", radius)
     end = radius if end_radius is None else _size("end_radius", end_radius)
@@ -72,12 +78,11 @@ def rod(
     outward, along = _unit("normal", normal), _unit("axis", axis)
     along = along * (1.0 if along @ outward > 0.0 else -1.0)
     cosine = float(along @ outward)
-    if cosine < FLUSH:
-        raise refuse("normal", outward, "contact along a line: the side touches", "tilt the rod")
-    if end * math.sqrt(max(1.0 - cosine * cosine, 0.0)) > radius * (1.0 + FLUSH):
+    side = cosine < FLUSH
+    if not side and end * math.sqrt(max(1.0 - cosine * cosine, 0.0)) > radius * (1.0 + FLUSH):
         rule = "contact on the sharp edge of the dome: no curvature"
         raise refuse("normal", outward, rule, "tilt the rod less, or take a smaller end_radius")
-    contact = along * (0.5 * length - end) + end * outward
+    contact = radius * outward if side else along * (0.5 * length - end) + end * outward
     volume, lengthwise, across = _revolved(length, radius, end, dome)
     mass = _mass(mass, material, volume)
     moments = np.full((3, 3), 0.0)
@@ -88,8 +93,80 @@ def rod(
         mass=mass,
         inertia=0.5 * (moments + moments.T),
         material=material,
-        curvature_radius=end,
+        **(_two(math.inf, radius, along) if side else {"curvature_radius": end}),
         bending_period=2.0 * math.pi * length * length / (FREE_ENDS * speed),
+    )
+    return body, contact
+
+
+def disc(
+    *,
+    radius: float,
+    thickness: float,
+    rim_radius: float,
+    material: Material,
+    normal: Any,
+    axis: Any,
+    crown_radius: float | None = None,
+    mass: float | None = None,
+) -> tuple[RigidBody, Array]:
+    """Return a solid disc with rounded rims, such as a puck or a coin, and its contact vector in m.
+
+    It touches with a rim, or, where the normal is at right angles to its axis, with its side.
+
+    Parameters
+    ----------
+    radius, thickness : float
+        In m.
+    rim_radius : float
+        Radius that rounds the rims between side and faces, in m, at most half the thickness.
+    material : Material
+        Its density is needed if no mass is given.
+    normal : array, shape (3,)
+        Outward normal at the contact.
+    axis : array, shape (3,)
+        Axis of the disc, of either sign.
+    crown_radius : float, optional
+        Radius of curvature of the side along the axis, in m, at least half the thickness; by
+        default the side is straight, and touches a plane along a line, which an ``Encounter``
+        refuses. Mass and inertia are those without crown.
+    mass : float, optional
+        In kg.
+
+    Raises
+    ------
+    ValueError
+        If a face touches, or a number is out of range.
+    """
+    radius, thickness = _size("radius", radius), _size("thickness", thickness)
+    rim = _size("rim_radius", rim_radius)
+    if rim > min(0.5 * thickness, radius):
+        raise refuse("rim_radius", rim, "must be at most half the thickness, and the radius")
+    crown = _crown(crown_radius, 0.5 * thickness)
+    outward, along = _unit("normal", normal), _unit("axis", axis)
+    along = along * (1.0 if along @ outward > 0.0 else -1.0)
+    sine = float(along @ outward)
+    aside = outward - sine * along
+    cosine = float(np.linalg.norm(aside))
+    if cosine < FLUSH:
+        raise refuse("normal", outward, "contact along a face of the disc", "tilt the disc")
+    aside = aside / cosine
+    straight = 0.5 * thickness - rim
+    if straight > 0.0 and (sine < FLUSH or (crown < math.inf and crown * sine <= straight)):
+        bulge = crown * (outward - aside) if crown < math.inf else 0.0 * aside
+        contact, lengthwise = radius * aside + bulge, crown
+    else:
+        contact, lengthwise = (radius - rim) * aside + straight * along + rim * outward, rim
+    around = float(contact @ aside) / cosine
+    tangent = (outward * sine - along) / cosine  # along the side, across the rim
+    volume, own, across = _rimmed(radius, straight, rim)
+    mass = _mass(mass, material, volume)
+    moments = mass * (across * np.eye(3) + (own - across) * np.outer(along, along))
+    body = RigidBody(
+        mass=mass,
+        inertia=0.5 * (moments + moments.T),
+        material=material,
+        **_two(lengthwise, around, tangent),
     )
     return body, contact
 
@@ -101,11 +178,13 @@ def box(
     material: Material,
     normal: Any,
     axes: Any = None,
+    crown_radius: float | None = None,
     mass: float | None = None,
 ) -> tuple[RigidBody, Array]:
-    """Return a solid box that touches with a rounded corner, and its contact vector in m.
+    """Return a solid box and its contact vector in m.
 
-    Mass and inertia are those of the box with sharp edges.
+    It touches with a rounded corner, or with an edge that bulges a little, as a barrel does. Mass
+    and inertia are those of the box with sharp edges.
 
     Parameters
     ----------
@@ -120,24 +199,40 @@ def box(
     axes : array, shape (3, 3), optional
         Unit vectors along the edges as columns, in the order of ``sides``; those of the frame by
         default.
+    crown_radius : float, optional
+        Radius of curvature of the edges along their length, in m, at least half the longest side.
+        With it the box touches with an edge where the normal is nearly at right angles to it; by
+        default with corners only.
     mass : float, optional
         In kg.
 
     Raises
     ------
     ValueError
-        If the contact is a line along an edge or a face, or a number is out of range.
+        If the contact is a line along an edge without ``crown_radius``, or a face, or a number is
+        out of range.
     """
     edges, corner = _three("sides", sides), _size("corner_radius", corner_radius)
     if corner > 0.5 * edges.min():
         raise refuse("corner_radius", corner, "must be at most half the shortest side")
     turn = _axes(axes)
     outward = turn.T @ _unit("normal", normal)
+    crown = _crown(crown_radius, 0.5 * float(edges.max()))
     flush = int((np.abs(outward) < FLUSH).sum())
-    if flush:
-        what = "contact along a line: an edge" if flush == 1 else "contact along a face: a side"
-        raise refuse("normal", turn @ outward, f"{what} of the box touches", "tilt the box")
+    if flush == 2:
+        raise refuse("normal", turn @ outward, "contact along a face of the box", "tilt the box")
+    if flush and crown == math.inf:
+        rule = "contact along a line: an edge of the box touches"
+        raise refuse("normal", turn @ outward, rule, "tilt the box, or give crown_radius=")
     contact = np.sign(outward) * (0.5 * edges - corner) + corner * outward
+    curvature: dict[str, Any] = {"curvature_radius": corner}
+    along = int(np.argmin(np.abs(outward)))
+    if crown * abs(outward[along]) <= 0.5 * edges[along] - corner:
+        direction = np.eye(3)[along]
+        across = _unit("normal", outward - outward[along] * direction)
+        contact = np.sign(across) * (0.5 * edges - corner) + corner * across
+        contact = contact + crown * (outward - across)
+        curvature = _two(crown, corner, turn @ direction)
     mass = _mass(mass, material, float(edges.prod()))
     squares = edges * edges
     body = RigidBody(
@@ -145,7 +240,7 @@ def box(
         principal=mass / 12.0 * (squares.sum() - squares),
         axes=turn,
         material=material,
-        curvature_radius=corner,
+        **curvature,
     )
     return body, turn @ contact
 
@@ -160,8 +255,7 @@ def ellipsoid(
 ) -> tuple[RigidBody, Array]:
     """Return a solid ellipsoid and its contact vector in m.
 
-    ``curvature_radius`` is one over the mean curvature at the contact; ``curvature_ratio`` is that
-    of the principal radii.
+    The principal radii and their axis are exact at any point.
 
     Parameters
     ----------
@@ -190,15 +284,16 @@ def ellipsoid(
     height = float(np.linalg.norm(lengths * outward))
     contact = squares * outward / height
     second = (np.diag(squares) - np.outer(contact, contact)) / height
-    _, small, large = np.linalg.eigvalsh(second)
+    radii, directions = np.linalg.eigh(second)
     mass = _mass(mass, material, 4.0 / 3.0 * math.pi * float(lengths.prod()))
     body = RigidBody(
         mass=mass,
         principal=mass / 5.0 * (squares.sum() - squares),
         axes=turn,
         material=material,
-        curvature_radius=2.0 * small * large / (small + large),
-        curvature_ratio=max(1.0, float(large / small)),
+        curvature_radius=float(radii[2]),
+        cross_radius=float(radii[1]),
+        curvature_axis=turn @ directions[:, 2],
     )
     return body, turn @ contact
 
@@ -215,6 +310,35 @@ def _revolved(length: float, radius: float, end: float, dome: float) -> tuple[fl
     volume = math.pi * float(share @ square)
     lengthwise = 0.5 * math.pi * float(share @ (square * square)) / volume
     return volume, lengthwise, 0.5 * lengthwise + math.pi * float(share @ (z * z * square)) / volume
+
+
+def _rimmed(radius: float, straight: float, rim: float) -> tuple[float, float, float]:
+    """Return volume, and moments over mass along and across the axis, of a rounded disc."""
+    points, weights = np.polynomial.legendre.leggauss(RIM_POINTS)
+    angle = 0.25 * math.pi * (1.0 + points)
+    z = np.concatenate((0.5 * straight * (1.0 + points), straight + rim * np.sin(angle)))
+    square = np.concatenate(
+        (np.full(RIM_POINTS, radius * radius), np.square(radius - rim + rim * np.cos(angle)))
+    )
+    share = np.concatenate((straight * weights, 0.5 * math.pi * rim * np.cos(angle) * weights))
+    volume = math.pi * float(share @ square)
+    own = 0.5 * math.pi * float(share @ (square * square)) / volume
+    return volume, own, 0.5 * own + math.pi * float(share @ (z * z * square)) / volume
+
+
+def _two(radius: float, cross: float, axis: Array) -> dict[str, Any]:
+    """Return the entries of two radii of curvature, the first along ``axis``."""
+    return {"curvature_radius": radius, "cross_radius": cross, "curvature_axis": axis}
+
+
+def _crown(value: Any, least: float) -> float:
+    """Return the radius of a crown in m; infinite of none."""
+    if value is None:
+        return math.inf
+    crown = _size("crown_radius", value)
+    if crown < least:
+        raise refuse("crown_radius", crown, f"must be at least half the length, {least:.6g} m")
+    return crown
 
 
 def _size(name: str, value: Any) -> float:

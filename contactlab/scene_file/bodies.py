@@ -19,7 +19,9 @@ from contactlab.scene_file.entries import (
 )
 from contactlab.scene_file.table import Table
 
-#: Default axis of a rod: up, so that the rod hangs over what lies below.
+#: Keys that a shape cannot do without.
+NEEDED = ("length", "radius", "thickness", "rim_radius", "sides", "corner_radius", "semi_axes")
+#: Default axis of a rod or disc: up, so that a rod hangs over what lies below.
 UPRIGHT = (0.0, 0.0, 1.0)
 
 
@@ -51,8 +53,8 @@ def rigid_body(
     options = {key: table.content[key] for key in SHAPE_KEYS[shape] if table.has(key)}
     options |= {"material": material(table), "normal": normal}
     tilt = real(table.at(TILT), table.content.get(TILT, 0.0), remedy="in degrees, about y")
-    oriented = "axis" if shape == "rod" else "axes"
-    upright = options.pop(oriented, UPRIGHT if shape == "rod" else np.eye(3))
+    oriented = "axis" if "axis" in SHAPE_KEYS[shape] else "axes"
+    upright = options.pop(oriented, UPRIGHT if oriented == "axis" else np.eye(3))
 
     def made(**numbers: Any) -> tuple[RigidBody, Any]:
         maker: Callable[..., tuple[RigidBody, Any]] = getattr(shapes, shape)
@@ -65,8 +67,8 @@ def rigid_body(
         every = [maker(**numbers, **{oriented: each}) for each in turned]
         return every[0] if np.ndim(tilt) == 0 else _stacked(every)
 
-    needed = [key for key in SHAPE_KEYS[shape] if key in ("length", "radius", "sides", "semi_axes")]
-    for key in (*needed, *(("corner_radius",) if shape == "box" else ())):
+    needed = [key for key in SHAPE_KEYS[shape] if key in NEEDED]
+    for key in needed:
         table.require(key, f"a {shape} needs {', '.join(needed)} in m")
     return table.make(made, **options)
 
@@ -82,7 +84,11 @@ def _stacked(made: list[tuple[RigidBody, Any]]) -> tuple[RigidBody, Any]:
     bodies = [body for body, _ in made]
     columns: dict[str, Any] = {
         name: np.array([getattr(body, name) for body in bodies])
-        for name in ("inertia", "curvature_radius", "curvature_ratio")
+        for name in ("inertia", "curvature_radius")
     }
+    if any(body.cross_radius is not None for body in bodies):
+        columns["cross_radius"] = np.array([body.crossing for body in bodies])
+        axes = (body.curvature_axis for body in bodies)  # none of those with one radius
+        columns["curvature_axis"] = np.array([UPRIGHT if each is None else each for each in axes])
     body = attrs.evolve(bodies[0], principal=None, axes=None, **columns)
     return body, np.array([contact for _, contact in made])

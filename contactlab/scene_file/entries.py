@@ -22,12 +22,21 @@ NONDIMENSIONAL_KEYS = ("psi1", "chi")
 COUPLING_KEYS = ("lam", "eta", "rho")
 #: Keys of a body that is no sphere: those of ``RigidBody``, and those of each of its shapes.
 RIGID_KEYS = (
-    "mass", "inertia", "principal", "axes", "curvature_radius", "curvature_ratio",
+    "mass", "inertia", "principal", "axes", "curvature_radius", "cross_radius", "curvature_axis",
     "bending_period", "material",
 )  # fmt: skip
 SHAPE_KEYS = {
     "rod": ("length", "radius", "end_radius", "axis", "mass", "material"),
-    "box": ("sides", "corner_radius", "axes", "mass", "material"),
+    "disc": (
+        "radius",
+        "thickness",
+        "rim_radius",
+        "crown_radius",
+        "axis",
+        "mass",
+        "material",
+    ),
+    "box": ("sides", "corner_radius", "crown_radius", "axes", "mass", "material"),
     "ellipsoid": ("semi_axes", "axes", "mass", "material"),
 }
 #: Angle by which a shape is turned about y, by the right-hand rule.
@@ -51,7 +60,7 @@ def _entries() -> dict[str, str]:
     for body in ("sphere", "target"):
         dotted += [f"{body}.{key}" for key in SPHERE_KEYS if key != "material"]
         dotted += [f"{body}.material.{key}" for key in MATERIAL_KEYS]
-    dotted += [f"body.{key}" for key in ("mass", "curvature_radius")]
+    dotted += [f"body.{key}" for key in ("mass", "curvature_radius", "cross_radius")]
     return names | {path: path for path in dotted}
 
 

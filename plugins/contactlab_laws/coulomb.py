@@ -46,6 +46,7 @@ class Coulomb(WholeImpactTangentialLaw):
     635-642, for Routh's construction.
     """
 
+    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"rigid"})
     together: ClassVar[bool] = True
@@ -93,6 +94,7 @@ class Frictionless(WholeImpactTangentialLaw):
     Between any two bodies pressure alone drags the surfaces: psi2 = psi1 - 2 eta if e is 1.
     """
 
+    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"no_friction"})
     together: ClassVar[bool] = True

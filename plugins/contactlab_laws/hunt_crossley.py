@@ -60,6 +60,7 @@ class HuntCrossley(NormalLaw):
     Hunt & Crossley, J. Appl. Mech. 42 (1975) 440-445, doi:10.1115/1.3423596.
     """
 
+    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure"})
 

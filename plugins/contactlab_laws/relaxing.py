@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import attrs
 
@@ -28,6 +28,8 @@ class Parts(NamedTuple):
 @attrs.frozen(kw_only=True)
 class Relaxing(NormalLaw):
     """Base of laws of a relaxation time A, which a restitution gives at each speed."""
+
+    elliptic: ClassVar[bool] = True
 
     restitution: float | None = restitution(default=None)
     relaxation_time: float | None = quantity("s", rule=NON_NEGATIVE, default=None)

@@ -54,6 +54,7 @@ class Stronge(WholeImpactTangentialLaw):
     Impact Mechanics (2nd ed., 2018), ch. 5.
     """
 
+    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
     expected_failures: ClassVar[Mapping[str, str]] = {
         "impact_reference": "one spring for the whole contact: there is no partial slip",

@@ -58,6 +58,7 @@ class Tsuji(ClosedFormNormalLaw):
     Matter 9 (2007) 465-469, doi:10.1007/s10035-007-0065-z.
     """
 
+    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure"})
 
@@ -110,6 +111,7 @@ class Linear(ClosedFormNormalLaw):
     doi:10.1007/s10035-007-0065-z.
     """
 
+    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius"})
 

@@ -62,6 +62,7 @@ class MindlinDeresiewicz(SteppedTangentialLaw):
     Technol. 210 (2011) 189-197, doi:10.1016/j.powtec.2011.01.013.
     """
 
+    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
     needs_future: ClassVar[bool] = False
     needs: ClassVar[frozenset[str]] = frozenset({"radius"})

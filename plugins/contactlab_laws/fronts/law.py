@@ -55,6 +55,7 @@ class Fronts(PathTangentialLaw, Tabulated):
     tangential loading from superposed normal contacts, of which the springs are one form.
     """
 
+    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
     needs: ClassVar[frozenset[str]] = frozenset({"elastic_hertz"})

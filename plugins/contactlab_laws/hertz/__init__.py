@@ -25,6 +25,7 @@ class Hertz(ClosedFormNormalLaw):
     eqs (2)-(6), for a general pair: P = (4/3) E* sqrt(R) u_z^1.5.
     """
 
+    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure", "elastic_hertz"})
 

@@ -47,7 +47,9 @@ def needed_steps(scene: Scene, normal: NormalMotion, law: Any) -> Any:
     W: Any = scene.inverse_mass
     normal_stiffness = 2.0 * scene.pair.effective_modulus * normal.maximum_radius
     tangential = law.stiffness(normal.scene, normal)
-    inertia = W[..., 1, 1] if scene.planar else W[..., 1, 1] + W[..., 2, 2]
+    inertia = W[..., 1, 1]
+    if not scene.planar:
+        inertia = inertia + scene.pair.cross_stiffness_ratio * W[..., 2, 2]
     omega = np.sqrt(normal_stiffness * W[..., 0, 0] + tangential * inertia)
     return resolving(omega * normal.duration * deepest(scene) ** 0.1, law)
 

@@ -21,7 +21,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat
 from contactlab.numeric.checks import Real
 from contactlab_laws.jaeger.bundle import Array, spring_fields
-from contactlab_laws.springs.turning import turned
+from contactlab_laws.springs.turning import energy, turned
 
 #: Contacts whose radius is below this times that of the pair just touch: no friction. The cells of
 #: a smaller contact could underflow.
@@ -56,7 +56,8 @@ class Memory(NamedTuple):
 class State(NamedTuple):
     """Shape of a batch; radius of the pair, 2 G* and mu, shape (items,); the springs.
 
-    A grid that ``spans`` a radius known before doubles, and is never split.
+    A grid that ``spans`` a radius known before doubles, and is never split. ``cross`` is G* along
+    the second axis over that along the first, None where both are equal.
     """
 
     shape: tuple[int, ...]
@@ -65,6 +66,7 @@ class State(NamedTuple):
     friction_coefficient: Array
     memory: Memory
     spans: bool
+    cross: Array | None = None
 
 
 def start(scene: Scene, springs: int, *, spanned: Any = None, vectors: bool = False) -> State:
@@ -82,7 +84,14 @@ def start(scene: Scene, springs: int, *, spanned: Any = None, vectors: bool = Fa
         flat(scene.friction_coefficient, shape),
         Memory(none, np.zeros(items), deflection, rows),
         spanned is not None,
+        crossing(scene) if vectors else None,
     )
+
+
+def crossing(scene: Scene) -> Array | None:
+    """Return G* along t2 over that along t1, shape (items,); None of circular contacts."""
+    ratio = scene.pair.cross_stiffness_ratio
+    return None if np.all(np.equal(ratio, 1.0)) else flat(ratio, scene.shape)
 
 
 def advance(
@@ -103,6 +112,7 @@ def advance(
         unit=state.unit,
         modulus=state.modulus,
         spans=state.spans,
+        cross=state.cross,
     )
     state = state._replace(memory=memory)
     if vectors:
@@ -122,6 +132,7 @@ def moved(
     unit: Array,
     modulus: Array,
     spans: bool = False,
+    cross: Array | None = None,
 ) -> tuple[Array, Array, Memory]:
     """Return force (N), friction work (J), both of shape (items,), and the springs after a step.
 
@@ -138,10 +149,15 @@ def moved(
         2 G* in Pa: stiffness of the contact over its radius.
     spans : bool
         True if the grid is kept where the contact is small or apart.
+    cross : array, shape (items,), optional
+        G* along the second axis over that along the first, of an elliptic contact. w is then the
+        force over the stiffness along the first.
     """
     radius = radius + 0.0 * (abs(displacement) + limit)  # NaN where any of the three is not finite
     radius = radius * (1.0 - (radius <= TOUCH * unit)) + 0.0 * radius
-    size, held, merged = fitted(before.size, before.deflection, radius, unit, spans=spans)
+    size, held, merged = fitted(
+        before.size, before.deflection, radius, unit, spans=spans, cross=cross
+    )
     cell = size / len(held)
     places = np.multiply.outer(np.arange(len(held)) + 0.5, cell)
     compression = np.maximum(radius * radius - places * places, 0.0)
@@ -152,7 +168,7 @@ def moved(
     most = compression * steepness
     if held.dtype.kind == "c":
         least = np.maximum(before.radius * before.radius - places * places, 0.0)
-        deflection, lost = turned(held, move, before.steepness * least, most)
+        deflection, lost = turned(held, move, before.steepness * least, most, cross)
     else:
         trial = held + move
         deflection = np.minimum(np.maximum(trial, -most), most)
@@ -171,7 +187,13 @@ def moved(
 
 
 def fitted(
-    size: Array, held: Array, radius: Array, unit: Real, *, spans: bool = False
+    size: Array,
+    held: Array,
+    radius: Array,
+    unit: Real,
+    *,
+    spans: bool = False,
+    cross: Array | None = None,
 ) -> tuple[Array, Array, Real]:
     """Return A and w with A/4 < b <= A, and the energy lost in merging over 2 G*, in m³."""
     if not size.all():
@@ -180,16 +202,20 @@ def fitted(
     if not (outgrown.any() or small.any()):
         return size, held, 0.0
     size, held, lost = size.copy(), held.copy(), np.zeros_like(size)
+
+    def part(where: Any) -> Any:
+        return None if cross is None else cross[where]
+
     while outgrown.any():
         inner, outer = held[::2, outgrown], held[1::2, outgrown]
         cell = size[outgrown] / len(held)
-        lost[outgrown] += 0.25 * cell * (abs(inner - outer) ** 2).sum(axis=0)
+        lost[outgrown] += 0.25 * cell * energy(inner - outer, part(outgrown)).sum(axis=0)
         held[:, outgrown] = np.concatenate((0.5 * (inner + outer), 0.0 * inner))
         size[outgrown] *= 2.0
         outgrown = radius > size
     while small.any():
         outside = held[len(held) // 2 :, small]  # springs that have left the contact
-        lost[small] += 0.5 * size[small] / len(held) * (abs(outside) ** 2).sum(axis=0)
+        lost[small] += 0.5 * size[small] / len(held) * energy(outside, part(small)).sum(axis=0)
         held[:, small] = np.repeat(held[: len(held) // 2, small], 2, axis=0)
         size[small] *= 0.5
         small = (radius > 0.0) & (radius <= 0.25 * size)
@@ -209,7 +235,10 @@ def part_of_step(places: Array, before: Array, after: Array) -> Any:
 
 
 def fields(state: State) -> dict[str, Any]:
-    """Return radius, displacement and limit (m), stuck and slipping, shape (*shape, springs)."""
+    """Return radius, displacement and limit (m), stuck and slipping, shape (*shape, springs).
+
+    Of vectors on an ellipse the displacement is the force over the stiffness along t1.
+    """
     size, _, deflection, limit, _ = state.memory
     springs = len(deflection)
     places = np.multiply.outer(np.arange(springs) + 0.5, size / springs)

@@ -1,21 +1,33 @@
 """Springs whose displacement is a vector of the tangent plane, held as a complex number.
 
-A spring that slips is dragged: the angle phi between it and the displacement falls as
-d phi/dL = -sin(phi)/l along the displacement L, so tan(phi/2) falls as exp(-L/l) (theory §14).
-Cutting the spring to the length of its limit instead is of first order in the step.
+A spring sticks, or slips along its force, which stays as long as its limit. Cutting it to its
+limit at the end of a step is of first order in the step where slip turns. Two such cuts, after
+``EARLY`` of the step and at its end, are of second order: the implicit scheme of Alexander, SIAM J.
+Numer. Anal. 14 (1977) 1006-1021, doi:10.1137/0714068.
+
+On an elliptic contact the stiffness depends on direction (theory §16), and so does the point of the
+limit that a spring slips to: the closest in the energy of the springs. w is then the force over the
+stiffness along the first axis.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 
+#: Share of the step after which springs are cut first, and what that cut weighs at the end.
+EARLY = 1.0 - math.sqrt(0.5)
+WEIGHT = (1.0 - EARLY) / EARLY
 #: Added to lengths that divide, so that none is zero.
 TINY = 1e-300
+#: Steps of Newton's method for the point of the limit on an ellipse; force over the limit beyond
+#: which it no longer turns.
+STEPS, FAR = 3, 1e60
 
 
-def turned(held: Any, move: Any, least: Any, most: Any) -> tuple[Any, Any]:
+def turned(held: Any, move: Any, least: Any, most: Any, cross: Any = None) -> tuple[Any, Any]:
     """Return w after a step, and twice the friction work over the stiffness of one spring.
 
     Parameters
@@ -24,34 +36,22 @@ def turned(held: Any, move: Any, least: Any, most: Any) -> tuple[Any, Any]:
         w before the step, and the displacement in it, complex, in m.
     least, most : array, shape (springs, items)
         Limit before and after, in m.
+    cross : array, shape (items,), optional
+        Stiffness along the second axis over that along the first; 1 by default.
     """
-    # The limit grows evenly from ``least`` to ``most``. A spring sticks until it is at its limit,
-    # and is then dragged along the rest of the step at the mean of the limit.
-    trial = held + move
-    slips = np.abs(trial) > most
-    deflection = np.where(np.abs(trial) <= most, trial, 0.0)
-    lost = np.zeros(held.shape)
-    if not slips.any():
-        return deflection, lost.sum(axis=0)
-    move = np.broadcast_to(move, held.shape)
-    w, d, l0, l1 = held[slips], move[slips], least[slips], most[slips]
-    share = _sticking(w, d, l0, l1)
-    first = w + share * d
-    limit = l0 + share * (l1 - l0)
-    rest = (1.0 - share) * np.abs(d)
-    standing = np.abs(d) == 0.0  # only the limit shrinks: the spring keeps its direction
-    turn = _turned(_direction(first, d), np.exp(-rest / (0.5 * (limit + l1) + TINY)))
-    turn = np.where(np.abs(w) > 0.0, turn, 1.0)
-    ahead = d / (np.abs(d) + TINY)
-    new = l1 * np.where(standing, first / (np.abs(first) + TINY), ahead * turn)
-    slip = w + d - new
-    lost[slips] = (slip.conj() * (w + new)).real
-    deflection[slips] = new
-    return deflection, lost.sum(axis=0)
+    moved = stretched(move, cross)
+    early = beyond(held + EARLY * moved, least + EARLY * (most - least), cross)
+    trial = held + moved - WEIGHT * early
+    late = beyond(trial, most, cross)
+    after = trial - late
+    slip = relaxed(WEIGHT * early + late, cross)
+    return after, (slip.conj() * (held + after)).real.sum(axis=0)
 
 
-def dragged(held: Any, move: Any, pull: Any, first: Any, most: Any, decay: Any) -> Any:
-    """Return w of viscous springs after a step (theory §15): the force is along w + A v.
+def dragged(
+    held: Any, move: Any, pull: Any, first: Any, most: Any, decay: Any, cross: Any = None
+) -> Any:
+    """Return w of viscous springs after a step (theory §15): the force is w + A w'.
 
     Parameters
     ----------
@@ -63,59 +63,60 @@ def dragged(held: Any, move: Any, pull: Any, first: Any, most: Any, decay: Any) 
         Limit before and after.
     decay : array, shape (springs, items) or (springs, 1)
         Time of the step over A.
+    cross : array, shape (items,), optional
+        As in ``turned``.
     """
-    # r, the length of w + A v, tends to l + A abs(v) cos(phi), and tan(phi/2) falls as exp(-L/r).
-    trial = held + move
-    deflection = np.array(trial)
-    every = np.broadcast_arrays(held, move, pull, first, most, decay)
-    apart = (every[3] <= 0.0) & (every[4] <= 0.0)
-    deflection[apart] = held[apart] * np.exp(-every[5][apart])
-    slips = (np.abs(trial + pull) > most) & ~apart
-    if not slips.any():
-        return deflection
-    w, d, along, l0, l1, time = (each[slips] for each in every)
-    share = _sticking(w + along, d, l0, l1)
-    rest, time = (1.0 - share) * np.abs(d), (1.0 - share) * time
-    limit = l0 + share * (l1 - l0)
-    traction = w + share * d + along
-    angle, size, ahead = _direction(traction, d), np.abs(traction), d / (np.abs(d) + TINY)
-    turned = _turned(angle, np.exp(-0.5 * rest / (size + TINY)))
-    drag = np.abs(along) * turned.real
-    gone = -np.expm1(-time)
-    pulled = (limit + drag) * gone + (l1 - limit) * (1.0 - gone / np.maximum(time, TINY))
-    size = np.maximum(size * (1.0 - gone) + pulled, 0.0)
-    turned = _turned(turned, np.exp(-0.5 * rest / (size + TINY)))
-    standing = np.abs(d) == 0.0
-    turned = np.where(standing, traction / (np.abs(traction) + TINY), ahead * turned)
-    deflection[slips] = size * turned - along
-    return deflection
+    moved, pull = stretched(move, cross), stretched(pull, cross)
+    share = EARLY * decay / (1.0 + EARLY * decay)
+    early = beyond(held + EARLY * moved + pull, first + EARLY * (most - first), cross)
+    trial = held + moved - WEIGHT * share * early
+    return trial - share * beyond(trial + pull, most, cross)
 
 
-def _sticking(w: Any, d: Any, l0: Any, l1: Any) -> Any:
-    """Return the share of the step at which abs(w + t d) = l0 + t (l1 - l0); 0 if it is beyond."""
-    growth = l1 - l0
-    a = np.abs(d) ** 2 - growth * growth
-    half = (w.conj() * d).real - l0 * growth
-    c = np.minimum(np.abs(w) ** 2 - l0 * l0, 0.0)
-    root = np.sqrt(np.maximum(half * half - a * c, 0.0))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.where(half > 0.0, -c / (half + root), (root - half) / a)
-    return np.clip(np.nan_to_num(share, nan=0.0, posinf=0.0, neginf=0.0), 0.0, 1.0)
+def beyond(force: Any, limit: Any, cross: Any = None) -> Any:
+    """Return what forces exceed their limit by, complex: where a force slips to is closest."""
+    size = np.abs(force)
+    slips = size > limit
+    if cross is None:
+        return force * np.where(slips, 1.0 - limit / (size + TINY), 0.0)
+    over = np.zeros_like(force)
+    if slips.any():
+        limits, ratio = (np.broadcast_to(each, force.shape)[slips] for each in (limit, cross))
+        over[slips] = force[slips] - _closest(force[slips], limits, ratio)
+    return over
 
 
-def _direction(w: Any, d: Any) -> Any:
-    """Return the unit vectors of w from the direction of d."""
-    angle = w * (d / (np.abs(d) + TINY)).conj()
-    return angle / (np.abs(angle) + TINY)
+def stretched(move: Any, cross: Any) -> Any:
+    """Return displacements times the stiffness over that along the first axis."""
+    return move if cross is None else move.real + 1j * (cross * move.imag)
 
 
-def _turned(angle: Any, fall: Any) -> Any:
-    """Return unit vectors whose tan(phi/2) is ``fall`` times that of ``angle``."""
-    aside = angle.imag  # beside a spring that is pushed back 1 + cos is lost in rounding
-    half = np.where(
-        angle.real < 0.0, aside * aside / np.maximum(1.0 - angle.real, 1.0), 1.0 + angle.real
-    )
-    turn = half + 1j * (aside * fall)
-    turn = turn * turn
-    size = np.abs(turn)
-    return np.where(size > 0.0, turn / (size + TINY), -1.0)
+def relaxed(force: Any, cross: Any) -> Any:
+    """Return the displacements that ``stretched`` made forces of."""
+    return force if cross is None else force.real + 1j * (force.imag / cross)
+
+
+def energy(force: Any, cross: Any) -> Any:
+    """Return abs(w)² of springs, on an ellipse force times displacement."""
+    return (force.conj() * relaxed(force, cross)).real
+
+
+def _closest(force: Any, limit: Any, cross: Any) -> Any:
+    """Return the forces of length ``limit`` that are closest in the energy of the springs."""
+    # force/(1 + g stiffness) along each axis, in units of the limit. 1/length is nearly linear in
+    # g, and Newton's method begins with the stiffness along the force.
+    scaled = force / (limit + TINY)
+    size = np.abs(scaled)
+    if (far := size > FAR).any():
+        scaled = np.where(far, scaled * (FAR / size), scaled)
+        size = np.minimum(size, FAR)
+    x, y = np.square(scaled.real), np.square(scaled.imag)
+    g = (size - 1.0) * (x + y) / (x + cross * y)
+    for _ in range(STEPS):
+        one, other = 1.0 / (1.0 + g), 1.0 / (1.0 + cross * g)
+        first, second = x * one * one, y * other * other
+        square = first + second
+        length = np.sqrt(square)
+        g = g + (length - 1.0) * square / (first * one + cross * second * other)
+    point = scaled.real / (1.0 + g) + 1j * (scaled.imag / (1.0 + cross * g))
+    return limit * point / np.abs(point)

@@ -24,8 +24,8 @@ from contactlab.numeric.arrays import flat
 from contactlab_laws.jaeger.bundle import Array, spring_fields
 from contactlab_laws.jaeger.partial_slip import Scales
 from contactlab_laws.jaeger.step import common
-from contactlab_laws.springs.doubling import fitted
-from contactlab_laws.springs.turning import dragged
+from contactlab_laws.springs.doubling import crossing, fitted
+from contactlab_laws.springs.turning import beyond, dragged, relaxed, stretched
 
 #: Rates below this times that at first touch say nothing of A: the law is asked at this one.
 SLOWEST = 1e-3
@@ -107,6 +107,8 @@ class State(NamedTuple):
     grows, splits : bool
         True for a grid that doubles where the contact outgrows it, and halves where it is small.
     memory : Memory
+    cross : array, shape (items,), or None
+        G* along the second axis over that along the first, of vectors on an ellipse.
     """
 
     shape: tuple[int, ...]
@@ -119,6 +121,7 @@ class State(NamedTuple):
     grows: bool
     splits: bool
     memory: Memory
+    cross: Array | None = None
 
 
 def start(
@@ -156,6 +159,7 @@ def start(
         grows,
         spanned is None,
         memory,
+        crossing(scene) if vectors else None,
     )
 
 
@@ -191,6 +195,7 @@ def advance(
         friction * limit,
         friction * acting,
         scales.displacement,
+        state.cross,
     )
     force, work, loss, memory = moved(memory, contact, drive, state.grows, state.splits)
     work, loss = (_shaped(each * scales.metres, shape) for each in (work, loss))
@@ -236,7 +241,10 @@ def limits(b: Array, load: Array) -> tuple[Array, Array]:
 
 
 class Drive(NamedTuple):
-    """The tangential motion of a step, each of shape (items,); tangential ones may be complex."""
+    """The tangential motion of a step, each of shape (items,); tangential ones may be complex.
+
+    ``cross`` is that of ``State``.
+    """
 
     move: Array
     drift: Array
@@ -246,6 +254,7 @@ class Drive(NamedTuple):
     limit: Array
     acting: Array
     scale: Any
+    cross: Array | None = None
 
 
 def moved(
@@ -259,7 +268,9 @@ def moved(
     edge, excess, decay = (_column(each, items) for each in (contact.edge, contact.excess, decay))
     held, size = before.deflection, before.size
     if grows or splits:
-        size, held, _ = fitted(size, held, np.sqrt(edge + 0.0 * size), 1.0, spans=not splits)
+        size, held, _ = fitted(
+            size, held, np.sqrt(edge + 0.0 * size), 1.0, spans=not splits, cross=drive.cross
+        )
     squares = np.square(np.multiply.outer(np.arange(len(held)) + 0.5, size / len(held)))
     least = profile(squares, before.edge, before.excess)
     most = profile(squares, edge, excess)
@@ -267,8 +278,8 @@ def moved(
     lead = contact.time * drive.scale
     move = part * drive.move
     deflection = held * np.exp(-decay * (1.0 - part)) if first is not least else held
-    step = dragged if np.iscomplexobj(held) else _slipped
-    deflection = step(deflection, move, drive.move / decay, first, most, part * decay)
+    asked = deflection, move, drive.move / decay, first, most, part * decay
+    deflection = dragged(*asked, drive.cross) if np.iscomplexobj(held) else _slipped(*asked)
     total = most.sum(axis=0)
     in_contact = total > 0.0
     per_total = 1.0 / np.where(in_contact, total, 1.0)
@@ -277,16 +288,18 @@ def moved(
         deflection, most, lead, drive, per_total, out=np.empty_like(deflection)
     )
     if not in_contact.all():
-        share = np.where(in_contact, share, alone(lead * drive.slip, excess, before.share))
+        pulled = lead * stretched(drive.slip, drive.cross)
+        share = np.where(in_contact, share, alone(pulled, excess, before.share))
     # the work on springs is lost or stored; what is stored is lost when a spring leaves, or after
-    old = _cut(held + before.lead, least)
+    old = _cut(held + before.lead, least, drive.cross)
     if size is not before.size:  # as many springs over another length
         old = old * np.where(before.size > 0.0, size / (before.size + TINY), 1.0)
     mean = 0.5 * (before.weight * old + weight * traction)
     # springs that entered count as if they had moved all the time: the force is their mean
-    gained = _real(mean, (deflection - held) / np.maximum(part, TINY))
+    gained = _real(mean, relaxed(deflection - held, drive.cross) / np.maximum(part, TINY))
     work = _real(mean, drive.move) - gained
-    after = Memory(size, edge, excess, contact.time, lead * slip, share, weight, deflection)
+    lead = lead * stretched(slip, drive.cross)
+    after = Memory(size, edge, excess, contact.time, lead, share, weight, deflection)
     force = drive.acting * share
     return force, np.maximum(work.sum(axis=0), 0.0), gained.sum(axis=0), after
 
@@ -302,8 +315,9 @@ def solved(
     """
     share = np.divide(drive.force, drive.acting, out=0.0 * drive.force, where=drive.acting > 0.0)
     stiff = lead * drive.mobility * drive.acting * per_total
-    traction = np.add(deflection, lead * drive.slip, out=out)
-    _cut(traction, most)
+    cross = drive.cross
+    traction = np.add(deflection, lead * stretched(drive.slip, cross), out=out)
+    _cut(traction, most, cross)
     found = np.ones(len(traction)).dot(traction) * per_total
     slip = np.broadcast_to(drive.slip, share.shape)
     hard = np.flatnonzero(stiff * np.count_nonzero(most, axis=0) > STIFF)
@@ -313,12 +327,12 @@ def solved(
     push = (drive.mobility * drive.acting)[hard]
     one, at, limits = share[hard], drive.slip[hard], most[:, hard if most.shape[1] > 1 else 0, ...]
     limits = limits.reshape(len(most), -1)
-    slip = slip.copy()
+    slip, cross = slip.copy(), None if cross is None else cross[hard]
     for _ in range(TURNS):
         slip[hard] = at
-        pulled = deflection[:, hard] + few[0] * at
+        pulled = deflection[:, hard] + few[0] * stretched(at, cross)
         stuck = (np.abs(pulled) < limits).sum(axis=0)
-        _cut(pulled, limits)
+        _cut(pulled, limits, cross)
         new = one + (pulled.sum(axis=0) * few[2] - one) / (1.0 + few[1] * stuck)
         at, one = at + (one - new) * push, new
     found[hard], traction[:, hard] = one, pulled
@@ -330,14 +344,13 @@ def _real(first: Any, second: Any) -> Any:
     return (np.conj(first) * second).real if np.iscomplexobj(first) else first * second
 
 
-def _cut(traction: Any, most: Any) -> Any:
+def _cut(traction: Any, most: Any, cross: Any = None) -> Any:
     """Cut tractions to their limit, in place, and return them."""
-    if traction.dtype.kind != "c":
-        np.minimum(traction, most, out=traction)
-        return np.maximum(traction, -most, out=traction)
-    size = np.abs(traction)
-    traction *= np.where(size > most, most / (size + TINY), 1.0)
-    return traction
+    if traction.dtype.kind == "c":
+        traction -= beyond(traction, most, cross)
+        return traction
+    np.minimum(traction, most, out=traction)
+    return np.maximum(traction, -most, out=traction)
 
 
 def _column(value: Array, items: tuple[int, ...]) -> Array:
@@ -401,8 +414,7 @@ def fields(state: State) -> dict[str, Any]:
     springs, items = memory.deflection.shape
     places = np.multiply.outer(np.arange(springs) + 0.5, memory.size / springs)
     limit = profile(places * places, memory.edge, memory.excess)
-    traction = memory.deflection + memory.lead
-    traction = _cut(traction, limit)
+    traction = _cut(memory.deflection + memory.lead, limit, state.cross)
     rows = (
         np.broadcast_to(each, (springs, items)).T.reshape(*shape, springs)
         for each in (places * scales.radius, memory.deflection, traction, limit)
