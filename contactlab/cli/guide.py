@@ -35,7 +35,8 @@ PARTS = {
     ),
     "theory": (
         "theory-impact", "theory-springs", "theory-methods", "theory-coupling",
-        "theory-normal-laws", "theory-more-laws", "theory-loss", "theory-references",
+        "theory-normal-laws", "theory-more-laws", "theory-loss", "theory-elliptic",
+        "theory-references",
     ),
 }  # fmt: skip
 PAGES = tuple(page for topic in TOPICS for page in (topic, *PARTS.get(topic, ())))

@@ -221,7 +221,8 @@ def gap_of(encounter: Any, t1: Array, t2: Array) -> Gap:
         elliptic = size > ROUND * np.abs(mean)
     if not np.any(elliptic):
         if not np.all(mean > 0.0):
-            _refuse_gap(encounter, "the bodies must curve apart at the contact", "two planes")
+            rule = "one of the bodies must be curved, and both curve apart"
+            _refuse_gap(encounter, rule, "two planes")
         return Gap(mean, mean, np.asarray(1.0 + 0.0j), elliptic)
     # the determinant of the sum, of which no term is negative between convex bodies
     turned = axis * np.conj(across)
