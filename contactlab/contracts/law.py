@@ -47,8 +47,9 @@ class Law(ABC):
        parameters.
     7. Arrays passed to a law are read-only; writing to them raises an error.
     8. ``elliptic`` says that the law holds on an elliptic contact, of which ``Pair`` has the radius
-       of the circle as stiff, and G* along the slip. Of other laws the plan says there that they
-       were made for a circle.
+       of the circle as stiff, and G* along t1; a law of vectors has G* along t2 too,
+       ``cross_stiffness_ratio`` times that. Of other laws the plan says there that they were made
+       for a circle.
     9. ``refuses(other)`` says why the law does not run beside another law; ``accept(scene)``
        raises a ``ValueError`` for a scene that the law cannot run.
     """

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.compose.normal_motion import normal_motion
+from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import SteppedTangentialLaw
 from contactlab.numeric.arrays import locked
 from contactlab.testing import limits
@@ -26,6 +29,7 @@ Array = NDArray[np.float64]
 
 #: Words of the laws that the checks apply to, with their values.
 PRESENT, VECTORS = ("needs_future", False), ("vectors", True)
+ELLIPTIC = ("elliptic", True)
 SEEDS = (41, 42, 43)
 #: Rounding of forces over mu P_max, and of work.
 ROUNDING = 1e-9
@@ -33,6 +37,9 @@ ROUNDING = 1e-9
 DEEP, STEPS = 2.25, 32
 #: Slip that drags a force into its direction, over the slip at which gross slip begins.
 DRAGGED = 40.0
+#: G* along t2 over that along t1 of an elliptic contact; slip at which nearly all of it sticks,
+#: over that at which gross slip begins, and the bound of the ratio of forces.
+RATIO, LITTLE, NEAR = 1.2, 1e-3, 0.01
 SHAPES: tuple[tuple[int, ...], ...] = ((), (3,))
 
 
@@ -155,6 +162,37 @@ def vectors_on_a_line(law: Any) -> None:
                 f"A random path along t1 (seed {seed}) gives force or work {gap:.2g} off that of "
                 f"numbers.",
             )
+
+
+@check(SteppedTangentialLaw, word=ELLIPTIC)
+def two_stiffnesses(law: Any) -> None:
+    """On an ellipse vectors meet the stiffness of each axis, and numbers that of t1."""
+    for shape in SHAPES:
+        circle = Bench.of(shape)
+        pair = attrs.evolve(circle.scene.pair, cross_stiffness_ratio=RATIO)
+        scene = attrs.evolve(circle.scene, pair=pair)
+        bench = Bench.along(normal_motion(REGISTRY.create("normal.hertz"), scene))
+        path = wandering(SEEDS[0])
+        gap = worst(drive(law, bench, path).force - drive(law, circle, path).force)
+        within(gap, slack(law), f"The stiffness of t2 moves forces along t1 by {gap:.2g} mu P_max.")
+        if not law.vectors:
+            continue
+        level, way = 0.8, np.array((0.6, 0.8))
+        path = straight((0.0, level), (LITTLE, level), (DRAGGED, level), steps=STEPS)
+        told = drive_vectors(law, bench, Path(path.slip[:, None] * way, path.level)).force
+        ratio = told[2 * STEPS - 1, ..., 1] / told[2 * STEPS - 1, ..., 0] / (way[1] / way[0])
+        within(
+            worst(ratio / RATIO - 1.0),
+            NEAR,
+            f"Where the contact sticks, forces along t2 and t1 over the slips are in the ratio "
+            f"{np.ravel(ratio)[0]:.4g}, not {RATIO:g}.",
+        )
+        gap = worst(told[-1] / level**1.5 - way)
+        within(
+            gap,
+            slack(law, 1e-6),
+            f"In gross slip F/(mu P) is {gap:.2g} off the direction of the slip.",
+        )
 
 
 def drive_vectors(law: SteppedTangentialLaw, bench: Bench, path: Path) -> Answers:

@@ -72,7 +72,6 @@ class LinearSpring(SteppedTangentialLaw):
     Di Maio, Chem. Eng. Sci. 59 (2004) 525-541, doi:10.1016/j.ces.2003.09.037.
     """
 
-    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
     needs_future: ClassVar[bool] = False
     vectors: ClassVar[bool] = True

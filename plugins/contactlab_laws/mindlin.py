@@ -189,7 +189,6 @@ class MindlinCap(SteppedTangentialLaw):
     for the factor 2/3.
     """
 
-    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
     needs_future: ClassVar[bool] = False
     vectors: ClassVar[bool] = True

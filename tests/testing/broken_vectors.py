@@ -15,6 +15,7 @@ class Held(NamedTuple):
     stiffness: Any
     friction_coefficient: Any
     force: Any
+    sides: Any = 1.0
 
 
 @attrs.frozen(kw_only=True)
@@ -24,17 +25,33 @@ class SoundVector(Sound):
     api_version: ClassVar[int] = 2
     needs_future: ClassVar[bool] = False
     vectors: ClassVar[bool] = True
+    elliptic: ClassVar[bool] = True
+
+    def sides(self, scene):
+        """Return the stiffness along t1 and t2 over that along t1."""
+        return np.stack(np.broadcast_arrays(1.0, scene.pair.cross_stiffness_ratio), axis=-1)
 
     def begin(self, scene, normal, *, vectors=False):
         begun = self.start(scene, normal)
-        return Held(*begun._replace(force=np.zeros((*scene.shape, 2)))) if vectors else begun
+        if not vectors:
+            return begun
+        return Held(*begun._replace(force=np.zeros((*scene.shape, 2))), self.sides(scene))
 
     def trial(self, state, increment):
-        return state.force + np.asarray(state.stiffness)[..., None] * increment.displacement
+        moved = state.sides * increment.displacement
+        return state.force + np.asarray(state.stiffness)[..., None] * moved
 
     def cut(self, trial, limit, state):
         size = np.linalg.norm(trial, axis=-1, keepdims=True)
-        return trial * np.minimum(1.0, limit / (size + (size == 0.0)))
+        if np.all(state.sides == 1.0):
+            return trial * np.minimum(1.0, limit / (size + (size == 0.0)))
+        # the closest point in the energy of the spring, whose slip is along the force
+        least, most = np.zeros(size.shape), 4.0 * size / np.maximum(limit, 1e-12 * size + 1e-300)
+        for _ in range(100):
+            g = 0.5 * (least + most)
+            longer = np.linalg.norm(trial / (1.0 + g * state.sides), axis=-1, keepdims=True) > limit
+            least, most = np.where(longer, g, least), np.where(longer, most, g)
+        return np.where(size > limit, trial / (1.0 + most * state.sides), trial)
 
     def advance(self, state, increment, before, after):
         if not isinstance(state, Held):
@@ -42,13 +59,29 @@ class SoundVector(Sound):
         trial = self.trial(state, increment)
         limit = np.asarray(state.friction_coefficient * after.friction_load)[..., None]
         force = self.cut(trial, limit, state)
-        slip = (trial - force) / np.asarray(state.stiffness)[..., None]
+        slip = (trial - force) / (state.sides * np.asarray(state.stiffness)[..., None])
         work = np.maximum(0.5 * ((force + state.force) * slip).sum(axis=-1), 0.0)
         return TangentialResponse(force, work[()]), state._replace(force=force)
 
 
+class OneStiffness(SoundVector):
+    """Takes an ellipse for a circle."""
+
+    def sides(self, scene):
+        return np.ones(2)
+
+
+class SlipsByStiffness(SoundVector):
+    """Is cut along its force, and comes to lie along the slip times the stiffness."""
+
+    def cut(self, trial, limit, state):
+        return super().cut(trial, limit, state._replace(sides=np.ones(2)))
+
+
 class StifferAcross(SoundVector):
     """A spring that is stiffer along t2 while it sticks."""
+
+    elliptic: ClassVar[bool] = False
 
     def trial(self, state, increment):
         moved = np.asarray(increment.displacement) * (1.0, 1.2)
@@ -65,6 +98,8 @@ class StifferAcross(SoundVector):
 
 class KeepsItsDirection(SoundVector):
     """A force at its limit does not turn with the slip."""
+
+    elliptic: ClassVar[bool] = False
 
     def cut(self, trial, limit, state):
         old = state.force
@@ -151,5 +186,7 @@ BROKEN = [
     (StifferAcross, "vectors_rotate", "Rotated by 42 radians"),
     (KeepsItsDirection, "vectors_turn", "off its direction"),
     (LongWhereItTurns, "vector_limit", "longer than mu times the friction load"),
+    (OneStiffness, "two_stiffnesses", "in the ratio 1, not 1.2"),
+    (SlipsByStiffness, "two_stiffnesses", "off the direction of the slip"),
     (SofterAsVectors, "vectors_on_a_line", "off that of numbers"),
 ]
