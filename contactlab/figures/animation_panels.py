@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.patches import Circle, Patch
+from matplotlib.patches import Circle, Ellipse, Patch
 from numpy.typing import NDArray
 
 from contactlab.figures.stick_slip import NO_CONTACT, STATES
@@ -20,6 +20,7 @@ from contactlab.figures.style import (
     friction_limit,
     zero_line,
 )
+from contactlab.impact.hertz import semi_axes
 from contactlab.outcome.columns import scaled_forces
 from contactlab.outcome.result import ImpactResult
 
@@ -184,7 +185,7 @@ class Forces:
 
 
 class Disc:
-    """The contact seen from above: stick, and slip forward or backward."""
+    """The contact seen from above, t1 to the right: stick, and slip forward or backward."""
 
     def __init__(self, axes: Axes, result: ImpactResult) -> None:
         history = result.history
@@ -196,15 +197,21 @@ class Disc:
         self.radius = np.asarray(fields["radius"])
         self.edge = np.asarray(history.contact_radius)
         self.largest = float(result.motion.maximum_radius)
-        side = (np.arange(DISC) + 0.5) / DISC * 2.2 - 1.1
-        self.distance = self.largest * np.hypot(side, side[:, np.newaxis])
+        one, other = (float(axis) for axis in semi_axes(result.scene.pair))
+        reach = 1.1 * max(one, other)
+        side = reach * ((np.arange(DISC) + 0.5) / DISC * 2.0 - 1.0)
+        self.distance = self.largest * np.hypot(side / one, side[:, np.newaxis] / other)
         names = [*STATES.values(), NO_CONTACT]
         self.colours = np.array(
             [[int(name[k : k + 2], 16) for k in (1, 3, 5)] for name in names], dtype=np.uint8
         )
         empty = np.full((DISC, DISC, 3), 255, dtype=np.uint8)
-        self.image = axes.imshow(empty, extent=(-1.1, 1.1, -1.1, 1.1), interpolation="nearest")
-        rim = Circle((0.0, 0.0), 1.0, fill=False, edgecolor=QUIET, linestyle=":")
+        self.image = axes.imshow(
+            empty, extent=(-reach, reach, -reach, reach), interpolation="nearest"
+        )
+        rim = Ellipse(
+            (0.0, 0.0), 2.0 * one, 2.0 * other, fill=False, edgecolor=QUIET, linestyle=":"
+        )
         axes.add_patch(rim)
         axes.set_axis_off()
         patches = [Patch(color=colour, label=name) for name, colour in STATES.items()]

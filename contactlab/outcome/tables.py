@@ -10,6 +10,7 @@ import numpy as np
 
 from contactlab.contracts.status import Status
 from contactlab.impact.bodies import HalfSpace, Sphere
+from contactlab.impact.hertz import semi_axes
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.outcome.columns import (
     QUANTITIES,
@@ -259,9 +260,17 @@ def _contact(result: ImpactResult) -> list[Row]:
         rows.append(["compressions", result.compressions, "1"])
     if scene.sphere is None and scene.encounter is None:
         return rows
+    sizes: list[Row] = [["largest contact radius", motion.maximum_radius, "m"]]
+    if scene.pair.axis_ratio != 1.0:
+        axes: Any = zip(("t1", "t2"), semi_axes(scene.pair), strict=True)
+        sizes[0][0] = "largest contact radius, of the circle as stiff"
+        sizes += [
+            [f"largest semi-axis along {name}", motion.maximum_radius * axis, "m"]
+            for name, axis in axes
+        ]
     return [
         *rows,
-        ["largest contact radius", motion.maximum_radius, "m"],
+        *sizes,
         ["largest contact radius over R, C (9)", motion.maximum_radius / scene.pair.radius, "1"],
         ["largest normal force", motion.maximum_force, "N"],
     ]

@@ -12,6 +12,7 @@ import numpy as np
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.bodies import HalfSpace, Sphere
+from contactlab.impact.elliptic import ellipse
 from contactlab.impact.hertz import hertz_scales, rigid_body_rebound
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
@@ -57,6 +58,19 @@ LOSS_PSI2 = {
     (0.538747, 1.75):
         (-0.010535, -0.052723, -0.105150, -0.120047, -0.208623, -0.450809, -0.672458),
 }  # fmt: skip
+#: Elliptic contact at an angle to its axes: groups, and psi2 by two programs (theory §16).
+ASIDE: dict[str, Any] = {
+    "psi1": (0.8252397, 0.9558827),
+    "chi": ((0.4612217, 0.0), (0.0, 1.5682450)),
+    "rho": 0.09 / 0.7736623,
+    "cross_stiffness_ratio": 0.8961400 / 0.7736623,
+}
+ASIDE_PSI2, ASIDE_BOUND = (-0.643320, -0.062657), 2e-4
+#: Curvatures B/A of a gap, b/a and R (A + B), of a direct solution of the contact (theory §16).
+ELLIPSES = (
+    (2.0, 0.630595701, 1.081965077), (4.0, 0.399887015, 1.351490525),
+    (25.0, 0.125881950, 3.819343736), (400.0, 0.024714785, 30.7241028),
+)  # fmt: skip
 #: Springs and steps against these values, and the bound.
 LOSS_SPRINGS, LOSS_STEPS, LOSS_BOUND = 50, 200, 1.2e-3
 #: Relative bounds of force, and of approach or duration, as read off figures. Two readers of one
@@ -113,11 +127,14 @@ def _checks() -> Iterator[Callable[[], Finding]]:
     installed = REGISTRY.names()
     yield _hertz
     yield _rigid
+    yield _ellipses
     for composition in COMPOSITIONS:
         if {f"tangential.{composition[0]}", f"integrator.{composition[2]}"} <= set(installed):
             yield partial(_reference, *composition)
     if {"normal.viscoelastic", "tangential.springs", "integrator.symplectic"} <= set(installed):
         yield _loss
+    if {"tangential.springs", "integrator.symplectic"} <= set(installed):
+        yield _aside
     for name, (scene, published) in hertz_scalars().items():
         for entries, bound in (
             (("force",), FORCE_READING),
@@ -249,6 +266,23 @@ def _loss() -> Finding:
     what = f"viscoelastic / springs, springs={LOSS_SPRINGS}, steps={LOSS_STEPS}"
     count = sum(map(len, LOSS_PSI2.values()))
     return _finding(what, f"{count} reference values of psi2", off, LOSS_BOUND)
+
+
+def _ellipses() -> Finding:
+    off = []
+    for ratio, aspect, radius in ELLIPSES:
+        found = ellipse(1.0 / ratio)
+        off += [found.axis_ratio / aspect - 1.0, found.radius / radius - 1.0]
+    return _finding("ellipses: b/a and R(A + B)", "a direct solution of the contact", off, 3e-8)
+
+
+def _aside() -> Finding:
+    law = REGISTRY.create("tangential.springs", springs=LOSS_SPRINGS)
+    march = REGISTRY.create("integrator.symplectic", steps=LOSS_STEPS)
+    scene = Scene.nondimensional(**ASIDE)
+    off = Simulation(tangential=law, integrator=march).run(scene).check().psi2 - ASIDE_PSI2
+    what = f"springs, an ellipse aside, springs={LOSS_SPRINGS}, steps={LOSS_STEPS}"
+    return _finding(what, "psi2 by two programs", off, ASIDE_BOUND)
 
 
 def _codes(number: int, form: str) -> Finding:

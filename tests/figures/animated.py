@@ -26,6 +26,7 @@ def impact(*, slip=(2.0, 1.0, 0.0, -2.0), fields=FIELDS, sphere=True, after=(1.0
     )  # fmt: skip
     scene = SimpleNamespace(
         sphere=SimpleNamespace(radius=2.0) if sphere else None, tangential_velocity=3.0,
+        pair=SimpleNamespace(axis_ratio=1.0),
         normal_speed=4.0, spin=-1.0, shape=(), friction_coefficient=0.2,
     )  # fmt: skip
     numbers = {"duration": 4.0, "maximum_force": 10.0, "maximum_radius": 2.0} | motion

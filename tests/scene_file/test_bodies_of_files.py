@@ -167,3 +167,59 @@ def test_refusals(read, text, pair, words):
     for word in words[1:]:
         assert word in str(refused.value)
     assert "\n" not in str(refused.value)
+
+
+DISC = """
+[body]
+shape = "disc"
+radius = 0.038
+thickness = 0.025
+rim_radius = 0.002
+mass = 0.17
+axis = [0.3, 0, 1]
+material = "rubber"
+[target]
+kind = "half-space"
+material = "steel"
+[impact]
+friction_coefficient = 0.3
+normal = [0, 0, -1]
+velocity = [0.5, 0.0, -1.0]
+"""
+
+
+def test_a_disc_and_two_radii_in_a_file(read):
+    """A puck by its shape and by its numbers is one scene."""
+    by_shape = read(DISC).scene
+    body = by_shape.encounter.body
+    told = {
+        "mass": body.mass, "inertia": body.inertia.tolist(),
+        "curvature_radius": body.curvature_radius, "cross_radius": body.cross_radius,
+        "curvature_axis": body.curvature_axis.tolist(), "material": '"rubber"',
+    }  # fmt: skip
+    table = "\n".join(f"{name} = {value}" for name, value in told.items())
+    contact = by_shape.encounter.contact.tolist()
+    text = f"[body]\n{table}\n[target]{DISC.split('[target]')[1]}contact = {contact}\n"
+    by_numbers = read(text).scene
+    assert by_numbers.pair == by_shape.pair
+    assert by_numbers.pair.axis_ratio != 1.0
+
+
+def test_a_tilt_from_an_edge_to_a_corner_is_swept(read):
+    """A bar on an edge, and on a corner from some tilt on: each as it is alone."""
+    text = DISC.replace('shape = "disc"', 'shape = "box"\nsides = [0.2, 0.02, 0.02]')
+    for line in ("radius = 0.038", "thickness = 0.025", "rim_radius = 0.002", "axis = [0.3, 0, 1]"):
+        text = text.replace(line + "\n", "")
+    roll = "axes = [[1, 0, 0], [0, 0.8, -0.6], [0, 0.6, 0.8]]\n"
+    text = text.replace("mass", f"corner_radius = 0.001\ncrown_radius = 1.0\n{roll}mass")
+    swept = read(text + "[sweep]\ntilt_deg = [0.0, 3.0, 20.0]\n").scene
+    ratios = []
+    for place, degrees in enumerate((0.0, 3.0, 20.0)):
+        alone = read(text.replace("[target]", f"tilt_deg = {degrees}\n[target]")).scene
+        part = swept.take(place)
+        assert part.pair.radius == pytest.approx(alone.pair.radius, rel=1e-13)
+        assert part.psi1 == pytest.approx(alone.psi1, abs=1e-12)
+        ratios.append(alone.pair.axis_ratio)
+    assert ratios[0] != 1.0
+    assert ratios[1] != 1.0
+    assert ratios[2] == 1.0
