@@ -16,10 +16,12 @@ from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.files import written
 
-#: Files of ``contactlab/kernels``: springs on a doubling grid (theory §13), bounces, types, notes.
+#: Files of ``contactlab/kernels``: springs on a doubling grid (theory §13), bounces, exact impacts
+#: (theory §14), types, notes.
 FILES = (
     "contactlab_springs.h", "contactlab_springs.mjs", "contactlab_springs.d.mts",
     "contactlab_bounce.h", "contactlab_bounce.mjs", "contactlab_bounce.d.mts",
+    "contactlab_impact.h",
     "package.json", "README.md", "LICENSE",
 )  # fmt: skip
 

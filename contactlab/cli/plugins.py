@@ -75,6 +75,8 @@ def _show(arguments: argparse.Namespace) -> int:
         entry["runs"] = law.tangential_contract.__name__
     if issubclass(law, TangentialLaw):
         entry["is a"] = [way.__name__ for way in WAYS if issubclass(law, way)]
+        if solver := law.solver():
+            entry["solver"] = solver
     entry["needs"], entry["offers"] = sorted(law.needs), sorted(law.offers)
     accepted, sources = options(law), references(law)
     if arguments.json:

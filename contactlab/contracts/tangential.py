@@ -186,6 +186,11 @@ class TangentialLaw(Law):
         """
         return False
 
+    @classmethod
+    def solver(cls) -> str:
+        """Return in words what computes the answers, where that depends on the installation."""
+        return ""
+
     def shares_loss(self, normal: Law) -> bool:
         """Return whether the law shares the loss of a normal law (clause 9); False by default.
 

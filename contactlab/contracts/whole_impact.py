@@ -93,6 +93,16 @@ class Tabulated(ABC):
             them of a law that takes restitutions; arrays only.
         """
 
+    def solved(self, psi1: Any, chi: Any) -> Any:
+        """Return psi2 - psi1 beyond the table; None, the default, where impacts are marched.
+
+        Parameters
+        ----------
+        psi1, chi : array, shape (impacts,)
+            psi1 at least 0.
+        """
+        return None
+
 
 def from_change(
     scene: Scene,

@@ -279,7 +279,9 @@ def test_it_is_c_plus_plus_too(tmp_path):
     if compiler is None:
         pytest.skip("no C++ compiler (c++, g++) is there")
     source = tmp_path / "use.cpp"
-    include = '#include "contactlab_springs.h"\n#include "contactlab_bounce.h"\n'
+    include = "".join(
+        f'#include "contactlab_{name}.h"\n' for name in ("springs", "bounce", "impact")
+    )
     source.write_text(include + "int main() { return 0; }\n")
     words = [compiler, "-std=c++11", "-Wall", "-Wextra", "-pedantic", "-Werror", f"-I{KERNELS}"]
     subprocess.run([*words, "-Wno-unused-function", "-c", source, "-o", tmp_path / "use.o"],

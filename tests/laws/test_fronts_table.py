@@ -38,7 +38,7 @@ def test_it_is_the_exact_solution_within_what_it_declares():
     assert np.all(np.abs(found.psi2 - exact.psi2) <= error)
     assert np.all(error <= 1.1e-9 * np.maximum(1.0, np.abs(grid().psi1)))
     assert np.all(error[np.abs(grid().psi1) == 40.0] < 1e-10)  # slips throughout: a closed form
-    assert error[np.abs(grid().psi1) == 0.3] == pytest.approx(1e-9, rel=0.01)
+    assert error[(np.abs(grid().psi1) == 0.3) & (grid().chi < 2.5)] == pytest.approx(1e-9, rel=0.01)
     work, other = found.motion.friction_work, exact.motion.friction_work
     assert np.allclose(work, other, rtol=0.0, atol=1e-6 * exact.energy.start)
 
@@ -69,7 +69,9 @@ def test_velocities_and_work_over_ten_thousand_impacts():
     assert work < 2e-10
 
 
-def test_plan_counters_and_ledger_say_it():
+def test_plan_counters_and_ledger_say_it(monkeypatch):
+    """Beyond the table impacts are followed, where nothing is compiled."""
+    monkeypatch.setenv("CONTACTLAB_COMPILED", "0")
     result = Simulation().run(grid())
     told = str(result.plan)
     assert f"march of the tangential motion (15 of 36 impacts): {REASON}" in told

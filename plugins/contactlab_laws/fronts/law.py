@@ -22,7 +22,9 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import spread
 from contactlab.numeric.checks import Real
+from contactlab_laws.fronts import compiled
 from contactlab_laws.jaeger.gross_slip import gross_slip
 from contactlab_laws.tables.elastic import ERROR, rebound
 from contactlab_laws.tables.regions import LARGEST_CHI
@@ -33,6 +35,9 @@ REASON = "psi2 is tabulated; a history, or a tolerance below 1e-9, follows the i
 
 #: Error of impacts that are followed where none is asked for.
 FOLLOWED = 1e-9
+#: Error over max(1, psi1) of whole impacts by the compiled solver, and why they are not followed.
+COMPILED = 1e-11
+SOLVED = "psi2 is solved by the compiled law; a history follows the impact"
 
 
 @attrs.frozen(kw_only=True)
@@ -41,12 +46,14 @@ class Fronts(PathTangentialLaw, Tabulated):
 
     Where the contact sticks and where it slips is a short list of fronts; between changes
     of regime their motion is smooth (theory §§4 and 5). Up to chi = 2.5 psi2 is a table of psi1
-    and chi, and impacts are followed only for a history or a tolerance below 1e-9.
+    and chi, beyond it the compiled solver answers, and impacts are followed for a history, a
+    tolerance below 1e-9, or where there is no such solver.
 
     Parameters
     ----------
     table : bool
-        Take whole impacts from the table where it answers; False solves every impact.
+        Take whole impacts from the table where it answers, and beyond it from the compiled solver
+        if there is one; False follows every impact.
 
     References
     ----------
@@ -60,7 +67,7 @@ class Fronts(PathTangentialLaw, Tabulated):
     offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
     needs: ClassVar[frozenset[str]] = frozenset({"elastic_hertz"})
     together: ClassVar[bool] = True
-    linear_below: ClassVar[float] = 1e-8
+    linear_below: ClassVar[float] = compiled.LINEAR_BELOW
     rebound = staticmethod(rebound)
 
     table: bool = flag(default=True)
@@ -77,7 +84,9 @@ class Fronts(PathTangentialLaw, Tabulated):
         if not scene.shape and tabulated and psi1 and abs(psi1) < max(1.0, 4.0 * chi - 1.0):
             return (_from_table(scene, psi1, chi, where=True),)
         closed = (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
-        if tabulated is False:
+        if self.table and not np.all(tabulated):
+            closed = (*closed, *_solved(scene, np.logical_not(tabulated)))
+        if not np.any(tabulated):
             return closed
         if scene.shape:
             # ``closed`` answers the other impacts; there psi1 may be infinite.
@@ -86,10 +95,25 @@ class Fronts(PathTangentialLaw, Tabulated):
                 chi, psi1 = np.where(tabulated, chi, 1.0), np.where(tabulated, psi1, 0.0)
         return (*closed, _from_table(scene, psi1, chi, where=tabulated))
 
+    def solved(self, psi1: Any, chi: Any) -> Any:
+        """Return psi2 - psi1 by the compiled law; None where it does not answer for all."""
+        if compiled.library() is None:
+            return None
+        slips = np.abs(psi1) >= np.maximum(1.0, 4.0 * chi - 1.0)
+        change, _, known = compiled.central(np.where(slips, 0.5, psi1), chi)
+        return np.where(slips, -4.0 * chi, change) if known.all() else None
+
     def needs_no_march(self, scene: Scene, accuracy: float | None) -> bool:
         """Return whether the table, or a closed form, answers for all impacts."""
-        exact_enough = accuracy is None or accuracy >= ERROR
-        return self.table and exact_enough and bool(np.all(scene.chi <= LARGEST_CHI))
+        by_table = bool(np.all(scene.chi <= LARGEST_CHI))
+        error = ERROR if by_table else COMPILED
+        answers = by_table or compiled.library() is not None
+        return self.table and answers and (accuracy is None or accuracy >= error)
+
+    @classmethod
+    def solver(cls) -> str:
+        """Return whether impacts that are followed are solved by the compiled law."""
+        return compiled.told()
 
     def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:
         """Return 0: there is no discretisation."""
@@ -119,6 +143,37 @@ class Fronts(PathTangentialLaw, Tabulated):
         """Return the accuracy that is aimed at, over max(1, psi1), for both."""
         error = FOLLOWED if accuracy is None else accuracy
         return error * psi_magnitude(scene), error
+
+
+def _solved(scene: Scene, where: Any) -> tuple[WholeImpact, ...]:
+    """Return the answers of the compiled law, where it solves central impacts."""
+    if compiled.library() is None:
+        return ()
+    columns = np.broadcast_arrays(scene.psi1, scene.chi, where)
+    psi1, chi, wanted = (np.ravel(column) for column in columns)
+    slips = np.abs(psi1) >= np.maximum(1.0, 4.0 * chi - 1.0)  # a closed form, psi1 may be infinite
+    places = np.flatnonzero(wanted & ~slips & (psi1 != 0.0))
+    if not places.size:
+        return ()
+    change, work, known = np.zeros((3, psi1.size))
+    change[places], work[places], known[places] = compiled.central(psi1[places], chi[places])
+    pair, mu, speed = scene.pair, scene.friction_coefficient, scene.normal_speed
+    unit: Any = mu * speed / pair.stiffness_ratio
+    energy: Any = 1.25 * mu * unit * pair.normal_mass * speed  # 2.5 rho v1²/(2 W_nn), theory §14
+    error = COMPILED * np.maximum(1.0, np.abs(np.where(known, psi1, 0.0)))
+    change, work, error = (
+        spread(each.reshape(scene.shape), scene.shape) for each in (change, work, error)
+    )
+    return (
+        WholeImpact(
+            where=known.reshape(scene.shape) > 0.0 if scene.shape else bool(known[0]),
+            slip_velocity_change=change * unit,
+            friction_work=work * energy,
+            reason=SOLVED,
+            psi2_error=error,
+            counter="solved",
+        ),
+    )
 
 
 def _from_table(scene: Scene, psi1: Any, chi: Any, *, where: Any) -> WholeImpact:

@@ -80,7 +80,6 @@ class Impact:
         self.margin = 1.0 - abs(psi1)
         self.memory: list[Drawn | Locked] = []
         self.slides: list[tuple[float, ...]] = []
-        # numbers of an array when many are stepped
         self.steps: float = 0
         self.compressions: float = 1
 

@@ -65,7 +65,7 @@ def _drawn(laws: Laws, state: Any, _constants: Any, form: int) -> tuple[Rows, Ev
 def _drawn_form(state: Any, _constants: Any) -> Any:
     """Return 2 where slip begins, 1 where u k of the motion is larger than of the memory, or 0."""
     u, k, c, k1 = state[0], state[2], state[4], state[6]
-    return (abs(u * k) > abs(c * k1)) + 2 * ((k == 0.0) & (k1 == 0.0))
+    return (abs(u * k) > abs(c * k1)) + 2 * (k == 0.0 and k1 == 0.0)
 
 
 def _drawn_power(form: int, u: Any, k: Any, c: Any, k1: Any) -> Any:

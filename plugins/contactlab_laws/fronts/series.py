@@ -12,24 +12,18 @@ kept. Its contact radius is the front c, its J is the J of the motion. As m = co
 dx : dx_1 = u_1 k_1 : u k, with u_1 = c. The variable is that of the two whose u k is the smaller.
 Where slip begins both are zero, and x_1 = x_0 - (x - x_0) + ... follows order by order.
 
-A series is a list of coefficients, plain numbers; those of many impacts are an array, of shape
-(orders, impacts).
+A series is a list of coefficients. ``contactlab_impact.h`` is the same in C.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from operator import mul
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
-import numpy as np
-
-#: Coefficients of one impact in a list, or those of many in the rows of an array.
-Series: TypeAlias = Any
-#: Several series: of one impact a list, of many an array of shape (series, orders, impacts).
-Rows: TypeAlias = Any
-#: A number of one impact, or those of many.
-Number: TypeAlias = Any
+#: Coefficients, and several series.
+Series: TypeAlias = list[float]
+Rows: TypeAlias = list[Series]
 
 #: Last coefficient of a series: at 1e-12 a step then spans a quarter of the radius of convergence.
 ORDER = 20
@@ -40,10 +34,10 @@ SHARES = [1.0 / (n + 1) for n in range(ORDER)]
 class Laws(NamedTuple):
     """The numbers in the equations: 1 + s lam, 1.5 s lam, 2 chi + s eta - 1 - s lam, 3 chi - ..."""
 
-    press: Number
-    relief: Number
-    drive: Number
-    spring: Number
+    press: float
+    relief: float
+    drive: float
+    spring: float
 
     @classmethod
     def of(cls, sign: int, chi: float, lam: float, eta: float) -> Laws:
@@ -52,56 +46,36 @@ class Laws(NamedTuple):
         return cls(press, relief, 2.0 * chi + sign * eta - press, 3.0 * chi - relief)
 
 
-class Arithmetic(NamedTuple):
-    """Series of zeros, and sums of products, of one impact or of many.
-
-    ``product(a, b, n)`` is the coefficient n of the product; ``lower`` leaves out a_n b_0.
-    """
-
-    blank: Callable[[int], Any]
-    product: Callable[[Series, Series, int], Number]
-    lower: Callable[[Series, Series, int], Number]
+def blank(count: int) -> list[Series]:
+    """Return series of zeros."""
+    return [[0.0] * (ORDER + 1) for _ in range(count)]
 
 
-def _product(a: Series, b: Series, n: int) -> Number:
-    return sum(map(mul, a, b[n::-1]))
+def product(a: Series, b: Series, n: int) -> float:
+    """Return the coefficient n of the product of two series."""
+    total: float = sum(map(mul, a, b[n::-1]))
+    return total
 
 
-def _lower(a: Series, b: Series, n: int) -> Number:
-    return sum(map(mul, a, b[n:0:-1]))
-
-
-def _products(a: Series, b: Series, n: int) -> Number:
-    return np.einsum("ij,ij->j", a[: n + 1], b[n::-1])
-
-
-def _lowers(a: Series, b: Series, n: int) -> Number:
-    return np.einsum("ij,ij->j", a[:n], b[n:0:-1])
-
-
-def arithmetic(like: Number) -> Arithmetic:
-    """Return the arithmetic of as many impacts as ``like`` has numbers."""
-    if isinstance(like, float):
-        return Arithmetic(
-            lambda count: [[0.0] * (ORDER + 1) for _ in range(count)], _product, _lower
-        )
-    shape = ORDER + 1, like.size
-    return Arithmetic(lambda count: np.zeros((count, *shape)), _products, _lowers)
+def lower(a: Series, b: Series, n: int) -> float:
+    """Return the coefficient n of the product of two series, without a_n b_0."""
+    total: float = sum(map(mul, a, b[n:0:-1]))
+    return total
 
 
 def difference(a: Series, b: Series) -> Series:
     """Return a - b."""
-    return [x - y for x, y in zip(a, b, strict=True)] if isinstance(a, list) else a - b
+    return [x - y for x, y in zip(a, b, strict=True)]
 
 
 def negative(a: Series) -> Series:
     """Return -a."""
-    return [-x for x in a] if isinstance(a, list) else -a
+    return [-x for x in a]
 
 
-def value(series: Series, t: Number) -> Number:
+def value(series: Series, t: float) -> float:
     """Return the value at t by Horner's rule."""
-    total: Number = 0.0
+    total: float = 0.0
     for coefficient in reversed(series):
         total = total * t + coefficient
     return total
@@ -110,14 +84,14 @@ def value(series: Series, t: Number) -> Number:
 class Forces:
     """V' and k' of one contact, order by order, from its u and the J."""
 
-    def __init__(self, laws: Laws, u: Series, lack: Series, numbers: Arithmetic) -> None:
-        self.laws, self.u, self.lack, self.product = laws, u, lack, numbers.product
-        self.square, self.fourth, self.rate, self.margin = numbers.blank(4)
+    def __init__(self, laws: Laws, u: Series, lack: Series) -> None:
+        self.laws, self.u, self.lack = laws, u, lack
+        self.square, self.fourth, self.rate, self.margin = blank(4)
 
-    def next(self, n: int) -> tuple[Number, Number]:
+    def next(self, n: int) -> tuple[float, float]:
         """Find, and return, the coefficients n."""
         press, relief, drive, spring = self.laws
-        product, u = self.product, self.u
+        u = self.u
         self.square[n] = product(u, u, n)
         self.fourth[n] = fourth = product(self.square, self.square, n)
         held = product(u, self.lack, n)
@@ -126,17 +100,16 @@ class Forces:
         return rate, margin
 
 
-def along_stick(laws: Laws, state: Sequence[Number]) -> Rows:
+def along_stick(laws: Laws, state: Sequence[float]) -> Rows:
     """Return u, V, k, J, x and T while all sticks, from their values."""
-    numbers = arithmetic(state[0])
-    U, V, K, J, X, T = rows = numbers.blank(6)
+    U, V, K, J, X, T = rows = blank(6)
     for row, begin in zip(rows, state, strict=False):
         row[0] = begin
     X[1] += 1.0
-    forces = Forces(laws, U, J, numbers)
+    forces = Forces(laws, U, J)
     for n, share in enumerate(SHARES):
         rate, margin = forces.next(n)
-        J[n + 1] = 2.0 * share * numbers.product(forces.square, K, n)
+        J[n + 1] = 2.0 * share * product(forces.square, K, n)
         T[n + 1] = 2.0 * share * U[n]
         U[n + 1] = share * V[n]
         V[n + 1] = share * rate
@@ -144,13 +117,12 @@ def along_stick(laws: Laws, state: Sequence[Number]) -> Rows:
     return rows
 
 
-def along_gross(laws: Laws, state: Sequence[Number]) -> Rows:
+def along_gross(laws: Laws, state: Sequence[float]) -> Rows:
     """Return u, V, k, J = 0 and T while all slips."""
-    numbers = arithmetic(state[0])
-    U, V, K, J, T = rows = numbers.blank(5)
+    U, V, K, J, T = rows = blank(5)
     for row, begin in zip(rows, state, strict=False):
         row[0] = begin
-    forces = Forces(laws, U, J, numbers)
+    forces = Forces(laws, U, J)
     for n, share in enumerate(SHARES):
         rate, margin = forces.next(n)
         T[n + 1] = 2.0 * share * U[n]
@@ -160,7 +132,7 @@ def along_gross(laws: Laws, state: Sequence[Number]) -> Rows:
     return rows
 
 
-def along_drawn(laws: Laws, state: Sequence[Number], *, fresh: bool, back: bool) -> Rows:
+def along_drawn(laws: Laws, state: Sequence[float], *, fresh: bool, back: bool) -> Rows:
     """Return u, V, k, J; c, V_1, k_1 on the memory, what is left of it in x_1; and T.
 
     Parameters
@@ -173,14 +145,12 @@ def along_drawn(laws: Laws, state: Sequence[Number], *, fresh: bool, back: bool)
     back : bool
         True if x_1, which falls, is the variable, and not x.
     """
-    numbers = arithmetic(state[0])
-    blank, product, lower = numbers
     U, V, K, J, C, V1, K1, X1, T = rows = blank(9)
     for row, begin in zip(rows, state, strict=False):
         row[0] = begin
     way = -1.0 if back else 1.0
     (u, v, k), (u1, v1, k1) = ((C, V1, K1), (U, V, K)) if back else ((U, V, K), (C, V1, K1))
-    lead, trail = Forces(laws, u, J, numbers), Forces(laws, u1, J, numbers)
+    lead, trail = Forces(laws, u, J), Forces(laws, u1, J)
     # u k of both, the pace of the other, and its k over x where slip begins
     gone, other, run, slope = blank(4)
     for n, share in enumerate(SHARES):
@@ -192,7 +162,7 @@ def along_drawn(laws: Laws, state: Sequence[Number], *, fresh: bool, back: bool)
         k[n + 1] = ahead * margin
         if fresh:
             known = lower(U, K, n + 1)
-            run[n] = _fresh(n, C, trail.margin, run, slope, other, known, lower)
+            run[n] = _fresh(n, C, trail.margin, run, slope, other, known)
             k1[n + 1] = slope[n]
             gone[n] = product(u, k, n)
         else:
@@ -215,9 +185,8 @@ def _fresh(
     run: Series,
     slope: Series,
     start: Series,
-    known: Number,
-    lower: Callable[[Series, Series, int], Number],
-) -> Number:
+    known: float,
+) -> float:
     """Return the coefficient n of dx_1/dx where slip begins, from (c K_1) dx_1/dx = u K.
 
     K = k/x and K_1 = k_1/x are ``slope`` and its like; ``start`` is c K_1, ``known`` u K. The
@@ -237,19 +206,17 @@ def _fresh(
     return coefficient
 
 
-def along_locked(laws: Laws, state: Sequence[Number], *, inmost: bool) -> Rows:
+def along_locked(laws: Laws, state: Sequence[float], *, inmost: bool) -> Rows:
     """Return u, V, k, J, c and T while a zone slips that was locked out of the other sign.
 
     There m + 2c² and J - (4/3) c³ are constant, and 2 c dc = u k dx. The variable is x or, for
     ``inmost`` fronts, one in which dx = 2 c and dc = u k: as c² goes through zero, c ends.
     """
-    numbers = arithmetic(state[0])
-    product = numbers.product
-    U, V, K, J, C, T = rows = numbers.blank(6)
+    U, V, K, J, C, T = rows = blank(6)
     for row, begin in zip(rows, state, strict=False):
         row[0] = begin
-    gone, run = numbers.blank(2)
-    forces = Forces(laws, U, J, numbers)
+    gone, run = blank(2)
+    forces = Forces(laws, U, J)
     for n, share in enumerate(SHARES):
         rate, margin = forces.next(n)
         gone[n] = product(U, K, n)
@@ -267,7 +234,7 @@ def along_locked(laws: Laws, state: Sequence[Number], *, inmost: bool) -> Rows:
             V[n + 1] = share * rate
             K[n + 1] = share * margin
             T[n + 1] = 2.0 * share * U[n]
-            run[n] = (0.5 * gone[n] - numbers.lower(run, C, n)) / C[0]
+            run[n] = (0.5 * gone[n] - lower(run, C, n)) / C[0]
             C[n + 1] = share * run[n]
             J[n + 1] = 2.0 * share * product(C, gone, n)
     return rows

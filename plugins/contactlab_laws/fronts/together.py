@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.contracts import (
     Ends,
@@ -18,17 +21,18 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.hertz import DURATION_CONSTANT, hertz_scales
-from contactlab_laws.fronts.batch import follow
+from contactlab_laws.fronts import compiled
 from contactlab_laws.fronts.path import Impact
 from contactlab_laws.fronts.phases import Phase
 from contactlab_laws.fronts.series import Rows, value
-from contactlab_laws.fronts.steps import Watch, alone, error_of_step
+from contactlab_laws.fronts.steps import Watch, error_of_step
+from contactlab_laws.fronts.steps import alone as followed
 from contactlab_laws.hertz.motion import scaled_motion, velocity_factor
+
+Array = NDArray[np.float64]
 
 #: The accuracy if none is asked for.
 USUAL = 1e-9
-#: Steps of an impact before it is given up; a hard one takes 30, one of kappa = 1e6 some 10,000.
-MOST_STEPS = 20_000
 #: V, psi's change, work, T, u and compressions of an impact without friction (theory §1).
 SMOOTH = (-1.0, 0.0, 0.0, DURATION_CONSTANT, 1.0, 1.0)
 
@@ -50,25 +54,17 @@ def motion(
     smooth = np.broadcast_to(mu == 0.0, shape)
     numbers = np.array([np.broadcast_to(column, shape) for column in columns], dtype=float)
     moving = np.flatnonzero(~smooth)
-    places = numbers.reshape(4, -1).T[moving].tolist()
-    impacts = [Impact(*place, stepped=observer is not None) for place in places]
-    if observer is None or not impacts:
-        lost = follow(impacts, tolerance, MOST_STEPS)
-    else:
-        watch = _watch(scene, scales, observer, impacts[0])
-        lost = [alone(impacts[0], tolerance, MOST_STEPS, watch)]
-    times = _times(impacts)
-    rows = np.full((smooth.size, 6), SMOOTH)
-    statuses = np.full(len(rows), Status.SUCCESS, dtype=object)
-    details = np.full(len(rows), "", dtype=object)
-    for place, impact, time, reason in zip(moving.tolist(), impacts, times, lost, strict=True):
-        if reason:
-            rows[place], statuses[place] = math.nan, Status.UNRESOLVED
-            details[place] = f"{reason}, from Fronts."
-        else:
-            moved = impact.rate, impact.change, impact.work
-            rows[place] = *moved, time, impact.deepest, impact.compressions
-    rate, psi, work, time, radius, times = rows.T.reshape(6, *shape)
+    watch = None if observer is None else partial(_watch, scene, scales, observer)
+    found, lost = solved(numbers.reshape(4, -1)[:, moving], tolerance, watch)
+    rows = np.repeat(np.array(SMOOTH)[:, None], smooth.size, axis=1)
+    rows[:, moving] = found[:6]
+    statuses = np.full(smooth.size, Status.SUCCESS, dtype=object)
+    details = np.full(smooth.size, "", dtype=object)
+    for place in np.flatnonzero(lost).tolist():
+        rows[:, moving[place]] = math.nan
+        statuses[moving[place]] = Status.UNRESOLVED
+        details[moving[place]] = f"{lost[place]}, from Fronts."
+    rate, psi, work, time, radius, times = rows.reshape(6, *shape)
     unit = mu * speed / kappa
     dragged = -2.0 * speed * W[..., 0, 1] / W[..., 0, 0]
     change = np.where(smooth, dragged, psi * np.where(smooth, 0.0, unit))
@@ -87,25 +83,52 @@ def motion(
         normal=Ends(*map(number, ends)),
         status=statuses.reshape(shape) if shape else statuses[0],
         detail=details.reshape(shape) if shape else details[0],
-        counters={"steps": sum(int(impact.steps) for impact in impacts)},
+        counters={"steps": int(np.sum(found[6]))},
     )
 
 
-def _times(impacts: list[Impact]) -> list[float]:
+def solved(
+    numbers: Array, tolerance: float, watch: Callable[[Impact], Watch] | None = None
+) -> tuple[Array, Any]:
+    """Return what impacts leave, as ``compiled.follow`` does, and why some are lost, as objects.
+
+    Parameters
+    ----------
+    numbers : array, shape (4, impacts)
+        psi1, chi, lam and eta.
+    tolerance : float
+        Error of a step.
+    watch : callable, optional
+        Returns what shows the steps of an impact; Python's solver alone shows them.
+    """
+    count = numbers.shape[1]
+    out, lost = np.empty((7, count)), np.full(count, "", dtype=object)
+    alone = np.arange(count)
+    if watch is None and compiled.library() is not None:
+        out, status = compiled.follow(numbers, tolerance, compiled.MOST_STEPS)
+        for place in np.flatnonzero(status).tolist():
+            if status[place] != compiled.MEMORY:
+                lost[place] = compiled.LOST[status[place]].format(compiled.MOST_STEPS)
+        alone = np.flatnonzero(status == compiled.MEMORY)
+    for place in alone.tolist():
+        impact = Impact(*numbers[:, place].tolist(), stepped=watch is not None)
+        shown = None if watch is None else watch(impact)
+        lost[place] = followed(impact, tolerance, compiled.MOST_STEPS, shown)
+        ends = impact.rate, impact.change, impact.work, _time(impact), impact.deepest
+        out[:, place] = *ends, impact.compressions, impact.steps
+    return out, lost
+
+
+def _time(impact: Impact) -> float:
     """Return T at separation, with Hertz's in gross slip, where V² + ``press`` u⁵ is ``left``."""
-    times = np.array([impact.time for impact in impacts])
-    counts = [len(impact.slides) for impact in impacts]
-    slides = np.array([slide for impact in impacts for slide in impact.slides])
-    if slides.size:
-        press, left, *ends = slides.T
-        top, speed = (left / press) ** 0.2, np.sqrt(left)
+    time = impact.time
+    for press, left, *ends in impact.slides:
+        top, speed = (left / press) ** 0.2, math.sqrt(left)
         radius, rate = np.array(ends[::2]) / top, np.array(ends[1::2]) / speed
         phases = np.arctan2(radius, rate / velocity_factor(radius))
         begin, end = scaled_motion(phases)[2]
-        owner = np.repeat(np.arange(len(impacts)), counts)
-        np.add.at(times, owner, top * top / speed * (end - begin))
-    known: list[float] = times.tolist()
-    return known
+        time += top * top / speed * (end - begin)
+    return float(time)
 
 
 def _watch(scene: Scene, scales: Any, observer: Observer, impact: Impact) -> Watch:

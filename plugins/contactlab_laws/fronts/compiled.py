@@ -1,0 +1,121 @@
+"""The exact law, compiled: ``contactlab_impact.h`` as a library that is built with the package."""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import os
+from functools import cache
+from importlib import resources
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+#: 0 in this variable leaves the library out, at the build and at run time.
+VARIABLE = "CONTACTLAB_COMPILED"
+#: Name of the library beside this module, and the sources that it is built of, by package.
+LIBRARY = "_impacts.so"
+SOURCES = (("contactlab", "kernels/contactlab_impact.h"), ("contactlab_laws", "fronts/impacts.c"))
+#: Least error of a step, as ``steps.LEAST_ERROR``.
+LEAST = 5e-13
+#: Steps of an impact before it is given up; a hard one takes 30, one of kappa = 1e6 some 10,000.
+MOST_STEPS = 20_000
+#: psi2 is proportional to psi1 below it; smaller ones would be lost in rounding.
+LINEAR_BELOW = 1e-8
+#: The status of an impact whose memory is longer than the library's; Python's solver follows it.
+MEMORY = 3
+#: Sentences on impacts without an answer, by status.
+LOST = (
+    "",
+    "The contact neither ends nor settles in {} steps",
+    "The velocities of a jam outgrow the numbers",
+)
+
+
+def digest() -> str:
+    """Return the digest of the installed sources."""
+    content = hashlib.sha256()
+    for package, path in SOURCES:
+        content.update(resources.files(package).joinpath(path).read_bytes())
+    return content.hexdigest()
+
+
+def library() -> Any:
+    """Return the library, or None where there is none or it is left out."""
+    return _library(os.environ.get(VARIABLE, "") != "0")[0]
+
+
+def told() -> str:
+    """Return in words whether the library is used, and why not."""
+    return _library(os.environ.get(VARIABLE, "") != "0")[1]
+
+
+@cache
+def _library(wanted: bool) -> tuple[Any, str]:
+    """Return the library, or None, and words about it."""
+    if not wanted:
+        return None, f"Python: {VARIABLE}=0 leaves the compiled solver out"
+    again = "install contactlab again where there is a C compiler"
+    with resources.as_file(resources.files(__package__).joinpath(LIBRARY)) as path:
+        if not path.exists():
+            return None, f"Python: the compiled solver was not built; {again}"
+        try:
+            found = ctypes.CDLL(str(path))
+        except OSError as error:
+            return None, f"Python: the compiled solver does not load ({error}); {again}"
+    found.contactlab_impact_sources.restype = ctypes.c_char_p
+    if found.contactlab_impact_sources().decode() != digest():
+        return None, f"Python: the compiled solver is older than its sources; {again}"
+    numbers = np.ctypeslib.ndpointer(dtype=np.float64, flags="C_CONTIGUOUS")
+    statuses = np.ctypeslib.ndpointer(dtype=np.intc, flags="C_CONTIGUOUS")
+    found.contactlab_impact_follow_all.argtypes = (
+        ctypes.c_long, numbers, ctypes.c_double, ctypes.c_int, numbers, statuses,
+    )  # fmt: skip
+    found.contactlab_impact_follow_all.restype = None
+    return found, "compiled"
+
+
+def follow(
+    numbers: Array, tolerance: float, most: int = MOST_STEPS
+) -> tuple[Array, NDArray[np.intc]]:
+    """Return what impacts leave, shape (7, impacts), and their statuses.
+
+    Parameters
+    ----------
+    numbers : array, shape (4, impacts)
+        psi1, chi, lam and eta of theory §14.
+    tolerance : float
+        Error of a step.
+    most : int
+        Steps after which an impact is given up.
+
+    Returns
+    -------
+    tuple
+        V, psi2 - psi1, work over 2.5 mu² v1²/(2 kappa W_nn), T, the largest u, compressions and
+        steps; and 0, a place of ``LOST``, or ``MEMORY``.
+    """
+    given = np.ascontiguousarray(numbers, dtype=np.float64)
+    count = given.shape[1]
+    out, status = np.empty((7, count)), np.empty(count, dtype=np.intc)
+    library().contactlab_impact_follow_all(count, given, tolerance, most, out, status)
+    return out, status
+
+
+def central(psi1: Array, chi: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Return psi2 - psi1 and the work of spheres, shape (impacts,), and where they were found.
+
+    Parameters
+    ----------
+    psi1, chi : array, shape (impacts,)
+        Of impacts that do not slip throughout.
+    """
+    numbers = np.zeros((4, psi1.size))
+    least = np.copysign(np.maximum(np.abs(psi1), LINEAR_BELOW), psi1)
+    numbers[0], numbers[1] = least, chi
+    found, status = follow(numbers, LEAST)
+    share = psi1 / least
+    return found[1] * share, found[2] * share * share, status == 0

@@ -1,0 +1,128 @@
+"""The exact impact in C under sanitizers, beside Python's solver of the same equations."""
+
+import subprocess
+
+import numpy as np
+import pytest
+
+from contactlab_laws.fronts import compiled
+from contactlab_laws.fronts.path import Impact
+from contactlab_laws.fronts.steps import alone
+from contactlab_laws.fronts.together import _time
+from tests.kernels.test_kernels import COMPILER, HERE, KERNELS, SANITIZERS, STRICT, needs_c
+
+pytestmark = needs_c
+#: Steps of an impact, and error of a step.
+MOST, TOLERANCE = 20_000, 5e-13
+
+
+@pytest.fixture(scope="module", params=["c99", "c++"])
+def followed(request, tmp_path_factory):
+    """Return a function of psi1, chi, lam, eta (4, n) that gives statuses and answers (7, n)."""
+    folder = tmp_path_factory.mktemp("impact")
+    words = [COMPILER, *STRICT, *SANITIZERS] if request.param == "c99" else [COMPILER, "-x", "c++"]
+    source = [f"-I{KERNELS}", HERE / "impact.c", "-o", folder / "impact", "-lm"]
+    subprocess.run([*words, *source], check=True, timeout=120)
+
+    def run(numbers, tolerance=TOLERANCE, most=MOST):
+        rows = np.full((np.shape(numbers)[1], 6), (0.0, 0.0, 0.0, 0.0, tolerance, most))
+        rows[:, :4] = np.transpose(numbers)
+        rows.tofile(folder / "in")
+        command = [folder / "impact", folder / "in", folder / "out"]
+        subprocess.run(command, check=True, timeout=300)
+        answers = np.fromfile(folder / "out").reshape(-1, 8).T
+        return answers[0].astype(int), answers[1:]
+
+    return run
+
+
+def drawn(count, seed):
+    """Return random impacts: spheres, bodies, jams, and slip that begins or ends by a hair."""
+    draw = np.random.default_rng(seed)
+    chi = 10.0 ** draw.uniform(-0.5, 1.0, count)
+    lam = draw.uniform(-3.0, 3.0, count) * draw.choice([0.0, 0.1, 1.0], count)
+    most = np.minimum(1.9 * chi / np.maximum(np.abs(lam), 1e-9), 3.0)
+    eta = np.sign(lam) * draw.uniform(0.0, 1.0, count) * most
+    psi1 = draw.uniform(-6.0, 6.0, count)
+    near = draw.choice([-1.0, 1.0], count) * 10.0 ** draw.uniform(-12.0, -1.0, count)
+    psi1 = np.where(draw.random(count) < 0.2, 1.0 + near, psi1)
+    return np.array([psi1, chi, lam, eta])
+
+
+def by_python(numbers):
+    answers = []
+    for row in numbers.T.tolist():
+        impact = Impact(*row)
+        assert alone(impact, TOLERANCE, MOST) == ""
+        ends = impact.rate, impact.change, impact.work, _time(impact), impact.deepest
+        answers.append((*ends, impact.compressions))
+    return np.array(answers).T
+
+
+def test_random_impacts_are_those_of_python(followed):
+    numbers = drawn(150, 1)
+    status, found = followed(numbers)
+    assert not status.any()
+    expected = by_python(numbers)
+    scale = np.maximum(1.0, np.abs(expected))
+    off = np.abs(found[:6] - expected) / scale
+    assert off[:5].max() < 1e-11  # time and radius too; velocities by the next test
+    assert off[1].max() < 1e-12 * 3.0  # jams multiply rounding
+    assert np.array_equal(found[5], expected[5])
+
+
+def test_spheres_to_rounding(followed):
+    draw = np.random.default_rng(2)
+    chi = draw.uniform(0.3, 10.0, 60)
+    numbers = np.array([draw.uniform(0.0, 4.0 * chi), chi, 0.0 * chi, 0.0 * chi])
+    status, found = followed(numbers)
+    assert not status.any()
+    off = np.abs(found[:5] - by_python(numbers)[:5])
+    assert (off / np.maximum(1.0, numbers[0])).max() < 1e-12
+
+
+def test_closed_forms(followed):
+    """Slip throughout; chi = 1/2, where nothing is lost; Hertz's duration; the books."""
+    chi = np.array([0.3, 1.0, 2.0])
+    psi1 = np.maximum(1.0, 4.0 * chi - 1.0) * 1.5
+    status, found = followed([psi1, chi, 0.0 * chi, 0.0 * chi])
+    assert not status.any()
+    assert found[1] == pytest.approx(-4.0 * chi, rel=1e-14)
+    assert found[3] == pytest.approx(2.9432751843247043, rel=1e-14)
+    _, found = followed([[0.2, 0.9], [0.5, 0.5], [0.0, 0.0], [0.0, 0.0]])
+    assert found[1] == pytest.approx([-0.4, -1.8], abs=1e-12)
+    assert found[2] == pytest.approx([0.0, 0.0], abs=1e-12)
+    numbers = drawn(200, 3)
+    numbers[2:] = 0.0
+    _, found = followed(numbers)
+    psi1, chi = numbers[:2]
+    lost = -found[1] * (psi1 + 0.5 * found[1]) / chi  # over mu² v1² M_n/(2 kappa), twice
+    assert 2.5 * found[2] == pytest.approx(lost, abs=1e-11 * np.max(np.maximum(1.0, psi1**2)))
+
+
+def test_no_impact_gains_energy(followed):
+    """Of 20,000: V² + ... with W the inverse of the energy's matrix (theory §14)."""
+    numbers = drawn(20_000, 4)
+    numbers = numbers[:, np.abs(numbers[2] * numbers[3]) < 1.9 * numbers[1]]
+    status, found = followed(numbers)
+    assert not status.any()
+    psi1, chi, lam, eta = numbers
+    rho = np.where(lam == 0.0, 1.0, np.divide(lam, eta, out=np.ones_like(lam), where=eta != 0.0))
+
+    def energy(rate, psi):  # over 1/(2 W_nn): (V, rho psi') on the inverse of W over W_nn
+        slip = rho * psi
+        whole = 2.0 * chi * rho - lam * lam
+        return (2.0 * chi * rho * rate**2 - 2.0 * lam * rate * slip + slip**2) / whole
+
+    with np.errstate(invalid="ignore"):
+        start, end = energy(1.0, psi1), energy(found[0], psi1 + found[1])
+    sound = (eta == 0.0) | (np.abs(lam) > 1e-6)
+    sound &= (eta != 0.0) | (lam == 0.0)
+    assert sound.sum() > 15_000
+    assert (end - start)[sound].max() < 1e-9 * np.max(start[sound])
+
+
+def test_what_ends_without_an_answer(followed):
+    numbers = [[1.2], [1e6], [0.0], [0.0]]
+    assert followed(numbers, most=5)[0].tolist() == [1]
+    assert compiled.LOST[1].format(5) == "The contact neither ends nor settles in 5 steps"

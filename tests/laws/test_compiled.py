@@ -1,0 +1,150 @@
+"""The compiled exact law behind the doors of contactlab: answers as Python's, and words."""
+
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import Scene, Simulation, Status, rebound
+from contactlab.cli.main import main
+from contactlab_laws.fronts import compiled
+from contactlab_laws.fronts.law import SOLVED
+
+needs_library = pytest.mark.skipif(compiled.library() is None, reason=compiled.told())
+
+
+@pytest.fixture
+def both(monkeypatch):
+    """Return a function that gives what another returns, compiled and by Python."""
+
+    def run(function):
+        with monkeypatch.context() as patch:
+            patch.setenv(compiled.VARIABLE, "1")
+            first = function()
+            patch.setenv(compiled.VARIABLE, "0")
+            return first, function()
+
+    return run
+
+
+def bodies(count, seed):
+    draw = np.random.default_rng(seed)
+    chi = 10.0 ** draw.uniform(-0.5, 0.9, count)
+    lam = draw.uniform(-2.0, 2.0, count)
+    eta = np.sign(lam) * draw.uniform(0.05, 1.0, count) * np.minimum(1.8 * chi / np.abs(lam), 3.0)
+    return Scene.nondimensional(psi1=draw.uniform(-5.0, 5.0, count), chi=chi, lam=lam, eta=eta)
+
+
+@needs_library
+def test_bodies_are_those_of_python(both):
+    scene = bodies(40, 1)
+    one, other = both(lambda: Simulation().run(scene))
+    scale = np.maximum(1.0, np.abs(scene.psi1))
+    assert (np.abs(one.psi2 - other.psi2) / scale).max() < 1e-12
+    assert np.abs(one.normal_velocity - other.normal_velocity).max() < 1e-12
+    for name in ("duration", "maximum_radius", "maximum_force", "friction_work", "compressions"):
+        first, second = getattr(one.motion, name), getattr(other.motion, name)
+        assert first == pytest.approx(second, rel=1e-10, abs=1e-12)
+    assert one.energy.relative_imbalance == pytest.approx(np.zeros(40), abs=1e-9)
+
+
+@needs_library
+def test_spheres_beyond_the_table_are_those_of_python(both):
+    draw = np.random.default_rng(2)
+    chi = draw.uniform(2.6, 10.0, 12)
+    psi1 = draw.uniform(-4.0, 4.0, 12) * chi
+    for function in (
+        lambda: rebound(psi1, chi),
+        lambda: Simulation().sweep(Scene.nondimensional(psi1=psi1, chi=chi)).psi2,
+        lambda: np.array(
+            [rebound(*each) for each in zip(psi1.tolist(), chi.tolist(), strict=True)]
+        ),
+    ):
+        one, other = both(function)
+        assert (np.abs(one - other) / np.maximum(1.0, np.abs(psi1))).max() < 2e-11
+
+
+@needs_library
+def test_one_impact_and_many_have_the_same_bits():
+    scene = bodies(30, 3)
+    many = Simulation().run(scene)
+    for place in (0, 7, 29):
+        one = Simulation().run(scene.take(place))
+        assert (one.psi2, one.normal_velocity) == (many.psi2[place], many.normal_velocity[place])
+    psi1, chi = np.linspace(0.1, 9.0, 20), np.linspace(2.6, 9.0, 20)
+    assert rebound(psi1, chi).tolist() == [rebound(a, b) for a, b in zip(psi1, chi, strict=True)]
+
+
+@needs_library
+def test_the_books_of_a_solved_sphere_are_checked():
+    """The work is the solver's own, not the energy that the velocities lose."""
+    result = Simulation().run(Scene.nondimensional(psi1=[1.2, 0.4, 1e-9, 30.0], chi=3.0))
+    assert result.energy.checked.tolist() == [True] * 4
+    assert np.abs(result.energy.relative_imbalance).max() < 1e-12
+    assert result.counters["solved"] == 3
+    assert SOLVED in str(result.plan)
+    assert not result.plan.marched.any()
+
+
+@needs_library
+def test_an_impact_that_it_gives_up_is_followed_by_python(monkeypatch):
+    """A memory too long for the library, and a sphere that it does not settle."""
+    follow = compiled.follow
+
+    def forgetful(numbers, *rest):
+        out, status = follow(numbers, *rest)
+        status[0] = compiled.MEMORY
+        out[:, 0] = np.nan
+        return out, status
+
+    scene = bodies(3, 4)
+    expected = Simulation().run(scene).psi2
+    monkeypatch.setattr(compiled, "follow", forgetful)
+    found = Simulation().run(scene)
+    assert found.status.tolist() == [Status.SUCCESS] * 3
+    assert found.psi2 == pytest.approx(expected, abs=1e-11)
+    sphere = Simulation().run(Scene.nondimensional(psi1=[1.2, 2.2], chi=3.0))
+    assert sphere.plan.marched.tolist() == [True, False]
+    assert sphere.psi2[0] == pytest.approx(rebound(1.2, 3.0), abs=1e-9)
+
+
+@needs_library
+def test_a_jam_that_is_not_settled_has_a_status_and_a_sentence(monkeypatch):
+    scene = bodies(3, 5)
+    follow = compiled.follow
+    monkeypatch.setattr(compiled, "follow", lambda numbers, *_: follow(numbers, 5e-13, 2))
+    result = Simulation().run(scene)
+    assert result.status.tolist() == [Status.UNRESOLVED] * 3
+    assert "neither ends nor settles" in result.motion.detail[0]
+    assert np.isnan(result.psi2).all()
+
+
+def test_a_history_is_followed_and_agrees():
+    result = Simulation().run(Scene.nondimensional(psi1=1.2, chi=3.0), history=True)
+    assert result.plan.marched
+    assert result.psi2 == pytest.approx(rebound(1.2, 3.0), abs=1e-9)
+
+
+def test_what_computes_is_told(monkeypatch, capsys):
+    monkeypatch.setenv(compiled.VARIABLE, "0")
+    assert main(["plugins", "show", "tangential.fronts"]) == 0
+    assert "CONTACTLAB_COMPILED=0 leaves the compiled solver out" in capsys.readouterr().out
+    assert compiled.library() is None
+    plan = Simulation().plan(Scene.nondimensional(psi1=1.2, chi=3.0))
+    assert plan.marched
+
+
+@needs_library
+def test_a_library_older_than_its_sources_is_left_out(monkeypatch):
+    monkeypatch.setattr(compiled, "digest", lambda: "other")
+    compiled._library.cache_clear()
+    try:
+        assert compiled.library() is None
+        assert "older than its sources" in compiled.told()
+    finally:
+        compiled._library.cache_clear()
+
+
+def test_a_followed_law_stays_a_reference():
+    law = contactlab.create("tangential.fronts", table=False)
+    result = Simulation(tangential=law).run(Scene.nondimensional(psi1=1.2, chi=3.0))
+    assert result.plan.marched
