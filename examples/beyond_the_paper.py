@@ -1,4 +1,4 @@
-"""What the paper leaves out, measured by a three-dimensional half-space.
+"""Pressure drags the surface along, which the paper leaves out: a half-space in three dimensions.
 
 The paper neglects the tractions that vary with the angle, and treats bodies of one material.
 Between bodies of one material the first moves psi2 by up to 0.002. Between a steel sphere and a
@@ -86,15 +86,29 @@ save(Path("beyond-finite-elements.png"), draw_elements)
 
 # %%
 # **The contact from above.** The pressure drags the surface inwards, so traction and slip turn
-# away from the direction of motion; the stick region is no disc.
+# away from the direction of motion; the stick region is no disc. The axisymmetric theory has a
+# disc, whose rim is dashed.
 result = half_space(coupling="two_way", rings=32, angles=16, extrapolate=False).run(
     coupled(0.98), history="fields"
 )
 history = result.check().history
 time = history.time / result.motion.duration
 instants = [int(np.abs(time - each).argmin()) for each in (0.1, 0.3, 0.57, 0.82)]
+#: What happens at these instants.
+WORDS = ("begins to stick at the rear", "sticks all but in front", "slips back at the rear",
+         "slips back at the rim")  # fmt: skip
 #: Circles of arrows over the contact radius, and the arrows on the upper half of each.
-CIRCLES = {0.3: 2, 0.8: 4}
+CIRCLES = {0.35: 2, 0.82: 4}
+disc = Simulation().run(coupled(0.98), history="fields").check()
+discs = disc.history.time / disc.motion.duration
+
+
+def disc_radius(row):
+    """Return the radius of the stick region of axisymmetric theory over the largest radius."""
+    at = int(np.abs(discs - time[row]).argmin())
+    radius, stuck = (disc.history.fields[name][at] for name in ("radius", "stuck"))
+    inside = (stuck > 0) & (radius <= disc.history.contact_radius[at])
+    return radius[inside].max(initial=0.0) / disc.motion.maximum_radius
 
 
 def mirrored(values, sign=1.0):
@@ -126,6 +140,8 @@ def from_above(axes, row):
     axes.contourf(x[around], y[around], stuck[around], levels=[0.5, 1.5], colors=[STUCK])
     turn = np.linspace(0.0, 2.0 * np.pi, 181)
     axes.plot(edge / largest * np.cos(turn), edge / largest * np.sin(turn), color="black", lw=0.8)
+    rim = disc_radius(row)
+    axes.plot(rim * np.cos(turn), rim * np.sin(turn), "--", color="black", lw=0.8)
     chosen = arrows(fields, edge) & touching
     traction = -mirrored(fields["traction_x"]), -mirrored(fields["traction_y"], -1.0)
     rate = [
@@ -138,29 +154,32 @@ def from_above(axes, row):
     slip = 0.3 * result.scene.tangential_velocity * passed
     unit = np.hypot(*(each[chosen] for each in traction)).max()
     for vector, where, colour, one in (
-        (traction, chosen, TRACTION, unit),
+        (traction, chosen & stuck, TRACTION, unit),
         (rate, chosen & ~stuck, SLIP, slip),
     ):
         u, v = (each[where] * 0.3 * edge / largest / one for each in vector)
         axes.quiver(x[where], y[where], u, v, color=colour, angles="xy", scale_units="xy",
                     scale=1.0, width=0.014, minlength=0.5)  # fmt: skip
     axes.set_title(rf"$t/t_\mathrm{{c}}$ = {time[row]:.2f}", fontsize="medium")
-    axes.set(xlim=(-1.18, 1.18), ylim=(-1.08, 1.08), aspect="equal")
+    axes.set(xlim=(-1.18, 1.18), ylim=(-1.4, 1.08), aspect="equal")
     axes.axis("off")
     return stuck[touching].mean()
 
 
 with styled():
-    figure = Figure(figsize=(9.5, 3.2))
-    for axes, row in zip(figure.subplots(1, 4), instants, strict=True):
+    figure = Figure(figsize=(9.5, 3.3))
+    for axes, row, words in zip(figure.subplots(1, 4), instants, WORDS, strict=True):
         stick = from_above(axes, row)
+        axes.text(0.0, -1.32, words, ha="center", fontsize="medium")
         print(f"t/t_c = {time[row]:.2f}: {stick:4.0%} of the points in contact stick")
     key = [
         Patch(color=STUCK, label="sticks"),
+        Line2D([], [], color="black", lw=0.8, ls="--", label="sticks in axisymmetric theory"),
         Line2D([], [], color=TRACTION, marker=">", label="traction on the sphere"),
         Line2D([], [], color=SLIP, marker=">", label="rate of slip"),
     ]
-    figure.legend(handles=key, loc="outside lower center", ncols=3)
+    figure.suptitle("Under a sphere that slides to the right the stick region is no disc")
+    figure.legend(handles=key, loc="outside lower center", ncols=4, columnspacing=1.2)
     save_figure(figure, Path("beyond-vectors.png"))
 
 # %%

@@ -1,4 +1,4 @@
-"""Does a real ball do what the theory says: the experiment of Kharaz, Gorham & Salman (2001).
+"""A real ball beside elastic and rigid theory: the experiment of Kharaz, Gorham & Salman (2001).
 
 An aluminium-oxide sphere meets glass at angles from 2 to 85 degrees. Beyond 30 degrees the
 contact slips throughout, and the elastic and the rigid law agree; below, the rigid law

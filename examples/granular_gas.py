@@ -1,4 +1,4 @@
-"""How spinning and flying share the energy of a granular gas, under four laws of friction.
+"""Spin of a cooling granular gas: its share of the energy under four laws of friction.
 
 Grains in free flight that meet at random (direct-simulation Monte Carlo: a box without walls,
 pairs drawn in proportion to the speed at which they meet, anywhere on the disc that they show

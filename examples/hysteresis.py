@@ -1,4 +1,4 @@
-"""What a contact forgets: hysteresis loops of three laws of friction.
+"""Hysteresis loops of three laws of friction: what each contact forgets.
 
 A ball is pressed on another and moved to and fro. At constant load every contact with friction
 loses a loop of energy in each cycle, even far below gross slip, because it slips at its rim;

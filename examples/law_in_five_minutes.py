@@ -1,4 +1,4 @@
-"""How wrong is a law that one writes in five minutes: its error over all angles, in one call.
+"""The error of a law of one's own over all angles: a law in five minutes, judged in one call.
 
 The law is F = mu P tanh(v/v0), friction smoothed so that it has no jump at rest. It is one
 class, and ``compare`` puts it beside the exact law. On the left the picture shows the law, on the

@@ -1,4 +1,4 @@
-"""What a lossy ball does at an angle: three answers for one normal restitution.
+"""A lossy ball at an angle: three answers for one normal restitution.
 
 A ball of rubber, wood or polymer rebounds with less than its normal speed because its material is
 viscous. A viscous material damps shear as it damps pressure. A law with the loss in pressure alone

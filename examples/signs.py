@@ -1,4 +1,4 @@
-"""Which way is positive: a ball before and after the impact, with every sign that contactlab uses.
+"""Signs of velocities and spins: a ball before and after the impact, and which way is positive.
 
 The ball moves down and to the right. Its tangential velocity is positive to the right, its
 normal speed towards the target, and its spin where it moves the lowest point of the ball to the

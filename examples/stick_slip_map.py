@@ -1,4 +1,4 @@
-"""Who sticks and who slips: the contact over radius and time at psi1 = 1.2.
+"""Where a contact sticks and where it slips: its state over radius and time at psi1 = 1.2.
 
 Writes ``stick_slip_map.png`` in the current folder.
 """

@@ -1,4 +1,4 @@
-"""A superball that is none: Garwin's ball reverses its contact point, an elastic ball cannot.
+"""A superball reverses its contact point, an elastic ball cannot: Garwin's ball beside theory.
 
 A superball that is thrown under a table comes back. Garwin (1969) explained it by a contact
 point that leaves as fast as it came, the other way: psi2 = -psi1. An elastic ball with partial

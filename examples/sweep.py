@@ -1,4 +1,4 @@
-"""A sweep: a thousand angles of incidence at once, and where the ball comes back fastest.
+"""A thousand angles at once: a sweep, and where the ball comes back fastest.
 
 Writes ``sweep.png`` in the current folder.
 """

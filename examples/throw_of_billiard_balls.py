@@ -1,4 +1,4 @@
-"""How far billiard balls throw: elastic contact against the published no-slip formula.
+"""Throw of billiard balls: elastic contact against the published no-slip formula.
 
 The cue ball meets an object ball off its centre, at a cut angle. Friction between the two drags
 the object ball aside: it leaves some degrees nearer to the path of the cue ball than along the

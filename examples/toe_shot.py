@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.patches import Circle
 
 from contactlab import Encounter, Material, RigidBody, Simulation, Sphere, collide, create
 from contactlab.figures import save_figure, styled
@@ -72,13 +73,59 @@ for name, law in (("viscoelastic", "springs"), ("rigid", "coulomb")):
         f"backspin {toe[1]:.0f} rpm, axis {toe[2]:.1f}°"
     )
 
+# %%
+# **The contact is wide**: its radius is half that of the ball. The theory of half-spaces is
+# doubtful there, and the plan says so.
+lossy = Simulation(normal=create("normal.viscoelastic", restitution=0.8), tangential="springs")
+wide = shot(0.015, lossy).result.motion.maximum_radius / ball.radius
+print(f"contact radius {wide:.2f} of the ball's")
+
+
+def from_above(axes):
+    """Draw head, face and ball from above, 20 mm off; upwards is the target."""
+    radius, off, bulge = 1e3 * ball.radius, 20.0, 1e3 * BULGE
+    turn = np.linspace(-0.19, 0.19, 41)
+    face = bulge * np.sin(turn), bulge * (np.cos(turn) - 1.0)
+    back = np.linspace(0.0, np.pi, 41)
+    body = face[0][-1] * np.cos(back), face[1][-1] - 75.0 * np.sin(back)
+    axes.fill(*np.concatenate([face, body], axis=1), color="0.85")
+    axes.plot(*face, color="0.3", linewidth=2.0)
+    normal = np.array([off, np.sqrt(bulge**2 - off**2)]) / bulge
+    centre = np.array([off, bulge * (normal[1] - 1.0)]) + radius * normal
+    axes.add_patch(Circle(centre, radius, facecolor="white", edgecolor="black"))
+    arrow = {"arrowstyle": "-|>", "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0}
+    start = np.radians(np.interp(off, 1e3 * places, found["viscoelastic"][:, 0]))
+    leaves = np.array([np.sin(start), np.cos(start)])
+    for begin, way, colour in ((centre, leaves, "C1"), ((-38.0, -30.0), (0, 1), "0.3")):
+        end = np.add(begin, 62.0 * np.array(way))
+        axes.annotate("", end, begin, arrowprops=arrow | {"color": colour})
+    axes.plot([centre[0]] * 2, centre[1] + np.array([0.0, 62.0]), ":", color="0.5", linewidth=1.0)
+    axes.plot(0.0, -1e3 * DEPTH, "k+", markersize=9)
+    small = {"fontsize": "small", "ha": "center"}
+    axes.text(0.0, -1e3 * DEPTH - 14.0, "centre of mass", **small)
+    axes.text(-38.0, 38.0, f"{SPEED:.0f} m/s", **small)
+    axes.text(centre[0] + 8.0, centre[1] + 66.0, "starts to the right", color="C1", **small)
+    axes.text(-60.0, -70.0, "heel", **small)
+    axes.text(60.0, -70.0, "toe", **small)
+    axes.set(aspect="equal", xlim=(-85, 85), ylim=(-92, 112), title="driver and ball from above")
+    axes.axis("off")
+
+
 with styled():
-    figure = Figure(figsize=(9.5, 3.6), layout="constrained")
-    names = ("start, right of the target (°)", "backspin (rpm)", "spin axis, tipped for a draw (°)")
-    for axes, column, what in zip(figure.subplots(1, 3), range(3), names, strict=True):
+    figure = Figure(figsize=(9.5, 3.9), layout="constrained")
+    sketch, *panels = figure.subplots(1, 3, width_ratios=(1.15, 1.0, 1.0))
+    from_above(sketch)
+    words = {"viscoelastic": "viscoelastic ball", "rigid": "rigid bodies"}
+    titles = {1: "backspin (rpm)", 2: "spin axis, tipped for a draw (°)"}
+    for axes, (column, what) in zip(panels, titles.items(), strict=True):
         for name, line in (("viscoelastic", "-"), ("rigid", "--")):
-            axes.plot(1e3 * places, found[name][:, column], line, color="C0", label=name)
-        axes.set(xlabel="shot off the centre (mm)\nheel          toe", title=what)
+            axes.plot(1e3 * places, found[name][:, column], line, color="C0", label=words[name])
+        axes.set(xlabel="heel    shot off the centre (mm)    toe", title=what)
         axes.axvline(0.0, color="0.7", linewidth=0.8)
-    axes.legend()
+    panels[0].set_ylim(bottom=0.0)
+    panels[1].legend(loc="upper left")
+    figure.supxlabel(
+        f"The contact radius is {wide:.2f} of the ball's: half-space theory is doubtful there.",
+        fontsize="small", color="#555555",
+    )  # fmt: skip
     save_figure(figure, Path("toe_shot.png"))

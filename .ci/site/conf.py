@@ -12,7 +12,7 @@ from latex2mathml.converter import convert
 import contactlab
 
 sys.path.insert(0, str(Path(__file__).parent))
-from examples import NOT_RUN, Pictures, arguments
+from examples import NOT_RUN, InOrder, Pictures, arguments
 
 project = "contactlab"
 author = "The contactlab developers"
@@ -58,6 +58,7 @@ sphinx_gallery_conf = {
     "filename_pattern": rf"/(?!{'|'.join(NOT_RUN)})\w+\.py$",
     "reset_argv": arguments,
     "image_scrapers": (Pictures(),),
+    "within_subsection_order": InOrder(),
     "reset_modules": (),
     "capture_repr": (),  # what a script prints; the pictures are found as files
     "matplotlib_animations": False,

@@ -15,6 +15,14 @@ __doc__ = {doc!r}
 # sphinx_gallery_end_ignore
 """
 
+#: The gallery from the first impact to laws of one's own; its thumbnails stand in this order.
+ORDER = (
+    "one_impact", "signs", "law_swap", "sweep", "stick_slip_map", "reproduce_the_paper",
+    "experiment", "fit_your_experiment", "billiards", "throw_of_billiard_balls", "superball",
+    "loss_in_shear", "granular_gas", "any_two_bodies", "toe_shot", "egg", "hysteresis",
+    "beyond_the_paper", "custom_law", "law_in_five_minutes", "sweep_on_a_cluster",
+)  # fmt: skip
+
 #: Arguments that make a script short.
 SHORT = {
     "billiards": ["--collisions", "60", "--frames", "40"],
@@ -63,6 +71,18 @@ def lay_out(examples: Path, to: Path) -> None:
 def arguments(_: Any, variables: dict[str, Any]) -> list[str]:
     """Return the arguments with which a page's script is run: short ones, where it takes any."""
     return SHORT.get(Path(variables["src_file"]).stem, [])
+
+
+class InOrder:
+    """The key that sorts scripts as ``ORDER`` does; a script that is missing there is an error."""
+
+    def __repr__(self) -> str:
+        """Return the same for the same order, or everything is built anew."""
+        return f"InOrder{ORDER}"
+
+    def __call__(self, script: str) -> int:
+        """Return the place of a script in the gallery."""
+        return ORDER.index(Path(script).stem)
 
 
 class Pictures:

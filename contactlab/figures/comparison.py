@@ -41,7 +41,7 @@ AS_GOOD_AS = 0.01
 LESS = {("rebound_angle_deg", "angle_deg"): "rebound angle less angle of incidence (°)"}
 FORM_DASHES: tuple[Any, ...] = ("-", (0, (6, 1.5)), (0, (2.5, 1.2)), (0, (1, 1)))
 MARKERS = "os^Dv"
-#: The names of points, above the curves.
+#: The names of the first law and of points, above the curves.
 CODES_AT: Any = {"loc": "upper center", "bbox_to_anchor": (0.56, 1.03), "handlelength": 1.0}
 #: Entries of ``POINTS`` that points without error bars share.
 CODE_LOOK = ("color", "linestyle", "markersize", "markerfacecolor", "markeredgewidth", "zorder")
@@ -75,7 +75,7 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
     close = _by_law(Counter(name.split()[0] for name in close))
     drawn.sort(key=lambda name: -float(np.nanmax(np.abs(comparison.difference(quantity, name)))))
     families = list(dict.fromkeys(name.split()[0] for name in sorted(drawn)))
-    words = f"{first}, the reference"
+    words = f"{first} ({comparison.model(first) or 'the reference'})"
     if close:
         words += "; on its line:\n" + ",\n".join(close)
     (reference,) = upper.plot(
@@ -105,9 +105,10 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
             error_band(axes, x, middle, half, look)
     points = _codes(upper, comparison, quantity, varied)
     upper.set_ylabel(label(quantity, quantity_named(quantity).unit_in(comparison.scene)))
-    lower.set_ylabel(rf"law $-$ {verbatim(first)}")
+    lower.set_ylabel(rf"law $-$ {verbatim(comparison.model(first) or first)}")
     lower.set_xlabel(label(varied, entry_unit(varied)))
-    if not _named(upper, lower, groups, below, close, points):
+    named = {name: _said(comparison, name) for name in (first, *drawn)}
+    if not _named(upper, lower, groups, below, close, points, named):
         _legend_of_all(upper, lower)
     return upper, lower
 
@@ -119,25 +120,35 @@ def _named(
     below: Mapping[str, Line2D],
     close: list[str],
     points: list[Line2D],
+    said: Mapping[str, str],
 ) -> bool:
     """Write names beside the curves; return False if there is no room for all of them."""
-    if points:
-        upper.legend(handles=points, fontsize="small", **CODES_AT)
     first, *others = groups
-    words = _by_law({name: len(groups[name]) for name in others})
-    lines = [groups[name][0] for name in (first, *others)]
+    words = _by_law({said.get(name, name): len(groups[name]) for name in others})
+    lines = [groups[name][0] for name in others]
+    names = [verbatim(name) for name in words]
+    if points:
+        key = [Line2D([], [], color="black", linewidth=3.2, label=verbatim(said[first])), *points]
+        upper.legend(handles=key, fontsize="small", **CODES_AT)
+    else:
+        lines, names = [*groups[first], *lines], [verbatim(said[first]), *names]
     if close:
         upper.text(
             0.015, 0.02, verbatim("\n".join([f"on the line of {first}:", *close])),
             transform=upper.transAxes, fontsize="small",
         )  # fmt: skip
-    names = [verbatim(name) for name in (first, *words)]
     if not name_curves(upper, lines, names, alike=list(groups.values())):
         return False
     forms = [name for name in below if len(groups[name.split()[0]]) > 1]
     short = [verbatim(name.partition(" ")[2] or name) for name in forms]
     name_curves(lower, [below[name] for name in forms], short)
     return True
+
+
+def _said(comparison: Comparison, name: str) -> str:
+    """Return the name of a law, with what it takes the bodies for."""
+    model = comparison.model(name)
+    return f"{name} ({model})" if model else name
 
 
 def _by_law(forms: Mapping[str, int]) -> list[str]:
@@ -194,7 +205,7 @@ def laws_over_sweep(
 
     for number, name in enumerate(comparison.names):
         values = drawn(ordered(comparison.values(quantity, name)), x)
-        axes.plot(x, values, label=verbatim(name), **law_style(number))
+        axes.plot(x, values, label=verbatim(_said(comparison, name)), **law_style(number))
         half = ordered(comparison.band(quantity, name))
         error_band(axes, x, values, half, law_style(number))
     if agreement is not None:
@@ -262,13 +273,15 @@ def forces_over_contact(axes: Axes, comparison: Comparison) -> Axes:
     drawn = False
     for number, run in enumerate(comparison.runs):
         if not run.result.history or run.result.history.time.size == 0:
-            axes.plot([], [], label=f"{verbatim(run.name)}: no course", **law_style(number))
+            words = f"{_said(comparison, run.name)}: no course"
+            axes.plot([], [], label=verbatim(words), **law_style(number))
             continue
         time, tangential, normal = scaled_forces(run.result)
         if not drawn:
             friction_limit(axes, time, normal)
             drawn = True
-        axes.plot(time, tangential, label=verbatim(run.name), **law_style(number))
+        words = verbatim(_said(comparison, run.name))
+        axes.plot(time, tangential, label=words, **law_style(number))
     force_axes(axes)
     axes.set_ylim(-1.05, 1.05)
     axes.legend(loc="lower left")

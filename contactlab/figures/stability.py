@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,8 @@ from contactlab.study.error_map import ErrorMap
 
 #: Error of psi2 that is asked for, from the law's own limit.
 ALLOWED = 0.01
+#: The factor of the root of chi that is enough is told in multiples of this number.
+ROUNDED = 5
 REFUSED_COLOUR = "#DDDDDD"
 
 
@@ -34,7 +37,7 @@ def draw_stability(path: Path, maps: Sequence[ErrorMap], **look: Any) -> None:
 
 
 def steps_needed(axes: Axes, maps: Sequence[ErrorMap]) -> Axes:
-    """Draw the least steps with which a law stays within ``ALLOWED``, a curve for each law.
+    """Draw the least steps with which a law stays within ``ALLOWED``, and what is enough for all.
 
     Parameters
     ----------
@@ -43,13 +46,23 @@ def steps_needed(axes: Axes, maps: Sequence[ErrorMap]) -> Axes:
     """
     lines, names = [], []
     for number, each in enumerate(maps):
-        lines += axes.plot(each.chis, _least(each), **law_style(number))
+        lines += axes.plot(each.chis, _least(each), **(law_style(number) | {"linewidth": 1.0}))
         names.append(verbatim(each.law.replace("_", " ")))
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlabel(label("chi"))
     axes.set_ylabel("steps of one contact")
-    axes.set_title(rf"steps that keep $\psi_2$ within {ALLOWED:g} of the law's own limit")
+    factor, beyond = enough_steps(maps)
+    what = rf"keep $\psi_2$ within {ALLOWED:g} of the law's own limit"
+    axes.set_title(rf"${factor:g}\,\sqrt{{\chi}}$ steps {what}" if factor else f"steps that {what}")
+    if factor:
+        chis = np.array(maps[0].chis)
+        steps = np.maximum(factor * np.sqrt(chis), min(maps[0].steps))
+        lines += axes.plot(chis, steps, color="black", linewidth=3.0)
+        names.append(rf"take ${factor:g}\,\sqrt{{\chi}}$")
+    if factor and beyond:
+        words = "\n".join([rf"more than {max(maps[0].steps)} at some $\chi$:", *beyond])
+        axes.text(0.03, 0.97, words, transform=axes.transAxes, va="top", **ASIDE)
     if maps:
         refused = np.min([_refused(each) for each in maps], axis=0)
         lowest = min(maps[0].steps)
@@ -60,6 +73,25 @@ def steps_needed(axes: Axes, maps: Sequence[ErrorMap]) -> Axes:
         )
     name_curves(axes, lines, names)
     return axes
+
+
+def enough_steps(maps: Sequence[ErrorMap]) -> tuple[int, list[str]]:
+    """Return the factor of the root of chi that is enough, and the laws for which it is not.
+
+    The factor is that of all laws that stay within ``ALLOWED`` at every chi with the most steps
+    mapped; 0 if there is none.
+    """
+    needs: list[float] = []
+    beyond: list[str] = []
+    for each in maps:
+        least = _least(each)
+        if np.isnan(least).any():
+            beyond.append(each.law.replace("_", " "))
+            continue
+        factors = least / np.sqrt(each.chis)
+        needs.append(float(np.max(factors, where=least > min(each.steps), initial=0.0)))
+    factor = ROUNDED * math.ceil(max(needs, default=0.0) / ROUNDED)
+    return factor, beyond
 
 
 def _least(drawn: ErrorMap) -> NDArray[np.float64]:

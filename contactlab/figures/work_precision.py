@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -15,15 +16,22 @@ from contactlab.study.benchmark import Benchmark, Row
 #: Integrator that a law is drawn under: the first that ran it.
 USUAL = ("symplectic", "events", "adaptive", "paper")
 #: Least error drawn; smaller ones stand at it, with their size beside the name.
-FLOOR = 1e-8
+FLOOR = 1e-6
 #: Lower edge of the band of laws whose limit is another, and its words.
 BAND, BAND_WORDS = 0.05, "another model: no finer step helps"
-#: Upper end of the error axis: the band has room for slanted names, from an error of
-#: ``SLANTED_FROM`` on and ``SLANTED_APART`` of the width apart.
-HIGHEST, SLANTED_FROM, SLANTED_APART = 1e5, 3.0, 0.055
-BAND_COLOUR = "#EDEDED"
+#: Upper end of the error axis: the band has room for the names of its points.
+HIGHEST = 10.0
+BAND_COLOUR, GREY_WORDS = "#EDEDED", "#555555"
 #: Least distance of two names, width of a letter, and gap between a point and its name, in points.
-APART, LETTER, GAP = 12.0, 4.4, 5.0
+APART, LETTER, GAP = 12.0, 4.6, 5.0
+#: Distance from its point, over the height, from which on a line leads to a name.
+LED = 0.045
+#: Shifts of a name to the side and upwards that are tried, over width and height of the axes.
+ASIDES, STEPS = (0.0, 0.06, 0.12, 0.2), tuple(np.arange(-0.4, 0.401, 0.01).tolist())
+#: Price of a name that covers a curve or a name, and of a line that crosses a name.
+COVERS, CROSSES = 10.0, 1.0
+#: Least and greatest height of a name, over that of the axes.
+LOWEST_NAME, HIGHEST_NAME = 0.03, 0.97
 #: Laws whose curve has the number of parts beside each point, and colours kept for some laws.
 NUMBERED = "springs"
 COLOURS = {
@@ -32,6 +40,10 @@ COLOURS = {
     "halfspace": LAW_COLOURS[3],
 }
 EXACT_COLOUR = LAW_COLOURS[2]
+
+
+#: Begin and end, low and high, over width and height of the axes.
+Box = tuple[float, float, float, float]
 
 
 class Other(NamedTuple):
@@ -87,16 +99,14 @@ def work_precision(panels: Any, benchmark: Benchmark) -> Any:
         names = [_curve(axes, law, rows, column) for law, rows in curves.items()]
         names += [_other(axes, other, getattr(other, of_other)) for other in OTHERS]
         _band(axes)
-        axes.set_ylim(0.2 * FLOOR, HIGHEST)
+        axes.set_ylim(0.1 * FLOOR, HIGHEST)
         axes.set_xlim(*_limits(axes))
-        known = [name for name in names if name is not None]
-        _write_above(axes, [name for name in known if name.colour == QUIET])
-        _write_beside(axes, [name for name in known if name.colour != QUIET])
         axes.text(
-            0.98, 0.07, source, transform=axes.transAxes, ha="right", fontsize="x-small",
-            color="#555555",
+            0.98, 0.03, source, transform=axes.transAxes, ha="right", fontsize="x-small",
+            color=GREY_WORDS,
         )  # fmt: skip
-        axes.set_yticks([10.0**power for power in range(-8, 1, 2)])
+        axes.set_yticks([10.0**power for power in range(-6, 1)])
+        _write_beside(axes, [name for name in names if name is not None])
     left.set_ylabel(r"error of $\psi_2$, rms over the scenes")
     right.sharey(left)
     right.tick_params(labelleft=False)
@@ -153,7 +163,7 @@ def _curve(axes: Axes, law: str, rows: Sequence[Row], column: str) -> Name | Non
     last = int(np.argmax(times))
     words = law.replace("_", " ")
     if below:
-        words += f", below: {drawn[last].error_rms:.0e}"
+        words += f", exact to {drawn[last].error_rms:.0e}"
     return Name(words, times[last], errors[last], colour)
 
 
@@ -168,7 +178,7 @@ def _other(axes: Axes, other: Other, seconds: float) -> Name | None:
     """Draw a hollow mark for a code that is not run here; return its name."""
     if not math.isfinite(seconds):
         return None
-    colour = QUIET if other.error_rms > BAND else "#555555"
+    colour = QUIET if other.error_rms > BAND else GREY_WORDS
     look: Any = {"marker": "s", "markersize": 5.0, "markerfacecolor": "white", "linestyle": ""}
     axes.plot([1e6 * seconds], [other.error_rms], color=colour, **look)
     return Name(other.name, 1e6 * seconds, other.error_rms, colour)
@@ -179,7 +189,7 @@ def _band(axes: Axes) -> None:
     axes.axhspan(BAND, HIGHEST, color=BAND_COLOUR, linewidth=0.0, zorder=0)
     axes.text(
         0.01, 0.965, BAND_WORDS, transform=axes.transAxes, ha="left", va="center",
-        fontsize="x-small", style="italic", color="#555555",
+        fontsize="x-small", style="italic", color=GREY_WORDS,
     )  # fmt: skip
 
 
@@ -187,21 +197,6 @@ def _limits(axes: Axes) -> tuple[float, float]:
     """Return limits of the time axis with room for the names on its right."""
     low, high = axes.get_xlim()
     return low, high * (high / low) ** 0.35
-
-
-def _write_above(axes: Axes, names: Sequence[Name]) -> None:
-    """Write slanted names in the upper part of the band, each with a line to its point."""
-    left, right = (math.log10(limit) for limit in axes.get_xlim())
-    beside = -1.0
-    for name in sorted(names, key=lambda each: each.x):
-        share = (math.log10(name.x) - left) / (right - left)
-        beside = max(share, beside + SLANTED_APART)
-        at = 10.0 ** (left + beside * (right - left))
-        axes.plot([name.x, at], [name.y, SLANTED_FROM], color=QUIET, linewidth=0.5, zorder=1)
-        axes.text(
-            at, SLANTED_FROM, name.words, rotation=35.0, rotation_mode="anchor", ha="left",
-            va="bottom", fontsize="small", color="#555555",
-        )  # fmt: skip
 
 
 def _write_beside(axes: Axes, names: Sequence[Name]) -> None:
@@ -219,31 +214,51 @@ def _write_beside(axes: Axes, names: Sequence[Name]) -> None:
             (APART, axes.bbox.height), (LETTER, axes.bbox.width), (GAP, axes.bbox.width)
         )
     )  # fmt: skip
-    taken: list[tuple[float, float, float]] = []  # begin, end and height of a name
+    band = to_share.transform((1.0, BAND))[1]
+    taken: list[Box] = []
+    for text in axes.texts:
+        (begin, low), (end, high) = axes.transAxes.inverted().transform(text.get_window_extent())
+        taken.append((begin, end, low, high))
     for name in sorted(names, key=lambda each: (-each.y, each.x)):
-        x, y = to_share.transform((name.x, name.y))
+        point_at = np.array(to_share.transform((name.x, name.y)))
         width = letter * len(name.words)
-        places = sorted(
-            (abs(step) + (0.0 if side > 0 else 0.02), side, step)
-            for side in (1, -1)
-            for step in np.arange(-0.3, 0.301, 0.01)
-        )
-        for _, side, step in places:
-            begin = x + gap if side > 0 else x - gap - width
-            height = y + step
-            free = begin > 0.0 and begin + width < 1.0 and 0.02 < height < 0.75
-            inside = (drawn[:, 0] > begin - 0.5 * gap) & (drawn[:, 0] < begin + width)
-            free = free and not (inside & (np.abs(drawn[:, 1] - height) < 0.6 * apart)).any()
-            if free and all(
-                begin + width < other[0] or begin > other[1] or abs(height - other[2]) >= apart
+        lowest = band + 0.4 * apart if name.colour == QUIET else LOWEST_NAME
+        best, chosen = math.inf, None
+        for side, aside, step in itertools.product((1, -1), ASIDES, STEPS):
+            begin = point_at[0] + (gap + aside if side > 0 else -gap - aside - width)
+            height = point_at[1] + step
+            box = begin, begin + width, height - 0.5 * apart, height + 0.5 * apart
+            near = (begin - 0.2 * gap if side > 0 else begin + width + 0.2 * gap), height
+            led = abs(step) > LED or aside > 0.0
+            leader = np.linspace(point_at, near, 20 if led else 1)
+            if not (begin > 0.0 and begin + width < 1.0 and lowest < height < HIGHEST_NAME):
+                continue
+            covered = _inside(drawn, (begin - 0.5 * gap, *box[1:])) + sum(
+                max(min(box[1], other[1]) - max(box[0], other[0]), 0.0) > 0.0
+                and max(min(box[3], other[3]) - max(box[2], other[2]), 0.0) > 0.0
                 for other in taken
-            ):
-                break
-        taken.append((begin, begin + width, height))
+            )
+            crossed = sum(_inside(leader, other) for other in taken)
+            cost = COVERS * covered + CROSSES * crossed + abs(step) + aside + 0.02 * (side < 0)
+            if cost < best:
+                best, chosen = cost, (box, leader if led else None)
+        assert chosen is not None
+        box, line = chosen
+        taken.append(box)
+        if line is not None:
+            axes.plot(*line.T, color=name.colour, linewidth=0.5, transform=axes.transAxes, zorder=1)
         axes.text(
-            begin, height, name.words, transform=axes.transAxes, color=name.colour,
+            box[0], 0.5 * (box[2] + box[3]), name.words, transform=axes.transAxes,
             fontsize="small", va="center",
+            color=GREY_WORDS if name.colour == QUIET else name.colour,
         )  # fmt: skip
+
+
+def _inside(points: Any, box: Box) -> bool:
+    """Return whether one of the points, shape (n, 2), lies in a box."""
+    across, up = points.T
+    inside = (across > box[0]) & (across < box[1]) & (up > box[2]) & (up < box[3])
+    return bool(inside.any())
 
 
 def _along(corners: Any) -> Any:

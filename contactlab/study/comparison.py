@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Set
 from typing import Any
 
 import attrs
@@ -25,6 +25,8 @@ Array = NDArray[np.float64]
 
 #: Repeats of a short run. The least time counts, which other load of the machine disturbs least.
 REPEATS = 3
+#: Declared error of psi2 below which an elastic law is called exact.
+EXACT = 1e-6
 #: A run longer than this, in s, is not repeated: warming up takes little of its time.
 LONG_RUN = 2.0
 
@@ -39,11 +41,16 @@ class LawRun:
     result : ImpactResult
     run_time_per_impact : float
         Least wall-clock time of the repeats, over the number of impacts, in s.
+    model : str
+        What the law takes the bodies for: ``"rigid"``; ``"elastic"`` for a law that converges to
+        the elastic continuum; ``"exact"`` if it also declares an error of psi2 below ``EXACT``;
+        else empty.
     """
 
     name: str
     result: ImpactResult
     run_time_per_impact: float = attrs.field(metadata={"unit": "s"})
+    model: str = ""
 
 
 @attrs.frozen(kw_only=True, eq=False)
@@ -141,6 +148,10 @@ class Comparison:
     def result(self, law: str) -> ImpactResult:
         """Return the result of one law."""
         return next(run.result for run in self.runs if run.name == law)
+
+    def model(self, law: str) -> str:
+        """Return what one law takes the bodies for: see ``LawRun.model``."""
+        return next(run.model for run in self.runs if run.name == law)
 
     def values(self, quantity: str, law: str) -> Array:
         """Return a quantity of one law over the scene or sweep; NaN where an impact failed."""
@@ -316,4 +327,17 @@ def _timed(name: str, simulation: Simulation, scene: Scene, *, history: bool) ->
     if history:  # after the timing, because keeping the history takes time
         result = simulation.run(scene, history=True)
     impacts = scene.shape[0] if scene.shape else 1
-    return LawRun(name=name, result=result, run_time_per_impact=min(times) / impacts)
+    return LawRun(
+        name=name,
+        result=result,
+        run_time_per_impact=min(times) / impacts,
+        model=_model(simulation.laws.tangential.offers, result),
+    )
+
+
+def _model(offers: Set[str], result: ImpactResult) -> str:
+    """Return what a law takes the bodies for, by its claims and its declared error."""
+    if "partial_slip" in offers:
+        # a law that declares no error has NaN, which is not below
+        return "exact" if np.all(np.less(result.plan.psi2_error, EXACT)) else "elastic"
+    return "rigid" if "rigid" in offers else ""

@@ -5,7 +5,7 @@ after it has stopped. Each is a mean over independent fillings; its error is tha
 
 Examples
 --------
-  python drum.py --lmp build/lmp --grains 2000 --fillings 4 --figure drum.png
+  python drum.py --lmp build/lmp --grains 2000 --fillings 4
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ EVERY = 100  # steps between two rows
 
 
 class Drum(NamedTuple):
-    """Rows over time while the drum turns, and after; places (n, 2) and diameters at the end.
+    """Rows over time while the drum turns, and after.
 
     A row has the slope of the heap in degrees, and the energies of translation and of rotation
     of a grain over mass, gravity and diameter.
@@ -45,8 +45,6 @@ class Drum(NamedTuple):
 
     turning: Array
     resting: Array
-    place: Array
-    diameter: Array
 
 
 def lattice(count: int) -> tuple[Array, float]:
@@ -106,18 +104,15 @@ thermo_style custom step v_slope v_t v_r
 thermo_modify lost error format float %.9g
 thermo {EVERY}
 run {begun + measured + rest}
-write_dump all custom out x y z diameter modify sort id format float %.9g
 """
     edge = np.array([RADIUS, RADIUS, 0.0]) * 1.01
     with folder() as name:
         write(grains, Path(name) / "data", -edge, [*edge[:2], length])
         text = lammps.run(script, Path(name))
-        lines = (Path(name) / "out").read_text().splitlines()
-    last = np.loadtxt(lines[lines.index("ITEM: ATOMS x y z diameter") + 1 :])
     number = r" +(\S+)"
     rows = np.array(re.findall(rf"^ *\d+{number * 3} *$", text, flags=re.MULTILINE), float)
     first, stop = begun // EVERY, (begun + measured) // EVERY
-    return Drum(rows[first:stop], rows[stop:], last[:, :2], last[:, 3])
+    return Drum(rows[first:stop], rows[stop:])
 
 
 def numbers(drum: Drum) -> Array:
@@ -128,68 +123,21 @@ def numbers(drum: Drum) -> Array:
     return np.array([slope, moved, spun, spun / moved, drum.resting[-1, 0], *energy[at]])
 
 
-def draw(found: dict[str, list[Drum]], path: Path) -> None:
-    """Draw the heap at rest, its slope before and after the stop, and the energy that is left."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-    from matplotlib.collections import EllipseCollection
-
-    from contactlab.figures.style import QUIET, law_style, styled
-
-    with styled("print", "two"):
-        figure, (heap, slope, energy) = plt.subplots(
-            1, 3, figsize=(7.0, 2.6), width_ratios=(1.0, 1.1, 1.4)
-        )
-        last = found["springs, xt = 1"][0]
-        size = last.diameter / DIAMETER
-        heap.add_collection(
-            EllipseCollection(
-                size, size, 0.0 * size, units="xy", offsets=last.place / DIAMETER,
-                transOffset=heap.transData, facecolor="0.8", edgecolor="0.4", lw=0.3,
-            )
-        )  # fmt: skip
-        heap.add_patch(plt.Circle((0.0, 0.0), RADIUS / DIAMETER, fill=False, color=QUIET))
-        heap.set(xlim=(-15, 15), ylim=(-15, 15), aspect="equal", title="at rest, springs")
-        heap.axis("off")
-        for number, (law, drums) in enumerate(found.items()):
-            look = {"color": law_style(number)["color"], "marker": "os^D"[number]}
-            each = np.array([numbers(drum) for drum in drums])
-            errors = each.std(axis=0, ddof=1) / np.sqrt(len(drums))
-            slope.errorbar(
-                [0.0 + 0.1 * number, 1.0 + 0.1 * number], each.mean(axis=0)[[0, 4]], errors[[0, 4]],
-                ls="", ms=4, capsize=3, **look,
-            )  # fmt: skip
-            left = np.array([drum.resting[:, 1:].sum(axis=1) for drum in drums])
-            time = EVERY * TIME_STEP * np.arange(left.shape[1])
-            energy.semilogy(time, left.mean(axis=0), lw=1.0, color=look["color"], label=law)
-        slope.set(title="slope of the heap, degrees", ylim=(0.0, 35.0), xlim=(-0.3, 1.6))
-        slope.set_xticks([0.15, 1.15], ["turning", "at rest"])
-        energy.set(title="energy over m g d of a grain", xlabel="time from the stop (s)")
-        energy.legend(fontsize="small")
-        figure.savefig(path)
-
-
 def main() -> None:
-    """Print the means with their errors, and draw them."""
+    """Print the means with their errors."""
     parser = arguments(__doc__.splitlines()[0])
     parser.add_argument("--grains", type=int, default=2000)
     parser.add_argument("--fillings", type=int, default=4)
-    parser.add_argument("--figure", type=Path)
     given = parser.parse_args()
     lammps = engine(given)
-    found: dict[str, list[Drum]] = {}
     heads = ("slope, deg", "translation", "rotation", "ratio", "heap, deg", "1/4", "1/2", "end")
     print(" " * 16, *(f"{head:>17}" for head in heads))
     for law in LAWS:
-        found[law] = [turned(lammps, law, given.grains, seed) for seed in range(given.fillings)]
-        each = np.array([numbers(drum) for drum in found[law]])
+        drums = [turned(lammps, law, given.grains, seed) for seed in range(given.fillings)]
+        each = np.array([numbers(drum) for drum in drums])
         error = each.std(axis=0, ddof=1) / np.sqrt(given.fillings)
         cells = [f"{m:9.4g} ± {e:5.2g}" for m, e in zip(each.mean(axis=0), error, strict=True)]
         print(f"{law:16}", *(f"{cell:>17}" for cell in cells), flush=True)
-    if given.figure:
-        draw(found, given.figure)
 
 
 if __name__ == "__main__":

@@ -25,7 +25,8 @@ REFERENCE = 0.5 * X  # a range of 2
 class Scripted:
     """A comparison whose laws have the values given; bands of a tenth."""
 
-    def __init__(self, laws, scene=None, varied=None, agreements=(), half=0.1):
+    def __init__(self, laws, scene=None, varied=None, agreements=(), half=0.1, models=None):
+        self.models = models or {}
         self.laws, self.names, self.half = laws, list(laws), half
         self.scene = scene or Scene.nondimensional(psi1=X, chi=1.0)
         self.varied = varied or {"psi1": X}
@@ -36,6 +37,9 @@ class Scripted:
 
     def difference(self, quantity, name):
         return self.laws[name] - self.laws[self.names[0]]
+
+    def model(self, name):
+        return self.models.get(name, "")
 
     def band(self, quantity, name):
         return np.full(len(X), self.half)
@@ -95,7 +99,8 @@ def named():
         measured(label="b"),
     )
     laws = {name: values for name, values in LAWS.items() if name != "just"}
-    all_laws(upper, lower, Scripted(laws, agreements=agreements), "psi2")
+    models = {"$exact": "exact"}
+    all_laws(upper, lower, Scripted(laws, agreements=agreements, models=models), "psi2")
     return upper, lower
 
 
@@ -106,7 +111,8 @@ def test_other_codes_are_points_without_lines(drawn, named):
         np.testing.assert_array_equal(line.get_data(), ([1.0, 2.0], [0.25, 0.5]))
         assert (line.get_linestyle(), line.get_markerfacecolor()) == ("None", "white")
     legend = named[0].get_legend()
-    assert [text.get_text() for text in legend.get_texts()] == ["code", "b"]
+    assert [text.get_text() for text in legend.get_texts()] == [r"\$exact (exact)", "code", "b"]
+    assert named[1].get_ylabel() == r"law $-$ exact"
 
 
 def test_laws_and_measured_values_over_a_sweep():
@@ -204,13 +210,14 @@ def test_forces_of_each_law_lie_within_one_limit():
     np.testing.assert_array_equal(upper.get_ydata(), -lower.get_ydata())
     assert upper.get_ydata().max() == pytest.approx(1.0, abs=1e-3)
     drawn = {line.get_label(): line for line in lines}
-    assert {r"springs\$", "spring"} <= set(drawn)
+    assert set(drawn) == {r"springs\$ (elastic)", "rigid (rigid)", "spring"}
     assert len(drawn) == len(lines) == sum(bool(run.result.history) for run in compared.runs)
+    words = {"springs$": " (elastic)", "rigid": " (rigid)", "spring": ""}
     for number, run in enumerate(compared.runs):
         if not run.result.history or not run.result.history.time.size:
             assert run.name not in drawn
             continue
-        line = drawn[run.name.replace("$", r"\$")]
+        line = drawn[run.name.replace("$", r"\$") + words[run.name]]
         assert line.get_color() == LAW_COLOURS[number]
         peak = run.result.motion.maximum_force
         np.testing.assert_allclose(line.get_ydata()[1:] * peak, run.result.history.tangential_force)

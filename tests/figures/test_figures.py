@@ -203,7 +203,7 @@ def test_long_legends_stand_clear_of_the_axes(three_laws, tmp_path, monkeypatch,
     figure, renderer = drawn(draw, tmp_path, monkeypatch, **options)
     legends = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
     if not legends:
-        assert {"coulomb", "walton"} <= {text for text, _, _ in boxes(figure, renderer)}
+        assert {"coulomb (rigid)", "walton"} <= {text for text, _, _ in boxes(figure, renderer)}
         return
     (legend,) = legends
     box = legend.get_window_extent(renderer).padded(-1.0)  # it may touch
@@ -221,7 +221,7 @@ def test_laws_within_the_line_of_the_reference_are_named_with_it():
     upper, lower = Figure().subplots(2)
     all_laws(upper, lower, compare(file, laws), "psi2")
     named = [line.get_label() for line in upper.lines]
-    assert "exact, the reference; on its line:\nsprings" in named
+    assert "exact (exact); on its line:\nsprings" in named
     assert "coulomb" in named
 
 

@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 import pytest
 
-from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, create
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, create, rebound
 from contactlab.contracts.status import Status
 from contactlab.scene_file import read_scene
 from contactlab.study import comparison as study
@@ -50,6 +50,15 @@ def test_values_and_differences_are_those_of_the_laws(both):
     assert not both.interrupted
     assert list(both.varied) == ["psi1"]
     np.testing.assert_array_equal(both.varied["psi1"], PSI1)
+
+
+def test_a_law_is_exact_elastic_or_rigid_by_what_it_claims_and_declares():
+    names = {"fronts": "exact", "springs": "elastic", "coulomb": "rigid", "walton": ""}
+    found = compare(SCENES, {name: Simulation(tangential=name) for name in names})
+    assert {name: found.model(name) for name in names} == names
+    exact = rebound(np.array(PSI1), 1.0)
+    assert np.abs(found.values("psi2", "fronts") - exact).max() < study.EXACT
+    assert np.abs(found.values("psi2", "springs") - exact).max() > study.EXACT
 
 
 def test_some_of_the_laws_are_taken_with_their_agreements(file):
