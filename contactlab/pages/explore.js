@@ -4,8 +4,11 @@ const $ = id => document.getElementById(id);
 const SLIDERS = {...RANGES, guess: [-85, 89]};
 const SHOW = 7000;             // length of the whole show in ms
 const ARRIVAL = .22, DEPARTURE = .74; // parts of the show at which contact begins and ends
-const NEAR = 2.2, FAR = 4.2;   // centre of the ball from its place of contact, in radii: at rest, at the largest speed
-const SIZE = 42, MIDDLE = 250, FLOOR = 262; // a radius, and the point of contact, in the picture
+const SIZE = 30, MIDDLE = 250, FLOOR = 262; // a radius, and the point of contact, in the picture
+const ARROW_FROM = .15;        // least force that has an arrow, over friction's largest
+const TIP_AT = 6;              // of the prediction's line, in radii from the ball at rest
+const NEAR = 2;                // centre of a ball that is pulled to no speed, from its place of contact, in radii
+const SIDEWAYS = (MIDDLE - SIZE - 6) / SIZE, UPWARDS = (FLOOR - 2 * SIZE - 6) / SIZE; // where the ball meets the edges
 const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 const minus = (value, digits) => (+value.toFixed(digits) + 0).toFixed(digits).replace("-", "\u2212");
@@ -21,6 +24,7 @@ const WORDS = {
 };
 
 let state = {...FIRST}, found, curves = [], moment = 0, playing = 0, seen = false;
+let from = 1;                  // the side from which the ball is thrown: 1 left, -1 right
 
 /* ---- state in the link ---- */
 function fromLink() {
@@ -48,17 +52,26 @@ const path = (xs, ys) => xs.map((x, k) => (k ? "L" : "M") + x.toFixed(1) + " " +
 const line = (x1, y1, x2, y2, kind) => `<line class="${kind}" x1="${x1.toFixed(1)}" y1="${y1.toFixed(1)}" x2="${x2.toFixed(1)}" y2="${y2.toFixed(1)}"/>`;
 const text = (x, y, what, anchor, kind) => `<text class="${kind || ""}" x="${x.toFixed(1)}" y="${y.toFixed(1)}" text-anchor="${anchor || "middle"}">${what}</text>`;
 
-const place = x => MIDDLE + SIZE * x, height = y => FLOOR - SIZE * y;
-/* The ball starts the farther away, the faster it is. */
-const distance = () => NEAR + (FAR - NEAR) * Math.sqrt(state.speed / $("speed").max);
-
-/* Return angle and speed of a ball that is held at a point of the picture. */
-function aimed(point) {
-  const left = Math.max(MIDDLE - point.x, 0) / SIZE, up = (FLOOR - point.y) / SIZE - 1;
-  const pulled = Math.min(Math.max((Math.hypot(left, up) - NEAR) / (FAR - NEAR), 0), 1);
-  const angle = Math.min(Math.round(Math.atan2(left, up) * 180 / Math.PI), +$("angle").max);
-  return {angle, speed: Math.max(Math.round(10 * $("speed").max * pulled ** 2) / 10, +$("speed").min)};
+const place = x => MIDDLE + from * SIZE * x, height = y => FLOOR - SIZE * y;
+/* Return how far the ball may go along (dx, dy) before it meets the edge of the picture, in lengths of (dx, dy). */
+const room = (dx, dy) => Math.min(SIDEWAYS / Math.max(Math.abs(dx), 1e-9), UPWARDS / Math.max(dy, 1e-9));
+/* The ball starts the farther away, the faster it is: from NEAR to the edge of the picture. */
+function distance() {
+  const a = state.angle * Math.PI / 180;
+  return NEAR + (room(Math.sin(a), Math.cos(a)) - NEAR) * state.speed / $("speed").max;
 }
+
+/* Return angle and speed of a ball that is held at a point of the picture, at either side. */
+function aimed(point) {
+  const aside = Math.abs(MIDDLE - point.x) / SIZE, up = (FLOOR - point.y) / SIZE - 1, far = Math.hypot(aside, up);
+  const pulled = Math.min(Math.max((far - NEAR) / (room(aside / far, up / far) - NEAR), 0), 1);
+  const angle = Math.min(Math.round(Math.atan2(aside, up) * 180 / Math.PI), +$("angle").max);
+  from = point.x > MIDDLE ? -1 : 1;
+  return {angle, speed: Math.max(Math.round(10 * $("speed").max * pulled) / 10, +$("speed").min)};
+}
+
+/* Return the time of flight that is shown after the contact: until the first ball meets the edge of the picture. */
+const flight = () => Math.min(...LAWS.map(([law]) => room(found[law].along, found[law].normal)));
 
 /* Return each ball's centre in radii from the point of contact, and its turn in rad. */
 function balls() {
@@ -66,11 +79,11 @@ function balls() {
   const inside = Math.min(Math.max((moment - ARRIVAL) / (DEPARTURE - ARRIVAL), 0), 1);
   const reach = distance() / state.speed, touching = found.duration / met.R, deepest = Math.max(...found.contact.radius);
   return Object.fromEntries(LAWS.map(([law]) => {
-    const left = found[law], away = after * reach, come = (before - 1) * reach;
+    const left = found[law], away = after * flight(), come = (before - 1) * reach;
     return [law, {
       x: met.along * come + (met.along + left.along) / 2 * touching * inside + left.along * away,
       y: 1 - met.normal * come + left.normal * away - (met.C * deepest) ** 2 * Math.sin(Math.PI * inside),
-      turn: met.R * (state.spin * come + left.spin * away),
+      turn: from * met.R * (state.spin * come + left.spin * away),
     }];
   }));
 }
@@ -84,25 +97,25 @@ function arrow(shape, x, y, dx, dy, kind) {
 
 /* Return what is drawn around a ball that waits: where it is thrown, and how it spins. */
 function aim([x, y]) {
-  const {met} = found, along = met.along / state.speed, normal = met.normal / state.speed, r = SIZE + 9;
-  const far = r + 12 + 28 * Math.sqrt(state.speed / $("speed").max);
+  const {met} = found, along = from * met.along / state.speed, normal = met.normal / state.speed, r = SIZE + 9;
+  const far = r + 10 + 40 * state.speed / $("speed").max;
   const [tipX, tipY] = [x + far * along, y + far * normal];
   let svg = arrow(`M${x + r * along} ${y + r * normal}L${tipX} ${tipY}`, tipX, tipY, along, normal, "aim");
   if (state.spin) { // an arc at the side from which it comes, turning as the ball does
-    const way = Math.sign(state.spin), from = Math.atan2(-normal, -along) + .6 * way, to = from - 1.2 * way;
+    const way = from * Math.sign(state.spin), first = Math.atan2(-normal, -along) + .6 * way, to = first - 1.2 * way;
     const [endX, endY] = [x + r * Math.cos(to), y + r * Math.sin(to)];
-    const arc = `M${x + r * Math.cos(from)} ${y + r * Math.sin(from)}A${r} ${r} 0 0 ${way > 0 ? 0 : 1} ${endX} ${endY}`;
+    const arc = `M${x + r * Math.cos(first)} ${y + r * Math.sin(first)}A${r} ${r} 0 0 ${way > 0 ? 0 : 1} ${endX} ${endY}`;
     svg += arrow(arc, endX, endY, way * Math.sin(to), -way * Math.cos(to), "aim");
   }
   return svg;
 }
 
 function drawStage() {
-  const [x, y] = [place, height], {met, exact} = found, drawn = balls(), from = distance() / state.speed;
+  const [x, y] = [place, height], {met, exact} = found, drawn = balls(), come = distance() / state.speed;
   let svg = `<rect class="ground" x="0" y="${y(0)}" width="500" height="40"/>`;
   svg += line(x(0), y(1), x(0), y(6), "rule");
-  svg += line(x(-met.along * from), y(1 + met.normal * from), x(0), y(1), "rule");
-  if (seen) svg += line(x(0), y(1), x(exact.along * from), y(1 + exact.normal * from), "rule");
+  svg += line(x(-met.along * come), y(1 + met.normal * come), x(0), y(1), "rule");
+  if (seen) svg += line(x(0), y(1), x(exact.along * flight()), y(1 + exact.normal * flight()), "rule");
   const marks = moment > DEPARTURE ? LAWS.slice().reverse() : LAWS.slice(0, 1);
   for (const [law] of marks) {
     const ball = drawn[law], c = [x(ball.x), y(ball.y)];
@@ -115,14 +128,14 @@ function drawStage() {
     }
   }
   if (state.predict) { // over the ball, so that both can be held
-    const a = state.guess * Math.PI / 180, [tipX, tipY] = [x(4.4 * Math.sin(a)), y(1 + 4.4 * Math.cos(a))];
+    const a = state.guess * Math.PI / 180, [tipX, tipY] = [x(TIP_AT * Math.sin(a)), y(1 + TIP_AT * Math.cos(a))], left = from * a < 0;
     svg += line(x(0), y(1), tipX, tipY, "guess") + `<g class="grip" data-grip="guess"><circle class="knob" cx="${tipX}" cy="${tipY}" r="8"/>`;
-    svg += `<circle class="touch" cx="${tipX}" cy="${tipY}" r="26"/></g>` + text(tipX + (a < 0 ? -13 : 13), tipY + 6, "you", a < 0 ? "end" : "start");
+    svg += `<circle class="touch" cx="${tipX}" cy="${tipY}" r="26"/></g>` + text(tipX + (left ? -13 : 13), tipY + 6, "you", left ? "end" : "start");
   }
   const inside = (moment - ARRIVAL) / (DEPARTURE - ARRIVAL);
   const clock = moment === 0 ? `${state.angle}\u00b0, ${state.speed.toFixed(1)} m/s` : inside < 0 ? "arrives" : inside > 1 ? "leaves" : `in contact: ${seconds(inside * found.duration)} of ${seconds(found.duration)}`;
   svg += text(12, 24, clock, "start");
-  const side = exact.angle < 0 ? [488, "end"] : [12, "start"]; // where no ball is
+  const side = from * exact.angle < 0 ? [488, "end"] : [12, "start"]; // where no ball is
   if (moment > DEPARTURE) svg += text(side[0], 48, nameOf("exact"), side[1], "named-exact") + text(side[0], 70, "ghost: capped spring", side[1], "named-spring") + text(side[0], 92, "ghost: rigid", side[1], "named-rigid");
   $("stage").innerHTML = svg;
 }
@@ -146,19 +159,29 @@ function rings(states) {
   return list;
 }
 
+/* Return the step of the contact that is shown: that of the moment, or after the throw one at which it sticks in part. */
+function shownStep() {
+  if (moment > ARRIVAL && moment <= DEPARTURE) return row();
+  if (!seen) return 0;
+  const parted = found.contact.states.map((states, k) => [k + 1, rings(states).length]).filter(([, count]) => count > 1);
+  return parted.length ? parted[parted.length >> 1][0] : found.contact.time.length >> 1;
+}
+
 function drawContact() {
-  const colours = ["", "var(--grey)", "var(--blue)", "var(--red)"], k = row();
-  const list = k && moment <= DEPARTURE ? rings(found.contact.states[k - 1]) : []; // the springs of each step
+  const colours = ["", "var(--grey)", "var(--blue)", "var(--red)"], {met, contact, duration} = found, k = shownStep();
+  const list = k ? rings(contact.states[k - 1]) : []; // the springs of each step
   const size = 104, cx = 125, cy = 112;
   let svg = `<circle class="rule" fill="none" cx="${cx}" cy="${cy}" r="${size}"/>`;
   for (const ring of list) svg += `<circle cx="${cx}" cy="${cy}" r="${(size * ring.outer).toFixed(2)}" fill="${colours[ring.state]}" data-state="${ring.state}"/>`;
-  const share = found.contact.force[k];
-  if (list.length && Math.abs(share) > .01) {
-    const tip = cx - 90 * share, back = tip + 10 * Math.sign(share);
+  const share = contact.force[k];
+  if (list.length && Math.abs(share) > ARROW_FROM) {
+    const tip = cx - 90 * from * share, back = tip + 10 * from * Math.sign(share);
     svg += `<path d="M${cx} ${cy}H${tip}M${back} ${cy - 6}L${tip} ${cy}L${back} ${cy + 6}" stroke="var(--ink)" stroke-width="2.5" fill="none"/>`;
   }
-  const words = !list.length ? "no contact" : !list.some(ring => ring.state === 1) ? "slips all over" : list.length === 1 ? "sticks"
+  if (!list.length) svg += [`${(2000 * met.C * met.R).toPrecision(2)} mm wide,`, `for ${seconds(duration)}`].map((words, line) => text(cx, cy - 4 + 24 * line, words)).join("");
+  let words = !list.length ? "before the contact" : !list.some(ring => ring.state === 1) ? "slips all over" : list.length === 1 ? "sticks"
     : list.at(-1).state === 1 ? "slips at the rim, sticks within" : "sticks in a ring";
+  if (moment > DEPARTURE) words = seen ? `at ${Math.round(100 * contact.time[k])} % of the contact: ${words}` : "after the contact";
   $("contact").innerHTML = svg; $("state").textContent = words;
   $("contact").setAttribute("aria-label", `the contact from above: ${words}`);
 }
@@ -226,7 +249,7 @@ function showMoment() {
 }
 /* Show the answer, or the places for it before the throw. */
 function showAnswer() {
-  const hint = state.predict ? "Turn the dotted line to where you say it goes. Then throw." : "Drag the ball, the farther the faster, and let go.";
+  const hint = state.predict ? "Turn the dotted line to where you say it goes. Then throw." : "Drag the ball to either side, and let go. The farther the faster, up to 10 m/s at the edge of the picture.";
   const told = seen ? answer() : playing ? "" : hint, shown = (value, digits) => (seen ? minus(value, digits) : "\u2013");
   $("said").textContent = told;
   $("answers").innerHTML = LAWS.map(([law], k) => { const one = found[law];
@@ -274,6 +297,7 @@ function draggable(picture, moving, released) {
   picture.addEventListener("pointerdown", event => {
     const grip = event.target.closest("[data-grip]")?.dataset.grip;
     if (!grip || !event.isPrimary) return;
+    document.documentElement.dataset.by = "pointer"; // no frame of the keyboard's focus
     [held, start] = [grip, event]; picture.setPointerCapture(event.pointerId); event.preventDefault(); picture.focus({preventScroll: true});
   });
   picture.addEventListener("pointermove", event => {
@@ -287,7 +311,7 @@ function draggable(picture, moving, released) {
 }
 const stage = $("stage");
 draggable(stage, (grip, point) => {
-  const turned = Math.round(Math.atan2(point.x - MIDDLE, FLOOR - SIZE - point.y) * 180 / Math.PI), [least, most] = SLIDERS.guess;
+  const turned = Math.round(Math.atan2(from * (point.x - MIDDLE), FLOOR - SIZE - point.y) * 180 / Math.PI), [least, most] = SLIDERS.guess;
   Object.assign(state, grip === "ball" ? aimed(point) : {guess: Math.min(Math.max(turned, least), most)});
   changed();
 }, (grip, moved) => { if (grip === "ball" && !(state.predict && moved)) play(); });
@@ -295,8 +319,9 @@ const KEYS = {ArrowLeft: ["angle", 1], ArrowRight: ["angle", -1], ArrowUp: ["spe
 stage.addEventListener("keydown", event => {
   if (!(event.key in KEYS)) return;
   const [key, way] = KEYS[event.key];
-  $(key).stepUp(way); state[key] = +$(key).value; changed(); event.preventDefault();
+  $(key).stepUp(key === "angle" ? from * way : way); state[key] = +$(key).value; changed(); event.preventDefault();
 });
+addEventListener("keydown", () => { delete document.documentElement.dataset.by; }, true);
 addEventListener("keydown", event => { // what has a use of its own for the key keeps it
   if (event.key !== " " || event.target.closest("button, select, summary, [type=checkbox]")) return;
   event.preventDefault();
@@ -322,7 +347,7 @@ function begin() {
   fromLink(); changed();
   if (state.block || ["radius", "inertia", "restitution"].some(key => state[key] !== FIRST[key])) $("more").open = true;
 }
-addEventListener("hashchange", () => { state = {...FIRST}; begin(); scrollTo(0, 0); });
+addEventListener("hashchange", () => { state = {...FIRST}; from = 1; begin(); scrollTo(0, 0); });
 begin(); writeSheet();
 $("print").addEventListener("click", () => print());
 addEventListener("beforeprint", () => { $("answered").open ||= $("sheet").open; }); // the answers, on a page of their own

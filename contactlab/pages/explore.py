@@ -58,7 +58,7 @@ def explore_page(
     *,
     angle: float = 35.0,
     speed: float = 2.0,
-    spin: float = 100.0,
+    spin: float = 200.0,
     friction: float = 0.8,
     radius: float = 0.01,
     inertia: float = 0.4,
