@@ -3,6 +3,7 @@
 import os
 import re
 import sys
+from html import unescape
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ from docutils import nodes
 from latex2mathml.converter import convert
 
 import contactlab
+from contactlab.cli.guide import PAGES, PARTS, text
 
 sys.path.insert(0, str(Path(__file__).parent))
 from examples import NOT_RUN, InOrder, Pictures, arguments
@@ -109,6 +111,32 @@ SPACES = {
 }
 
 
+#: What the text says to type, and a section where it names one.
+TYPED = re.compile(r"contactlab guide ([a-z][a-z-]*)(?: (\d+))?")
+#: Letters of a formula from which on it has a line of its own on a phone, where it can be scrolled.
+LONG = 24
+
+
+def linked(app: Any, doctree: nodes.document, page: str) -> None:
+    """Make a link of each ``contactlab guide NAME``, to the page or the section that it names."""
+    for literal in list(doctree.findall(nodes.literal)):
+        typed = TYPED.fullmatch(" ".join(literal.astext().split()))
+        if typed is None or isinstance(literal.parent, nodes.reference):
+            continue
+        topic, number = typed.groups()
+        target, anchor = topic, ""
+        for part in PARTS.get(topic, ()) if number else ():
+            if heading := re.search(rf"^## ({number}\. .*)$", text(part), re.MULTILINE):
+                slug = re.sub(r"[^\w -]", "", heading[1]).lower().replace(" ", "-")
+                target, anchor = part, f"#{slug}"
+        if target not in PAGES:
+            continue
+        uri = app.builder.get_relative_uri(page, target) + anchor
+        reference = nodes.reference("", "", internal=True, refuri=uri)
+        literal.replace_self(reference)
+        reference += literal
+
+
 def mathml(latex: str, display: str) -> str:
     """Return a formula as MathML, which browsers draw without a network."""
     formula = convert(latex, display=display)
@@ -119,7 +147,11 @@ def mathml(latex: str, display: str) -> str:
 
 def formula(translator: Any, node: Any) -> None:
     """Write a formula within a line."""
-    translator.body.append(mathml(node.astext(), "inline"))
+    written = mathml(node.astext(), "inline")
+    letters = len(unescape(re.sub(r"<[^>]*>", "", written)))
+    translator.body.append(
+        f'<span class="formula">{written}</span>' if letters >= LONG else written
+    )
     raise nodes.SkipNode
 
 
@@ -134,4 +166,5 @@ def setup(app: Any) -> None:
     app.add_html_math_renderer("mathml", (formula, None), (displayed_formula, None))
     app.connect("viewcode-follow-imported", not_followed)
     app.connect("autodoc-skip-member", left_out)
+    app.connect("doctree-resolved", linked)
     app.connect("autodoc-process-docstring", attributes_apart, priority=900)

@@ -16,6 +16,7 @@ import pytest
 
 import contactlab
 from contactlab.cli.guide import PAGES, TOPICS
+from contactlab.pages.explore import explore_page
 
 pytestmark = pytest.mark.browser
 TOP = Path(__file__).parents[2]
@@ -138,13 +139,102 @@ def test_notebooks_open_and_run(site, tmp_path):
     assert (tmp_path / "kharaz2001.png").exists()
 
 
-def test_the_search_finds_a_word(site, opened):
+@pytest.mark.parametrize(
+    ("word", "pages"),
+    [
+        ("gyration", set()),
+        ("robot", {"Any two bodies"}),
+        ("batch", {"Getting started"}),
+        ("golf", {"Any two bodies", "A golf ball hit by the toe and the heel of a driver"}),
+    ],
+)
+def test_the_search_finds_a_word(site, opened, word, pages):
     page = opened(site / "search.html")
     box = page.find_element("css selector", "input[name=q]")
-    box.send_keys("gyration")
+    box.send_keys(word)
     box.submit()
     page.implicitly_wait(20)
     assert page.find_elements("css selector", "ul.search li")
+    first = [each.text for each in page.find_elements("css selector", "ul.search li > a")[:4]]
+    assert pages <= set(first)
+
+
+def test_commands_of_the_guide_are_links(site):
+    """To the page of the topic, or to the section that is named."""
+    for page in PAGES:
+        text = (site / f"{page}.html").read_text("utf-8")
+        prose = re.sub(r"<pre\b.*?</pre>", "", text, flags=re.DOTALL)
+        for before, code in re.findall(r"(<a [^>]*>)?(<code\b.*?</code>)", prose, re.DOTALL):
+            words = " ".join(html.unescape(re.sub("<[^>]*>", " ", code)).split())
+            if typed := re.fullmatch(r"contactlab guide ([a-z-]+)( \d+)?", words):
+                assert before, (page, words)
+                target = re.search('href="([^"]*)"', before)[1]
+                if typed[2]:
+                    assert f"#{typed[2].strip()}-" in target
+                else:
+                    assert target in (f"{typed[1]}.html", "#")
+
+
+def test_the_explorer_is_the_page_of_the_command(site):
+    assert (site / "explore.html").read_text("utf-8") == explore_page()
+
+
+def test_on_a_phone_wide_formulas_are_scrolled_and_say_so(site, opened):
+    screen = {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True}
+    wide = 0
+    for topic in PAGES:
+        page = opened(site / f"{topic}.html")
+        page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", screen)
+        try:
+            found = page.execute_script(
+                "return [...document.querySelectorAll('article math')].map(math => {"
+                "const box = math.closest('.formula, .table-wrapper'), style = getComputedStyle("
+                "box || math); return [math.getBoundingClientRect().right,"
+                "style.overflowX, style.backgroundImage.split('linear-gradient').length - 1,"
+                "style.backgroundAttachment]})"
+            )
+        finally:
+            page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+        for right, overflow, shades, attachment in found:
+            if right > 390:
+                wide += 1
+                assert (overflow, shades) == ("auto", 4), topic
+                assert attachment == "local, local, scroll, scroll"
+    assert wide > 5
+
+
+def test_symbols_within_a_line_have_the_size_of_its_letters(site, opened):
+    page = opened(site / "theory-impact.html")
+    sizes = page.execute_script(
+        "return [...document.querySelectorAll('article p > math')].map(math => [math, math"
+        ".parentElement].map(each => getComputedStyle(each).fontSize))"
+    )
+    assert len(sizes) > 10
+    assert all(symbol == letters for symbol, letters in sizes)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_pictures_are_dark_where_the_page_is(site, opened, scheme):
+    page = opened(site / "laws.html")
+    feature = {"name": "prefers-color-scheme", "value": scheme}
+    page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [feature]})
+    try:
+        filters = page.execute_script(
+            "return [...document.querySelectorAll('article img')].map("
+            "e => getComputedStyle(e).filter)"
+        )
+    finally:
+        page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+    assert filters
+    assert all(each.startswith("invert") == (scheme == "dark") for each in filters)
+
+
+def test_the_gallery_is_in_its_order_and_has_every_script(site):
+    text = (site / "gallery" / "index.html").read_text("utf-8")
+    shown = re.findall(r'<a class="reference internal" href="(\w+)\.html', text)
+    scripts = {path.stem for path in (TOP / "examples").glob("*.py")}
+    assert list(dict.fromkeys(shown))[:3] == ["one_impact", "signs", "law_swap"]
+    assert scripts <= set(shown)
 
 
 def test_links_within_the_site_lead_somewhere(site):
