@@ -130,6 +130,59 @@ def test_the_throw_of_rigid_balls_is_the_published_formula(tmp_path):
         assert thrown == pytest.approx(float(no_slip(cut, mu)), rel=1e-9)
 
 
+def begun(name, until):
+    """Run the beginning of an example, up to some words; return what it defines."""
+    script: dict[str, object] = {"__name__": name}
+    code = (EXAMPLES / f"{name}.py").read_text("utf-8")
+    assert until in code
+    exec(compile(code.partition(until)[0], name, "exec"), script)
+    return script
+
+
+def test_mujoco_without_damping_follows_rigid_bodies():
+    """What the picture of the dropped rod shows, and its caption says: to within 0.001 m/s."""
+    from contactlab import Simulation, collide
+
+    script = begun("any_two_bodies", "# %%")
+    for tilt, rebound, slip in script["MUJOCO"]:
+        met = script["dropped"](float(tilt))
+        after = collide(met, Simulation(tangential="coulomb")).check()
+        end = after.velocity + np.cross(after.spin, met.contact)
+        assert [end[2], end[0]] == pytest.approx([rebound, slip], abs=1e-3)
+
+
+@pytest.mark.slow
+def test_the_words_below_the_contact_from_above_are_what_it_does():
+    """Where it sticks and where it slips: x is forward, and angles are those of the upper half."""
+    script = begun("beyond_the_paper", "with styled():")
+    fields, instants = script["history"].fields, script["instants"]
+    places = []
+    for row in instants:
+        x = np.broadcast_to(
+            fields["radius"][row] * np.cos(fields["angle"][row])[:, None],
+            fields["stuck"][row].shape,
+        )
+        touching = fields["pressure"][row] > 0.0
+        stuck = (fields["stuck"][row] > 0.0) & touching
+        slips = touching & ~stuck
+        edge = script["history"].contact_radius[row]
+        places.append(
+            (x[stuck].mean() / edge, x[slips].mean() / edge, stuck.sum() / touching.sum())
+        )
+    (rear, front, _), (_, ahead, most), (_, behind, _), (middle, _, _) = places
+    assert rear < -0.3 < 0.0 < front  # begins to stick at the rear
+    assert ahead > 0.2  # sticks all but in front
+    assert most > 0.75
+    assert behind < -0.1  # slips back at the rear
+    assert abs(middle) < 0.2  # slips back at the rim
+    # psi1 < 1: axisymmetric theory sticks throughout first, then from the rim ever less
+    largest = script["result"].motion.maximum_radius
+    edges = script["history"].contact_radius[instants] / largest
+    first, second, third, last = np.array([script["disc_radius"](row) for row in instants]) / edges
+    assert min(first, second) > 0.97
+    assert last < 0.7 < third < 0.9
+
+
 def test_one_impact_is_six_lines():
     lines = (EXAMPLES / "one_impact.py").read_text(encoding="utf-8").splitlines()
     code = lines[lines.index('"""') + 1 :]

@@ -206,8 +206,12 @@ def test_the_numbers_of_ones_body():
     spins = []
     for law in ("springs", "coulomb"):
         normal = create("normal.viscoelastic", restitution=0.8)
-        spin = club["shot"](0.015, Simulation(normal=normal, tangential=law)).spin
-        spins.append(round(-spin[1] / (2.0 * np.pi) * 60.0))
+        shot = club["shot"](0.015, Simulation(normal=normal, tangential=law))
+        spins.append(round(-shot.spin[1] / (2.0 * np.pi) * 60.0))
+        if law == "springs":
+            wide = shot.result.motion.maximum_radius / club["ball"].radius
+            assert wide == pytest.approx(0.48, abs=0.005)
+            assert "contact radius over R" in str(shot.plan)
     assert "backspin 15 mm off the toe: {} rpm, rigid {}".format(*spins) in told
 
 
