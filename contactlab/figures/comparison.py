@@ -75,7 +75,7 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
     close = _by_law(Counter(name.split()[0] for name in close))
     drawn.sort(key=lambda name: -float(np.nanmax(np.abs(comparison.difference(quantity, name)))))
     families = list(dict.fromkeys(name.split()[0] for name in sorted(drawn)))
-    words = f"{first} ({comparison.model(first) or 'the reference'})"
+    words = _said(comparison, first) if comparison.model(first) else f"{first} (the reference)"
     if close:
         words += "; on its line:\n" + ",\n".join(close)
     (reference,) = upper.plot(
@@ -146,9 +146,9 @@ def _named(
 
 
 def _said(comparison: Comparison, name: str) -> str:
-    """Return the name of a law, with what it takes the bodies for."""
+    """Return the name of a law, with what it takes the bodies for where the name does not say."""
     model = comparison.model(name)
-    return f"{name} ({model})" if model else name
+    return f"{name} ({model})" if model and model not in name else name
 
 
 def _by_law(forms: Mapping[str, int]) -> list[str]:

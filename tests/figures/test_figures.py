@@ -221,7 +221,7 @@ def test_laws_within_the_line_of_the_reference_are_named_with_it():
     upper, lower = Figure().subplots(2)
     all_laws(upper, lower, compare(file, laws), "psi2")
     named = [line.get_label() for line in upper.lines]
-    assert "exact (exact); on its line:\nsprings" in named
+    assert "exact; on its line:\nsprings" in named
     assert "coulomb" in named
 
 
