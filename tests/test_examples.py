@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import runpy
 import subprocess
 import sys
@@ -80,6 +81,9 @@ def python(*arguments, folder, path="", warnings="error"):
 
 def test_every_script_is_listed_here():
     assert {path.stem for path in EXAMPLES.glob("*.py")} == set(SCRIPTS)
+    site = (EXAMPLES.parent / ".ci" / "site" / "examples.py").read_text("utf-8")
+    order = re.search(r"^ORDER = \((.*?)^\)", site, re.MULTILINE | re.DOTALL)[1]
+    assert set(re.findall(r'"(\w+)"', order)) == set(SCRIPTS)
 
 
 @pytest.mark.parametrize(

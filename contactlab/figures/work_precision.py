@@ -28,7 +28,7 @@ APART, LETTER, GAP = 12.0, 4.6, 5.0
 LED = 0.045
 #: Shifts of a name to the side and upwards that are tried, over width and height of the axes.
 ASIDES, STEPS = (0.0, 0.06, 0.12, 0.2), tuple(np.arange(-0.4, 0.401, 0.01).tolist())
-#: Price of a name that covers a curve or a name, and of a line that crosses a name.
+#: Price of a name that covers a curve or a name, and of a line that crosses a name or a point.
 COVERS, CROSSES = 10.0, 1.0
 #: Least and greatest height of a name, over that of the axes.
 LOWEST_NAME, HIGHEST_NAME = 0.03, 0.97
@@ -221,6 +221,7 @@ def _write_beside(axes: Axes, names: Sequence[Name]) -> None:
         taken.append((begin, end, low, high))
     for name in sorted(names, key=lambda each: (-each.y, each.x)):
         point_at = np.array(to_share.transform((name.x, name.y)))
+        others = drawn[np.abs(drawn - point_at).max(axis=1) > 0.1 * gap]
         width = letter * len(name.words)
         lowest = band + 0.4 * apart if name.colour == QUIET else LOWEST_NAME
         best, chosen = math.inf, None
@@ -239,6 +240,7 @@ def _write_beside(axes: Axes, names: Sequence[Name]) -> None:
                 for other in taken
             )
             crossed = sum(_inside(leader, other) for other in taken)
+            crossed += led and _meets(leader, others, 0.6 * gap)
             cost = COVERS * covered + CROSSES * crossed + abs(step) + aside + 0.02 * (side < 0)
             if cost < best:
                 best, chosen = cost, (box, leader if led else None)
@@ -252,6 +254,11 @@ def _write_beside(axes: Axes, names: Sequence[Name]) -> None:
             fontsize="small", va="center",
             color=GREY_WORDS if name.colour == QUIET else name.colour,
         )  # fmt: skip
+
+
+def _meets(points: Any, others: Any, near: float) -> bool:
+    """Return whether one of the points, shape (n, 2), is near one of the others."""
+    return bool((np.abs(points[:, None] - others).max(axis=2) < near).any())
 
 
 def _inside(points: Any, box: Box) -> bool:
