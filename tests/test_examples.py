@@ -45,7 +45,7 @@ SCRIPTS = {
     "superball": ("at most 0.59 of its velocity", "superball.png"),
     "beyond_the_paper": ("one-way coupling: 0.021 from the finite elements (rms)", BEYOND),
     "hysteresis": ("Mindlin and Deresiewicz: 0.1310", "hysteresis.png"),
-    "egg": ("after 1, 5, 10 bounces: [0.889", "egg.png"),
+    "egg": ("after 1, 5, 10 bounces: [0.888", "egg.png"),
     "toe_shot": ("starts 3.0° right, backspin 3840 rpm, axis 1.8°", "toe_shot.png"),
     "any_two_bodies": ("30°: rebound 0.913, slip -0.723", "any_two_bodies.png"),
     "loss_in_shear": ("one loss for both       at psi1 = 1:  0.15", "loss_in_shear.png"),
