@@ -162,6 +162,10 @@ def _words(
     if some(masks.marched):
         text = f"tangential motion: {used.integrator!r} over {used.tangential!r}"
         computed.append(Clause(text, masks.marched, code=TANGENTIAL_MOTION))
+    slow = used.tangential.one_by_one()
+    if slow and scene.shape and (some(masks.marched) or (coupled and used.tangential.together)):
+        where = masks.known if coupled else masks.marched
+        computed.append(Clause(f"run time: impacts one by one, by {slow}", where))
     if coupled:
         computed.append(Clause(TOGETHER, masks.known))
         if getattr(used.normal, "restitution", None) not in (None, 1.0):

@@ -191,6 +191,11 @@ class TangentialLaw(Law):
         """Return in words what computes the answers, where that depends on the installation."""
         return ""
 
+    @classmethod
+    def one_by_one(cls) -> str:
+        """Return in words what makes a batch as slow as its impacts one by one; empty if not."""
+        return ""
+
     def shares_loss(self, normal: Law) -> bool:
         """Return whether the law shares the loss of a normal law (clause 9); False by default.
 

@@ -131,6 +131,13 @@ def test_what_computes_is_told(monkeypatch, capsys):
     assert compiled.library() is None
     plan = Simulation().plan(Scene.nondimensional(psi1=1.2, chi=3.0))
     assert plan.marched
+    assert "one by one" not in str(plan)
+    for scene in (bodies(3, 6), Scene.nondimensional(psi1=[1.2, 2.0], chi=3.0)):
+        told = str(Simulation().plan(scene))
+        assert "run time: impacts one by one, by Python, about 2 ms an impact: CONTACTLAB_" in told
+    assert "one by one" not in str(
+        Simulation().plan(Scene.nondimensional(psi1=[1.2, 2.0], chi=1.0))
+    )
 
 
 @needs_library

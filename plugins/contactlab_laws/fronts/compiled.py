@@ -27,12 +27,18 @@ MOST_STEPS = 20_000
 LINEAR_BELOW = 1e-8
 #: The status of an impact whose memory is longer than the library's; Python's solver follows it.
 MEMORY = 3
+#: Begin of words on an installation without the library.
+BY_PYTHON = "Python, about 2 ms an impact"
 #: Sentences on impacts without an answer, by status.
 LOST = (
     "",
     "The contact neither ends nor settles in {} steps",
     "The velocities of a jam outgrow the numbers",
 )
+
+
+#: Words on an installation with the library.
+COMPILED = "compiled"
 
 
 def digest() -> str:
@@ -57,25 +63,25 @@ def told() -> str:
 def _library(wanted: bool) -> tuple[Any, str]:
     """Return the library, or None, and words about it."""
     if not wanted:
-        return None, f"Python: {VARIABLE}=0 leaves the compiled solver out"
+        return None, f"{BY_PYTHON}: {VARIABLE}=0 leaves the compiled solver out"
     again = "install contactlab again where there is a C compiler"
     with resources.as_file(resources.files(__package__).joinpath(LIBRARY)) as path:
         if not path.exists():
-            return None, f"Python: the compiled solver was not built; {again}"
+            return None, f"{BY_PYTHON}: the compiled solver was not built; {again}"
         try:
             found = ctypes.CDLL(str(path))
         except OSError as error:
-            return None, f"Python: the compiled solver does not load ({error}); {again}"
+            return None, f"{BY_PYTHON}: the compiled solver does not load ({error}); {again}"
     found.contactlab_impact_sources.restype = ctypes.c_char_p
     if found.contactlab_impact_sources().decode() != digest():
-        return None, f"Python: the compiled solver is older than its sources; {again}"
+        return None, f"{BY_PYTHON}: the compiled solver is older than its sources; {again}"
     numbers = np.ctypeslib.ndpointer(dtype=np.float64, flags="C_CONTIGUOUS")
     statuses = np.ctypeslib.ndpointer(dtype=np.intc, flags="C_CONTIGUOUS")
     found.contactlab_impact_follow_all.argtypes = (
         ctypes.c_long, numbers, ctypes.c_double, ctypes.c_int, numbers, statuses,
     )  # fmt: skip
     found.contactlab_impact_follow_all.restype = None
-    return found, "compiled"
+    return found, COMPILED
 
 
 def follow(

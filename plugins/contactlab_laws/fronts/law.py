@@ -115,6 +115,11 @@ class Fronts(PathTangentialLaw, Tabulated):
         """Return whether impacts that are followed are solved by the compiled law."""
         return compiled.told()
 
+    @classmethod
+    def one_by_one(cls) -> str:
+        """Return why a batch is followed one by one, empty where it is compiled."""
+        return "" if compiled.library() is not None else compiled.told()
+
     def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:
         """Return 0: there is no discretisation."""
         return 0.0
