@@ -145,6 +145,8 @@ def rebound(
     >>> round(rebound(1.2, 49 / 34), 6)
     -0.180519
     """
+    if type(restitution) is int:
+        restitution = float(restitution)  # 1 is as fast as 1.0
     usual = tolerance is USUAL or (isinstance(tolerance, float) and TABULATED < tolerance < 1.0)
     if usual and not derivatives:
         if restitution is ELASTIC or (type(restitution) is float and restitution == 1.0):

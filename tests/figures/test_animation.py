@@ -5,8 +5,10 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image
 
+import contactlab
+from contactlab import Encounter, Material, Simulation, Sphere, shapes
 from contactlab.figures import animation
-from contactlab.figures.animation_panels import Forces, Frame
+from contactlab.figures.animation_panels import Disc, Forces, Frame
 from tests.figures.animated import FIELDS, impact
 
 
@@ -87,3 +89,27 @@ def test_what_is_no_single_impact_with_history_is_refused(fault, tmp_path):
         result.history.time = np.array([])
     with pytest.raises(ValueError, match="must have the history of a single impact"):
         animation.animate(tmp_path / "a.gif", result)
+
+
+def test_an_elliptic_contact_is_drawn_as_an_ellipse():
+    """A ball on a rod of its radius: semi-axes 1.2428 and 0.7837 of the circle as stiff."""
+    steel = Material.named("steel")
+    rod, touch = shapes.rod(
+        length=0.2, radius=0.005, material=steel, normal=[0, 0, 1], axis=[1, 0, 0]
+    )
+    met = Encounter(
+        Sphere(0.005, steel), rod, 0.2, normal=[0, 0, -1], velocity=[0.2, 0, -1],
+        target_contact=touch,
+    )  # fmt: skip
+    springs = contactlab.create("tangential.springs", springs=20)
+    march = contactlab.create("integrator.symplectic", steps=60)
+    result = Simulation(tangential=springs, integrator=march).run(met.scene, history="fields")
+    axes = Figure().subplots()
+    disc = Disc(axes, result)
+    (rim,) = axes.patches
+    assert (rim.width, rim.height) == pytest.approx((2 * 1.2427543, 2 * 0.7836755), rel=1e-6)
+    widest = int(np.argmax(result.history.contact_radius))
+    disc.show(Frame("", 0.0, widest))
+    drawn = np.any(disc.image.get_array() != 255, axis=-1)
+    rows, columns = drawn.any(axis=1).sum(), drawn.any(axis=0).sum()
+    assert columns / rows == pytest.approx(1.2427543 / 0.7836755, rel=0.05)

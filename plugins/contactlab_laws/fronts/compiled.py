@@ -75,10 +75,9 @@ def _library(wanted: bool) -> tuple[Any, str]:
     found.contactlab_impact_sources.restype = ctypes.c_char_p
     if found.contactlab_impact_sources().decode() != digest():
         return None, f"{BY_PYTHON}: the compiled solver is older than its sources; {again}"
-    numbers = np.ctypeslib.ndpointer(dtype=np.float64, flags="C_CONTIGUOUS")
-    statuses = np.ctypeslib.ndpointer(dtype=np.intc, flags="C_CONTIGUOUS")
+    pointer = ctypes.c_void_p  # ``ndpointer`` takes longer than an impact
     found.contactlab_impact_follow_all.argtypes = (
-        ctypes.c_long, numbers, ctypes.c_double, ctypes.c_int, numbers, statuses,
+        ctypes.c_long, pointer, ctypes.c_double, ctypes.c_int, pointer, pointer,
     )  # fmt: skip
     found.contactlab_impact_follow_all.restype = None
     return found, COMPILED
@@ -107,7 +106,9 @@ def follow(
     given = np.ascontiguousarray(numbers, dtype=np.float64)
     count = given.shape[1]
     out, status = np.empty((7, count)), np.empty(count, dtype=np.intc)
-    library().contactlab_impact_follow_all(count, given, tolerance, most, out, status)
+    library().contactlab_impact_follow_all(
+        count, given.ctypes.data, tolerance, most, out.ctypes.data, status.ctypes.data
+    )
     return out, status
 
 
