@@ -248,6 +248,7 @@ def _tangential(
         return TangentialMotion(
             slip_velocity_change=float(answer.slip_velocity_change),
             friction_work=float(answer.friction_work),
+            normal_spin_change=float(answer.normal_spin_change),
             status=answer.status,
             detail=answer.detail,
             counters={} if answer.counter is None else {answer.counter: 1},
@@ -289,7 +290,7 @@ def _march(laws: Laws, normal: NormalMotion, observer: Observer | None = None) -
 def _answered(normal: NormalMotion, known: list[Answer]) -> TangentialMotion:
     """Return the tangential motion of a batch by its whole-impact answers, NaN elsewhere."""
     shape = normal.scene.shape
-    change, work = np.full((2, *shape), math.nan)
+    change, work, spin_change = np.full((3, *shape), math.nan)
     status, detail = (
         np.array(np.broadcast_to(np.asarray(entry, dtype=object), shape))
         for entry in (normal.status, normal.detail)
@@ -298,6 +299,7 @@ def _answered(normal: NormalMotion, known: list[Answer]) -> TangentialMotion:
     for where, answer in known:
         np.copyto(change, answer.slip_velocity_change, where=where)
         np.copyto(work, answer.friction_work, where=where)
+        np.copyto(spin_change, answer.normal_spin_change, where=where)
         if not isinstance(normal.detail, str):
             detail[where] = ""
         if answer.status is not Status.SUCCESS:
@@ -312,6 +314,7 @@ def _answered(normal: NormalMotion, known: list[Answer]) -> TangentialMotion:
     return TangentialMotion(
         slip_velocity_change=change,
         friction_work=work,
+        normal_spin_change=spin_change,
         status=status,
         detail=detail,
         counters=dict(counters),

@@ -132,6 +132,10 @@ class TangentialLaw(Law):
     9. ``shares_loss(normal_law)`` is True if the force depends on the slip velocity too, through
        the loss of a viscous normal law. Increments then have ``sampled``, and integrators
        grade their steps at first touch, where such a force grows as the root of time.
+    10. A law with the word ``normal_spin`` answers impacts of bodies that spin about the normal,
+        ``scene.normal_spin``: its whole-impact answers have ``normal_spin_change``. By symmetry
+        the change of slip is even in the spin, that of the spin odd, and there is no force across
+        the slip. Other laws leave the spin as it is, and the plan cautions with a size.
 
     Parameters of methods
     ---------------------
@@ -144,6 +148,11 @@ class TangentialLaw(Law):
     kind: ClassVar[str] = "tangential"
     together: ClassVar[bool] = False
     vectors: ClassVar[bool] = False
+
+    @property
+    def normal_spin(self) -> bool:
+        """True if the law answers spin about the normal (clause 10); False by default."""
+        return False
 
     def books_bound(self, scene: Scene) -> Real:
         """Return the largest relative error of the energy books that counts as success.
@@ -164,6 +173,8 @@ class TangentialLaw(Law):
         slip: Any = scene.slip_velocity
         friction: Any = scene.friction_coefficient
         central, smooth = slip == 0.0, friction == 0.0
+        if self.normal_spin and scene.turns:
+            central = central & (scene.normal_spin == 0.0)
         reasons = (
             (central, "central impact, no slip velocity"),
             (smooth, "friction coefficient 0"),

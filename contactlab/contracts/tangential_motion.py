@@ -72,6 +72,8 @@ class TangentialMotion(BatchMotion):
         sentence for a batch, which goes to the impacts that failed.
     counters : mapping of str to int
         Operations counted: ``steps``, ``evaluations``, ``rejected``, ...
+    normal_spin_change : float or array
+        Change of the spin about the normal in rad/s; 0 of laws that do not answer it.
     normal : NormalMotion, Ends or None
         The normal motion that came of the friction, if the friction changes it. Restitution,
         duration and maxima of the result are then those of this motion, and the energy books take
@@ -81,6 +83,7 @@ class TangentialMotion(BatchMotion):
     slip_velocity_change: Any = attrs.field(metadata={"vectors": True})
     friction_work: Real
     shear_loss: Real = 0.0
+    normal_spin_change: Real = 0.0
     normal: NormalMotion | Ends | None = None
 
     @classmethod

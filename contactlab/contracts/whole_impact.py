@@ -59,6 +59,9 @@ class WholeImpact:
         books close by construction, and check nothing.
     counter : str or None
         Name under which the result counts the impacts, ``"tabulated"``; None for no count.
+    normal_spin_change : float or array
+        Change of the spin about the normal in rad/s, of a law with the word ``normal_spin``; its
+        friction work is part of ``friction_work``.
     """
 
     where: Mask
@@ -73,6 +76,7 @@ class WholeImpact:
     normal: NormalMotion | None = None
     balanced: bool = False
     counter: str | None = None
+    normal_spin_change: Real = 0.0
 
 
 class Tabulated(ABC):

@@ -10,6 +10,7 @@ import attrs
 from contactlab.impact.material import Material
 from contactlab.numeric.checks import (
     GYRATION,
+    NON_NEGATIVE,
     POSITIVE,
     Real,
     instance,
@@ -125,6 +126,9 @@ class Pair:
         G* along t2 over that along t1, which is ``effective_shear_modulus``; 1 for a circle.
     axis_ratio : float or array
         Semi-axis of the elliptic contact along t2 over that along t1; 1 for a circle.
+    inverse_spin_mass : float or array
+        R²/J in 1/kg: 1/J is the sum of 1/J_i, the moments of inertia about the normal. Only scenes
+        with spin about the normal have it; 0 in others.
 
     Notes
     -----
@@ -140,6 +144,7 @@ class Pair:
     dundurs_beta: Real = quantity("1", default=0.0, empty=True)
     cross_stiffness_ratio: Real = quantity("1", rule=POSITIVE, default=1.0, empty=True)
     axis_ratio: Real = quantity("1", rule=POSITIVE, default=1.0, empty=True)
+    inverse_spin_mass: Real = quantity("1/kg", rule=NON_NEGATIVE, default=0.0, empty=True)
 
     @property
     def stiffness_ratio(self) -> Real:
@@ -183,7 +188,7 @@ class Pair:
         return start, lost, -self.tangential_mass * change * (slip + 0.5 * change)
 
     @classmethod
-    def of(cls, sphere: Sphere, target: Sphere | HalfSpace) -> Pair:
+    def of(cls, sphere: Sphere, target: Sphere | HalfSpace, *, turning: bool = False) -> Pair:
         """Return the pair of a sphere and its target (theory §1).
 
         Parameters
@@ -192,6 +197,8 @@ class Pair:
             The sphere.
         target : Sphere or HalfSpace
             The body that the sphere meets.
+        turning : bool
+            True if the bodies spin about the normal: the pair then has its ``inverse_spin_mass``.
         """
         compliance_n = normal_compliance(sphere.material) + normal_compliance(target.material)
         compliance_t = shear_compliance(sphere.material) + shear_compliance(target.material)
@@ -202,6 +209,10 @@ class Pair:
             curvature = curvature + 1.0 / target.radius
             inverse_normal = inverse_normal + 1.0 / target.mass
             inverse_tangential = inverse_tangential + _inverse_tangential_mass(target)
+        spin: Any = 0.0
+        if turning:
+            spheres = [body for body in (sphere, target) if isinstance(body, Sphere)]
+            spin = sum(inverse_turning_mass(body, 1.0 / curvature) for body in spheres)
         return cls(
             radius=1.0 / curvature,
             effective_modulus=1.0 / compliance_n,
@@ -209,6 +220,7 @@ class Pair:
             normal_mass=1.0 / inverse_normal,
             tangential_mass=1.0 / inverse_tangential,
             dundurs_beta=coupling_compliance(sphere.material, target.material) / compliance_n,
+            inverse_spin_mass=spin,
         )
 
 
@@ -232,3 +244,9 @@ def shear_compliance(material: Material) -> Real:
 def _inverse_tangential_mass(sphere: Sphere) -> Real:
     """Return (1 + 1/K²)/m, one body's part of 1/M_t, in 1/kg, eq. (21)."""
     return (1.0 + 1.0 / sphere.gyration_ratio**2) / sphere.mass
+
+
+def inverse_turning_mass(sphere: Sphere, radius: Any) -> Any:
+    """Return radius²/J of a sphere, in 1/kg; J of a tiny sphere would underflow."""
+    share: Any = radius / (sphere.gyration_ratio * sphere.radius)
+    return share * share / sphere.mass

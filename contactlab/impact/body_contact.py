@@ -15,13 +15,14 @@ from contactlab.impact.bodies import (
     Pair,
     Sphere,
     coupling_compliance,
+    inverse_turning_mass,
     normal_compliance,
     shear_compliance,
 )
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.vectors import cross, solved
+from contactlab.numeric.vectors import components, cross, moving, solved
 
 Array = NDArray[np.float64]
 
@@ -29,6 +30,8 @@ Array = NDArray[np.float64]
 ROUND = 1e-9
 #: Ratio of the curvatures of a gap up to which bodies touch along a line.
 LINE = 1e-12
+#: Spin about the normal over the whole spin of both bodies below which it is rounding.
+TURNING = 1e-12
 
 
 class Contact(NamedTuple):
@@ -146,6 +149,54 @@ def relative_velocity(encounter: Any, normal: Array) -> Array:
     first, second = arms(encounter, normal)
     velocity = encounter.velocity + cross(encounter.spin, first)
     return np.asarray(velocity - encounter.target_velocity - cross(encounter.target_spin, second))
+
+
+def spin_about(encounter: Any, normal: tuple[Any, Any, Any]) -> Any:
+    """Return the spin about the normal of the first body over the target, in rad/s."""
+    if not (moving(encounter.spin) or moving(encounter.target_spin)):
+        return 0.0
+    spins = [components(spin) for spin in (encounter.spin, encounter.target_spin)]
+    omega: Any = 0.0
+    for n, one, other in zip(normal, *spins, strict=True):
+        omega = omega + (one - other) * n
+    if not np.any(omega):
+        return 0.0
+    whole = sum(abs(one) for spin in spins for one in spin)
+    turning = np.where(np.abs(omega) > TURNING * whole, omega, 0.0)
+    return np.broadcast_to(turning, encounter.shape) if encounter.shape else float(turning)
+
+
+def _spin_alone(encounter: Any, n: Array, ways: Any, radius: Any) -> tuple[Any, Any]:
+    """Return the spin about the normal that a couple alone moves, and R²/J of both bodies.
+
+    The spin is 0 where a body is off centre, the normal is no principal axis of its inertia, or
+    slip turns.
+    """
+    spin: Any = np.where(ways == inverse_mass.CENTRAL, spin_about(encounter, components(n)), 0.0)
+    if not np.any(spin):
+        return 0.0, 0.0
+    for body, arm in zip((encounter.body, encounter.target), arms(encounter, n), strict=True):
+        if isinstance(body, RigidBody):
+            for vector in (arm, turned(body, n)):
+                size = np.sqrt(np.einsum("...i,...i->...", vector, vector))
+                aside = np.abs(cross(np.asarray(vector), n)).max(axis=-1)
+                spin = np.where(aside <= inverse_mass.ROUNDING * size, spin, 0.0)
+    if not np.any(spin):
+        return 0.0, 0.0
+    inverse = turning_compliance(encounter, n, radius)
+    return (spin, inverse) if encounter.shape else (float(spin), float(inverse))
+
+
+def turning_compliance(encounter: Any, normal: Array, radius: Any) -> Any:
+    """Return radius² n·J⁻¹·n of both bodies, in 1/kg."""
+    total: Any = 0.0
+    for body in (encounter.body, encounter.target):
+        if isinstance(body, Sphere):
+            total = total + inverse_turning_mass(body, radius)
+        elif isinstance(body, RigidBody):
+            along = np.einsum("...i,...i->...", normal, turned(body, normal))
+            total = total + radius * radius * along
+    return total
 
 
 def meeting_of_bodies(encounter: Any, normal: tuple[Any, Any, Any]) -> Contact:
@@ -294,7 +345,11 @@ def scene_of_bodies(encounter: Any) -> Scene:
         pair = attrs.evolve(pair, tangential_mass=number(mass))
         along, entries = number(np.hypot(slip[..., 0], slip[..., 1])), {}
     friction = encounter.friction_coefficient
-    where = {"encounter": encounter, "frame": axes}
+    where: dict[str, Any] = {"encounter": encounter, "frame": axes}
+    alone = _spin_alone(encounter, axes[..., 0, :], ways, pair.radius)
+    where["normal_spin"], inverse = alone
+    if np.any(inverse):
+        pair = attrs.evolve(pair, inverse_spin_mass=inverse)
     return Scene(None, None, friction, number(speed), along, pair=pair, **where, **entries)
 
 
@@ -340,11 +395,13 @@ def in_space(axes: Array, vectors: Array) -> Array:
     return np.asarray(np.einsum("...ia,...i->...a", axes, vectors))
 
 
-def pushed(encounter: Any, axes: Array, impulse: Array) -> dict[str, Array]:
+def pushed(encounter: Any, axes: Array, impulse: Array, couple: Any = 0.0) -> dict[str, Array]:
     """Return velocities and spins after an impulse in N s on the target, and its opposite.
 
-    ``impulse`` has components along n, t1 and t2, the rows of ``axes``, shape (..., 3).
+    ``impulse`` has components along n, t1 and t2, the rows of ``axes``, shape (..., 3). ``couple``
+    is the angular impulse on the target about the normal, in N m s, of the batch shape.
     """
+    about = np.asarray(couple)[..., None] * axes[..., 0, :]
     whole = in_space(axes, impulse)
     moved = {}
     sides = (
@@ -355,7 +412,8 @@ def pushed(encounter: Any, axes: Array, impulse: Array) -> dict[str, Array]:
         velocity = getattr(encounter, f"{name}velocity")
         if not isinstance(body, HalfSpace):
             velocity = velocity + push / np.asarray(body.mass)[..., None]
-        spin = getattr(encounter, f"{name}spin") + turned(body, cross(np.asarray(arm), push))
+        moment = cross(np.asarray(arm), push) + sense * about
+        spin = getattr(encounter, f"{name}spin") + turned(body, moment)
         moved[f"{name}velocity"] = np.broadcast_to(velocity, whole.shape)
         moved[f"{name}spin"] = np.broadcast_to(spin, whole.shape)
     return moved

@@ -13,7 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
-from contactlab.impact.body_contact import Contact, meeting_of_bodies, scene_of_bodies
+from contactlab.impact.body_contact import (
+    Contact,
+    meeting_of_bodies,
+    scene_of_bodies,
+    spin_about,
+)
 from contactlab.impact.material import Material
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
@@ -246,7 +251,8 @@ class Encounter:
         approach or the slip turns, else a scene of numbers without sphere and target.
 
         The tangential velocity is the relative velocity of the centres along the slip. The spin
-        is the part of (R1 omega1 + R2 omega2)/R1 that makes slip in this plane. Velocities and
+        is the part of (R1 omega1 + R2 omega2)/R1 that makes slip in this plane; the spin about the
+        normal is that of the first body over the target. Velocities and
         spins of the results are therefore relative to the target; ``Collision.of`` computes those
         of each body. Without slip the scene is a central impact.
 
@@ -268,7 +274,8 @@ class Encounter:
         numbers: list[Any] = [contact.approach, along, spin]
         if not self.shape:
             numbers = [float(number) for number in numbers]
-        return Scene(*bodies, self.friction_coefficient, *numbers, encounter=self)
+        about = {"normal_spin": spin_about(self, contact.normal), "encounter": self}
+        return Scene(*bodies, self.friction_coefficient, *numbers, **about)
 
     def separate(self) -> ValueError:
         """Return the ValueError for bodies that do not approach each other."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from contactlab.impact.bodies import Pair
 from contactlab.numeric import arrays as batch
-from contactlab.numeric.checks import POISSON, POSITIVE, real, refuse
+from contactlab.numeric.checks import NON_NEGATIVE, POISSON, POSITIVE, real, refuse
 
 Array = NDArray[np.float64]
 
@@ -29,6 +29,8 @@ def entries(
     poisson_ratio: Any,
     coupling_number: Any,
     friction_coefficient: Any,
+    spin: Any,
+    spin_inertia: Any,
     cross_stiffness_ratio: Any = 1.0,
 ) -> dict[str, Any]:
     """Return the entries of ``Scene`` for the groups of ``Scene.nondimensional``."""
@@ -60,6 +62,8 @@ def entries(
     )
     remedy = "G* along t2 over that along t1; 1 for a circular contact"
     cross = real("cross_stiffness_ratio", cross_stiffness_ratio, rule=POSITIVE, remedy=remedy)
+    rim = real("spin", spin, remedy="w1 = kappa omega_n a/(mu v1) of theory §17")
+    turning = real("spin_inertia", spin_inertia, rule=NON_NEGATIVE, remedy="chi_w of theory §17")
     squared = _rho(inertia, drag, eta, rho, given, friction, in_space)
     mu, kappa = _friction_and_stiffness(squared, given, friction)
     pair = {
@@ -70,7 +74,16 @@ def entries(
         "dundurs_beta": 0.0 if coupling_number is None else coupled * mu / kappa,
         "cross_stiffness_ratio": cross,
     }
-    scene = {"friction_coefficient": mu, "normal_speed": 1.0}
+    scene: dict[str, Any] = {"friction_coefficient": mu, "normal_speed": 1.0}
+    if np.any(rim):
+        if not np.all(turning):
+            remedy = "chi_w = (kappa/2) M_n a²/J; 5/7 chi (a/R)² for a solid sphere"
+            raise refuse("spin_inertia", spin_inertia, "must be positive with spin", remedy)
+        if in_space or np.any(drag):
+            rule = "stands without lam and without vectors: no law answers spin off centre"
+            raise refuse("spin", spin, rule, "leave out spin, or lam")
+        scene["normal_spin"] = rim * mu / kappa
+        pair["inverse_spin_mass"] = 2.0 * turning / kappa
     scene |= {"unit_friction": friction is None and (squared is None or given is None)}
     mean = 0.5 * np.trace(inertia, axis1=-2, axis2=-1) if in_space else inertia
     pair["tangential_mass"] = 0.5 * kappa / mean

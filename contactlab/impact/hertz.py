@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from contactlab.impact.bodies import Pair
-from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Mask, Real
+
+if TYPE_CHECKING:
+    from contactlab.impact.scene import Scene
 
 #: 2.9432751843: duration of an elastic Hertz impact times v1/(C²R), eq. (7) unrounded.
 DURATION_CONSTANT = 4.0 * math.gamma(0.4) * math.sqrt(math.pi) / (5.0 * math.gamma(0.9))

@@ -12,11 +12,14 @@ import numpy as np
 from contactlab.impact import inverse_mass
 from contactlab.impact.bodies import Pair
 from contactlab.impact.grid import Array
+from contactlab.impact.hertz import size_ratio
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Real
 
 #: Groups of theory §14, where friction changes the approach.
 COUPLED = ("lam", "eta", "rho")
+#: Groups of theory §17, where bodies spin about the normal.
+OF_SPIN = ("w1", "chi_w")
 
 
 class Motions:
@@ -32,10 +35,12 @@ class Motions:
         friction_coefficient: Real
         normal_speed: Real
         tangential_velocity: Any
+        normal_spin: Real
         index: Any
 
         slip_velocity: Any
         psi1: Any
+        psi_scale: Any
         take: Any
 
     @property
@@ -49,6 +54,62 @@ class Motions:
         slip: Any = self.slip_speed
         friction: Any = self.friction_coefficient
         return bool(np.any((slip != 0.0) & (friction != 0.0)))
+
+    @property
+    def turns(self) -> bool:
+        """True if any pair of bodies spins about the normal."""
+        spin = self.normal_spin
+        return spin != 0.0 if isinstance(spin, float) else bool(spin.any())
+
+    def rim(self, spin: Any) -> Any:
+        """Return w of spins about the normal, kappa omega_n a/(mu v1), theory §17, without unit.
+
+        It is the speed of the rim of the largest elastic Hertz contact in the unit of psi.
+
+        Parameters
+        ----------
+        spin : float or array
+            In rad/s, of the batch shape.
+        """
+        with np.errstate(invalid="ignore", over="ignore"):
+            w = np.where(
+                np.asarray(spin) == 0.0, 0.0, spin * (self._radius() * np.asarray(self.psi_scale))
+            )
+        return w if w.ndim else float(w)
+
+    @property
+    def w1(self) -> Any:
+        """W of the spin about the normal before the impact, theory §17."""
+        return self.rim(self.normal_spin)
+
+    @property
+    def chi_w(self) -> Any:
+        """chi_w = (kappa/2) M_n a²/J, inertia ratio of spin about the normal; 0 without spin."""
+        pair = self.pair
+        size: Any = self._radius() / pair.radius
+        inertia = pair.normal_mass * pair.inverse_spin_mass
+        return 0.5 * pair.stiffness_ratio * inertia * size * size
+
+    def _radius(self) -> Any:
+        """Return the largest contact radius of an elastic Hertz impact, in m."""
+        pair = self.pair
+        numbers = pair.normal_mass, pair.effective_modulus, pair.radius, self.normal_speed
+        return size_ratio(*numbers) * pair.radius
+
+    def spin_energies(self, change: Any) -> tuple[Any, Any]:
+        """Return the energy ½ J omega_n² at the start, and what it loses, in J.
+
+        Parameters
+        ----------
+        change : float or array
+            Change of the spin about the normal, in rad/s.
+        """
+        inverse, size = np.asarray(self.pair.inverse_spin_mass), np.asarray(self.pair.radius)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            mass = np.where(inverse > 0.0, 1.0 / inverse, 0.0)
+        spin, change = self.normal_spin * size, change * size
+        start, lost = 0.5 * mass * spin * spin, -mass * change * (spin + 0.5 * change)
+        return (start, lost) if self.shape else (float(start), float(lost))
 
     def size_of(self, slip: Any) -> Any:
         """Return the magnitude of slip velocities, of the batch shape.
@@ -148,6 +209,8 @@ class Motions:
     def groups(self) -> dict[str, Any]:
         """The dimensionless groups that determine the impact, by name."""
         names = ("psi1", "chi") if self.inverse_mass is None else ("psi1", "chi", *COUPLED)
+        if self.turns:
+            names = (*names, *OF_SPIN)
         return {name: getattr(self, name) for name in names}
 
     @property
@@ -244,14 +307,26 @@ class Motions:
             self.inverse_mass, self._vectors(rate - self.normal_speed, change)
         )
 
-    def energies(self, rate: Any, change: Any) -> tuple[Any, Any, Any]:
+    def energies(self, rate: Any, change: Any, spin_change: Any = 0.0) -> tuple[Any, Any, Any]:
         """Return the energy at the start, and what approach and slip lose of it, in J.
+
+        The spin about the normal counts with the slip.
 
         Parameters
         ----------
         rate, change : float or array
             Rate of approach after, and change of the slip velocity, in m/s.
+        spin_change : float or array
+            Change of the spin about the normal, in rad/s.
         """
+        start, lost, slip = self._energies(rate, change)
+        if self.turns:
+            of_spin, taken = self.spin_energies(spin_change)
+            start, slip = start + of_spin, slip + taken
+        return start, lost, slip
+
+    def _energies(self, rate: Any, change: Any) -> tuple[Any, Any, Any]:
+        """Return the energies without spin about the normal."""
         speed: Any = self.normal_speed
         if self.inverse_mass is None:
             return self.pair.energies(speed, self.slip_velocity, rate, change)

@@ -1,4 +1,4 @@
-"""How far spin about the normal, whose friction is left out, moves an impact."""
+"""How far spin about the normal moves an impact where its friction is left out."""
 
 from __future__ import annotations
 
@@ -10,18 +10,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.impact.bodies import HalfSpace, Sphere
-from contactlab.impact.encounter import Encounter
+from contactlab.impact.body_contact import spin_about, turning_compliance
 from contactlab.impact.hertz import hertz_scales
+from contactlab.impact.scene import Scene
 from contactlab.impact.table import between_nodes, read_rows
-from contactlab.numeric.vectors import components, solved
+from contactlab.numeric.vectors import components
 
 Array = NDArray[np.float64]
 
 #: psi2 and loss of spin by two programs that solve the half-space with slip and spin together.
 FILE = Path(__file__).with_name("normal_spin.csv")
-#: Spin about the normal over the whole spin of both bodies below which it is rounding.
-TURNING = 1e-12
 #: Loss of w over chi_w where spin makes all of the contact slip: (15 pi/32) (4/5) B(6/5, 1/2).
 ALL_SLIPS = 2.1100237
 #: Points of the sums over a gross slip; 16 hold the closed forms to 1e-6.
@@ -37,7 +35,7 @@ class Nodes(NamedTuple):
 
 
 class NormalSpin(NamedTuple):
-    """Spin about the normal of an encounter, and what its friction would change.
+    """Spin about the normal that no law answers, and what its friction would change.
 
     Attributes
     ----------
@@ -132,45 +130,33 @@ def gross_slip(psi1: Any, chi: Any, w: Any) -> tuple[Any, Any]:
     return 1.0 / (5.0 / (chi * shift) + 0.25 / chi), np.minimum(0.4 * loss, ALL_SLIPS)
 
 
-def normal_spin(encounter: Encounter) -> NormalSpin | None:
+def normal_spin(scene: Scene, *, answered: bool = False) -> NormalSpin | None:
     """Return what spin about the normal does in each impact, or None if nothing turns.
 
     Parameters
     ----------
-    encounter : Encounter
-        Bodies that approach each other, of any shape.
+    scene : Scene
+    answered : bool
+        True if the law answers the spin of ``scene``: only bodies off centre are left then.
     """
-    normal = encounter.meeting().normal
-    spins = [components(spin) for spin in (encounter.spin, encounter.target_spin)]
-    omega: Any = 0.0
-    whole: Any = 0.0
-    for n, one, other in zip(normal, *spins, strict=True):
-        omega, whole = omega + (one - other) * n, whole + (abs(one) + abs(other))
-    acts = (np.abs(omega) > TURNING * whole) & (np.asarray(encounter.friction_coefficient) > 0.0)
-    acts = np.broadcast_to(acts, encounter.shape)
+    omega, inverse = scene.normal_spin, scene.pair.inverse_spin_mass
+    if scene.frame is not None and scene.encounter is not None:
+        normal = scene.frame[..., 0, :]
+        omega = spin_about(scene.encounter, components(normal))
+        if np.any(omega):
+            inverse = turning_compliance(scene.encounter, normal, scene.pair.radius)
+    acts = (np.asarray(omega) != 0.0) & (np.asarray(scene.friction_coefficient) > 0.0)
+    if answered:
+        acts = acts & (np.asarray(scene.normal_spin) == 0.0)
+    acts = np.broadcast_to(acts, scene.shape)
     if not acts.any():
         return None
-    central = encounter.scene.central
+    central = scene.central
     with np.errstate(all="ignore"):
         radius: Any = hertz_scales(central).radius
         w = np.where(acts, np.abs(omega) * radius * central.psi_scale, 0.0)
         inertia = 0.5 * central.pair.stiffness_ratio * central.pair.normal_mass
-        chi_w = inertia * _turned(encounter, np.stack(np.broadcast_arrays(*normal), -1), radius)
+        chi_w = inertia * inverse * (radius / central.pair.radius) ** 2
         shift, loss = shift_and_loss(central.psi1, central.chi, w, chi_w)
         part = np.where(acts, loss / np.where(w > 0.0, w, 1.0), 0.0)
     return NormalSpin(acts, w, np.where(acts, shift, 0.0), part)
-
-
-def _turned(encounter: Encounter, normal: Array, radius: Any) -> Any:
-    """Return a² n·J⁻¹·n of both bodies, in 1/kg, a being the contact ``radius``."""
-    total: Any = 0.0
-    for body in (encounter.body, encounter.target):
-        if isinstance(body, HalfSpace):
-            continue
-        if isinstance(body, Sphere):  # J of a tiny body underflows
-            share: Any = radius / (body.gyration_ratio * body.radius)
-            total = total + share * share / body.mass
-        else:
-            turned = solved(body.inertia, normal[..., None])[..., 0]
-            total = total + radius * radius * np.einsum("...i,...i->...", normal, turned)
-    return total

@@ -77,6 +77,11 @@ class Scene(Motions):
     spin : float or array
         omega, in rad/s, positive where it adds to the tangential velocity at the
         contact: v_x = v + omega R, eq. (20).
+    normal_spin : float or array
+        omega_n, spin about the normal of the first body relative to the target, in rad/s, by the
+        right-hand rule about the normal from the first body into the target. Friction of it needs a
+        law with the word ``normal_spin``, such as ``halfspace``; the plan of other laws tells what
+        they leave out. 0 for bodies off centre, whose slip moves that spin too.
     pair : Pair
         The numbers of the two bodies that laws need. They are computed from the bodies; a pair
         is given only for a scene without bodies, as in ``nondimensional``.
@@ -110,6 +115,7 @@ class Scene(Motions):
     normal_speed: Real = quantity("m/s", rule=POSITIVE)
     tangential_velocity: Real = quantity("m/s", default=0.0)
     spin: Real = quantity("rad/s", default=0.0)
+    normal_spin: Real = quantity("rad/s", default=0.0, kw_only=True)
     # None only until __attrs_post_init__ computes the pair from the bodies.
     pair: Pair = instance(
         Pair, remedy="or leave it out", optional=True, default=None, kw_only=True, repr=False
@@ -132,7 +138,8 @@ class Scene(Motions):
     def __attrs_post_init__(self) -> None:
         if self.sphere is not None and self.target is not None:
             # A given pair is ignored: attrs.evolve passes the pair of the former bodies.
-            object.__setattr__(self, "pair", Pair.of(self.sphere, self.target))
+            pair = Pair.of(self.sphere, self.target, turning=self.turns)
+            object.__setattr__(self, "pair", pair)
         elif self.pair is None:
             raise refuse(
                 "sphere, target",
@@ -214,6 +221,8 @@ class Scene(Motions):
             vast = slip / (unit + (unit == 0.0)) == math.inf
             unheld = (unit > 0.0) & (slip > 0.0) & (tiny | vast)
             lost = (friction > 0.0) & (unit == 0.0)
+        if self.turns:
+            self._check_normal_spin()
         if not batch.every(slip_energy < math.inf):
             si = self.sphere is not None
             turning = " + spin * radius" if np.any(self.spin) else ""
@@ -239,6 +248,23 @@ class Scene(Motions):
                 "give 0 for no friction, or larger velocities",
             )
 
+    def _check_normal_spin(self) -> None:
+        """Refuse spin about the normal without its inertia, or with an energy that overflows."""
+        spin: Any = np.asarray(self.normal_spin)
+        inverse = np.asarray(self.pair.inverse_spin_mass)
+        if np.any((spin != 0.0) & (inverse == 0.0)):
+            raise refuse(
+                "pair.inverse_spin_mass",
+                self.pair.inverse_spin_mass,
+                "must be positive where the bodies spin about the normal",
+                "give spheres, or R²/J in 1/kg with J about the normal",
+            )
+        with np.errstate(all="ignore"):
+            energy, _ = self.spin_energies(0.0)
+        if not np.all(np.isfinite(energy)):
+            rule = "the kinetic energy of the spin about the normal must be finite"
+            raise refuse("normal_spin", self.normal_spin, rule, "give it in rad/s")
+
     @classmethod
     def at_angle(
         cls,
@@ -249,12 +275,13 @@ class Scene(Motions):
         speed: Any,
         angle_deg: Any,
         spin: Real = 0.0,
+        normal_spin: Real = 0.0,
     ) -> Scene:
         """Return the scene of a sphere whose centre moves at an angle from the normal.
 
         Parameters
         ----------
-        sphere, target, friction_coefficient, spin
+        sphere, target, friction_coefficient, spin, normal_spin
             As in the class.
         speed : float or array
             Speed of the sphere's centre in m/s, positive.
@@ -276,7 +303,8 @@ class Scene(Motions):
             "Scene.grid(ball, plate, friction_coefficient=0.2, speed=[1, 2], angle_deg=[10, 20])",
         )
         ahead, aside = np.cos(angle), np.sin(angle)
-        return cls(sphere, target, friction_coefficient, fast * ahead, fast * aside, spin)
+        along = fast * ahead, fast * aside
+        return cls(sphere, target, friction_coefficient, *along, spin, normal_spin=normal_spin)
 
     @classmethod
     def nondimensional(
@@ -291,6 +319,8 @@ class Scene(Motions):
         coupling_number: Any = None,
         friction_coefficient: Any = None,
         cross_stiffness_ratio: Any = 1.0,
+        spin: Any = 0.0,
+        spin_inertia: Any = 0.0,
     ) -> Scene:
         """Return the scene of the paper's two parameters, eqs (29) and (38), and of theory §14.
 
@@ -332,12 +362,19 @@ class Scene(Motions):
             G* along t2 over that along t1, of an elliptic contact (theory §16); 1 for a circle.
             kappa and rho are those of t1; psi1, chi and eta have kappa of each direction, so
             that chi_21 = ``cross_stiffness_ratio`` chi_12.
+        spin : float or array
+            w1 = kappa omega_n a/(mu v1) of theory §17, the rim speed of the relative spin about the
+            normal in the unit of psi; a is the largest contact radius.
+        spin_inertia : float or array
+            chi_w = (kappa/2) M_n a²/J about the normal, the inertia ratio of spin; positive where
+            ``spin`` is not 0; 5/7 chi (a/R)² for a solid sphere on a half-space.
 
         Raises
         ------
         ValueError
-            If a number is not finite or out of range, lam eta >= 2 chi, or rho contradicts the
-            friction coefficient and the Poisson ratio.
+            If a number is not finite or out of range, lam eta >= 2 chi, rho contradicts the
+            friction coefficient and the Poisson ratio, or ``spin`` has no ``spin_inertia`` or
+            stands beside ``lam``.
         """
         entries = groups.entries(
             psi1=psi1,
@@ -349,6 +386,8 @@ class Scene(Motions):
             coupling_number=coupling_number,
             friction_coefficient=friction_coefficient,
             cross_stiffness_ratio=cross_stiffness_ratio,
+            spin=spin,
+            spin_inertia=spin_inertia,
         )
         return cls(None, None, **entries)
 
@@ -605,6 +644,9 @@ UNITS: dict[str, str] = {
     "eta": "1",
     "rho": "1",
     "cross_stiffness_ratio": "1",
+    "spin_inertia": "1",
+    "w1": "1",
+    "chi_w": "1",
     "tilt_deg": "deg",
     "curvature_radius": "m",
     "cross_radius": "m",

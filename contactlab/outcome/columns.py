@@ -33,7 +33,8 @@ class Column(NamedTuple):
     factor : float
         Unit of the attribute over the unit of the column.
     of_scenes : str
-        ``"spheres"`` or ``"bodies"`` if only such scenes have the column in a file.
+        ``"spheres"`` or ``"bodies"`` if only such scenes have the column in a file, ``"turning"``
+        if those with spin about the normal have.
     part : int or None
         Component of a vector, from 0.
     """
@@ -77,11 +78,15 @@ COLUMNS = (
     Column("lam", "1", "scene.lam", of_scenes="bodies"),
     Column("eta", "1", "scene.eta", of_scenes="bodies"),
     Column("rho", "1", "scene.rho", of_scenes="bodies"),
+    Column("w1", "1", "scene.w1", of_scenes="turning"),
+    Column("chi_w", "1", "scene.chi_w", of_scenes="turning"),
     Column("psi2", "1", "psi2"),
+    Column("w2", "1", "w2", of_scenes="turning"),
     Column("normal_speed", "m/s", "scene.normal_speed"),
     Column("slip_velocity", "m/s", "scene.slip_velocity", of_scenes="bodies"),
     Column("tangential_velocity", "m/s", "scene.tangential_velocity", of_scenes="spheres"),
     Column("spin", "rad/s", "scene.spin", of_scenes="spheres"),
+    Column("normal_spin", "rad/s", "scene.normal_spin", of_scenes="turning"),
     Column("normal_velocity", "m/s", "normal_velocity", of_scenes="bodies"),
     Column("rebound_normal_velocity", "m/s", "rebound_normal_velocity", of_scenes="spheres"),
     Column(
@@ -89,6 +94,7 @@ COLUMNS = (
     ),
     Column("velocity_in_space", "m/s", "velocity_in_space", of_scenes="bodies"),
     Column("rebound_spin", "rad/s", "rebound_spin"),
+    Column("rebound_normal_spin", "rad/s", "rebound_normal_spin", of_scenes="turning"),
     Column(
         "target_rebound_normal_velocity", "m/s", "target_rebound_normal_velocity",
         of_scenes="spheres",
@@ -120,11 +126,11 @@ COLUMNS = (
 #: column that no impact defines.
 SWEEP_TABLE = (
     "psi1", "psi2", "normal_restitution", "tangential_restitution", "rebound_angle_deg",
-    "rebound_spin", "compressions", "friction_work",
+    "rebound_spin", "rebound_normal_spin", "compressions", "friction_work",
 )  # fmt: skip
 COMPARISON_TABLE = (
     "psi2", "normal_restitution", "tangential_restitution", "rebound_angle_deg", "rebound_spin",
-    "contact_time", "friction_work", "energy_imbalance",
+    "rebound_normal_spin", "contact_time", "friction_work", "energy_imbalance",
 )  # fmt: skip
 
 
@@ -164,8 +170,8 @@ def columns_of(scene: Scene) -> tuple[Column, ...]:
     """Return the columns that a file of a scene has."""
     coupled = scene.inverse_mass is not None
     of_bodies = scene.sphere is None and (coupled or scene.encounter is not None)
-    other = "spheres" if of_bodies else "bodies"
-    return tuple(column for column in COLUMNS if column.of_scenes != other)
+    others = {"spheres" if of_bodies else "bodies", "" if scene.turns else "turning"} - {""}
+    return tuple(column for column in COLUMNS if column.of_scenes not in others)
 
 
 def columns(result: Any) -> list[tuple[str, str, Any]]:

@@ -40,7 +40,7 @@ class EnergyLedger:
     Attributes
     ----------
     start, end : float or array
-        ½ M_n v_z² + ½ M_t v_x² before and after.
+        ½ M_n v_z² + ½ M_t v_x² before and after, and ½ J omega_n² of spin about the normal.
     normal_loss : float or array
         ½ M_n v_z² before less after: loss of a dissipative normal law; zero if elastic. Where
         friction changed the normal motion: the dissipation that the normal law declares.
@@ -81,7 +81,9 @@ class EnergyLedger:
 def ledger(scene: Scene, motion: Motion, checked: Mask = True) -> EnergyLedger:
     """Return the energy books of ``motion``, in J, from its velocities and its friction work."""
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
-        energies = scene.energies(motion.normal_velocity, motion.slip_velocity_change)
+        energies = scene.energies(
+            motion.normal_velocity, motion.slip_velocity_change, motion.normal_spin_change
+        )
         losses = motion.friction_work, motion.shear_loss
         return books(energies, losses, motion.exchange, checked)
 
@@ -113,12 +115,13 @@ def balanced(motion: Motion, scene: Scene, bound: Real, *, together: bool = Fals
     The imbalance over the energy at the start exceeds ``bound``, or 1 if that is infinite, or the
     bodies separate or slip faster than at first touch. If friction changed the normal motion, as in
     motions of both ``together``, one of the two may gain what the other loses, and the sum of both
-    energies is judged.
+    energies is judged; so of slip and of spin about the normal.
     """
     alone = (motion.exchange == 0.0) & (not together)
-    if not scene.shape and alone and _balances(motion, scene, bound):
+    slips_alone = alone & (motion.normal_spin_change == 0.0)
+    if not scene.shape and slips_alone and _balances(motion, scene, bound):
         return motion
-    return _with_unbalanced(motion, scene, bound, alone)
+    return _with_unbalanced(motion, scene, bound, alone, slips_alone)
 
 
 def _balances(motion: Motion, scene: Scene, bound: Any) -> bool:
@@ -126,7 +129,7 @@ def _balances(motion: Motion, scene: Scene, bound: Any) -> bool:
     speed: Any = scene.normal_speed
     slip: Any = scene.slip_velocity
     change: Any = motion.slip_velocity_change
-    start, _, slip_loss = scene.pair.energies(speed, slip, motion.normal_velocity, change)
+    start, _, slip_loss = scene.energies(motion.normal_velocity, change, motion.normal_spin_change)
     bound = LARGEST_UNDECLARED if bound == math.inf else bound
     return not (
         abs(motion.normal_velocity) > LARGEST_RESTITUTION * speed
@@ -136,12 +139,15 @@ def _balances(motion: Motion, scene: Scene, bound: Any) -> bool:
 
 
 @np.errstate(all="ignore")
-def _with_unbalanced(motion: Motion, scene: Scene, bound: Any, alone: Any) -> Motion:
+def _with_unbalanced(
+    motion: Motion, scene: Scene, bound: Any, alone: Any, slips_alone: Any
+) -> Motion:
     """Return ``motion`` with the status of each impact whose books do not balance.
 
-    ``alone`` marks impacts whose approach friction did not change.
+    ``alone`` marks impacts whose approach friction did not change, ``slips_alone`` those whose
+    spin about the normal it did not change either.
     """
-    coupled = np.logical_not(alone)
+    coupled = np.logical_not(slips_alone)
     books = ledger(scene, motion)
     speed: Any = abs(motion.normal_velocity)
     before: Any = scene.slip_speed
@@ -154,7 +160,7 @@ def _with_unbalanced(motion: Motion, scene: Scene, bound: Any, alone: Any) -> Mo
         (imbalance > bound * books.start,
          "Off by {:.2g} of the energy at the start; declared: {:.2g}.",
          lambda: (imbalance / books.start, bound)),
-        (alone & (after > LARGEST_SLIP * before),
+        (slips_alone & (after > LARGEST_SLIP * before),
          "The contact slips {:.4g} times as fast as it met.",
          lambda: (np.divide(after, before),)),
         (coupled & (books.end > LARGEST_RESTITUTION**2 * books.start),

@@ -80,6 +80,7 @@ class Motion(TangentialMotion):
                 slip_velocity_change=float(tangential.slip_velocity_change),
                 friction_work=float(tangential.friction_work),
                 shear_loss=float(tangential.shear_loss),
+                normal_spin_change=float(tangential.normal_spin_change),
                 status=tangential.status,
                 detail=tangential.detail,
                 counters=tangential.counters,
@@ -90,6 +91,7 @@ class Motion(TangentialMotion):
             entries |= _coupled(normal, tangential, entries)
         entries["friction_work"] = tangential.friction_work
         entries["shear_loss"] = tangential.shear_loss
+        entries["normal_spin_change"] = tangential.normal_spin_change
         change = tangential.slip_velocity_change
         return cls(
             **{name: locked(spread(value, shape)) for name, value in entries.items()},
@@ -118,7 +120,9 @@ def _coupled(
 
 
 #: What a law that answers both motions together must know.
-MOVED = ("normal_velocity", "slip_velocity_change", "friction_work", "shear_loss")
+MOVED = (
+    "normal_velocity", "slip_velocity_change", "friction_work", "shear_loss", "normal_spin_change",
+)  # fmt: skip
 #: The numbers of a motion but the exchange, which may be undeclared, and the compressions.
 CHECKED = (*MOVED, *(name for name in ENDS if name != "normal_velocity"))
 _numbers = attrgetter(*CHECKED)

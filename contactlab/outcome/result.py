@@ -135,6 +135,17 @@ class ImpactResult(Answer):
         return self.scene.impulse(motion.normal_velocity, motion.slip_velocity_change)
 
     @property
+    def couple(self) -> Any:
+        """Angular impulse on the target about the normal, of the batch shape, in N m s."""
+        scene, change = self.scene, np.asarray(self.motion.normal_spin_change)
+        if not scene.turns:
+            return 0.0 * change
+        inverse = np.asarray(scene.pair.inverse_spin_mass)
+        with np.errstate(all="ignore"):
+            couple = np.where(inverse > 0.0, -change * scene.pair.radius**2 / inverse, 0.0)
+        return couple if scene.shape else float(couple)
+
+    @property
     def normal_velocity(self) -> Real:
         """Rate of approach of the contact points after the impact, in m/s; negative: they part."""
         return self.motion.normal_velocity
@@ -187,7 +198,9 @@ class ImpactResult(Answer):
     def _in_space(self, name: str) -> Any:
         """Return a vector after the impact of bodies that are no spheres; None without them."""
         encounter, axes = self.scene.encounter, self.scene.frame
-        return None if axes is None else pushed(encounter, axes, self.impulse)[name]
+        if axes is None:
+            return None
+        return pushed(encounter, axes, self.impulse, self.couple)[name]
 
     @property
     def rebound_spin(self) -> Any:
@@ -198,6 +211,25 @@ class ImpactResult(Answer):
         inertia = sphere.mass * sphere.gyration_ratio**2 * sphere.radius
         share = self.scene.pair.tangential_mass / inertia
         return self.scene.spin + share * self.motion.slip_velocity_change
+
+    @property
+    def rebound_normal_spin(self) -> Any:
+        """Spin about the normal of the first body over the target after the impact, in rad/s.
+
+        By the right-hand rule about the normal into the target. Where the law does not answer spin
+        about the normal it is the one before, and the plan cautions.
+        """
+        axes = self.scene.frame
+        if axes is None:
+            return self.scene.normal_spin + self.motion.normal_spin_change
+        relative = self._in_space("spin") - self._in_space("target_spin")
+        spin = np.einsum("...i,...i->...", relative, axes[..., 0, :])
+        return spin if self.scene.shape else float(spin)
+
+    @property
+    def w2(self) -> Any:
+        """W = kappa omega_n a/(mu v1) of the spin about the normal after the impact, theory §17."""
+        return self.scene.rim(self.rebound_normal_spin)
 
     @property
     def target_rebound_normal_velocity(self) -> Real | None:

@@ -77,7 +77,8 @@ def scene_section(scene: Scene) -> Section:
         rows += _body("sphere", scene.sphere)
         if scene.target is not None:
             rows += _body("struck sphere" if sphere_target else "half-space", scene.target)
-    for name in (*SCENE, *scene.groups):
+    spins = ("normal_spin",) if scene.turns else ()
+    for name in (*SCENE, *spins, *scene.groups):
         unit = unit_in(entry_unit(name), scene)
         for part, values in components(name, getattr(scene, name), scene.shape):
             rows.append([part.replace("_", " "), _range(values), unit])
@@ -211,6 +212,9 @@ def _velocities(result: ImpactResult) -> list[Row]:
             "local tangential velocity", scene.slip_velocity, result.rebound_slip_velocity, "m/s"
         ),
     ]
+    if scene.turns:
+        spins = scene.normal_spin, result.rebound_normal_spin
+        rows.append(["spin about the normal", *spins, "rad/s"])
     if not bodies:
         return [*rows, ["normal velocity", scene.normal_speed, result.normal_velocity, "m/s"]]
     after_tangential = result.rebound_tangential_velocity

@@ -21,6 +21,7 @@ from contactlab.scene_file.entries import (
     NONDIMENSIONAL_KEYS,
     SPHERE_KEYS,
     SPHERE_VECTORS,
+    SPIN_KEYS,
     UNITS,
     VECTOR_KEYS,
 )
@@ -38,13 +39,13 @@ def build_scene(
                 f"nondimensional: cannot stand beside [{sections[0]}]; psi1 and chi define "
                 "the scene, leave out one or the other"
             )
-        known = (*NONDIMENSIONAL_KEYS, *GROUP_KEYS, *COUPLING_KEYS)
+        known = (*NONDIMENSIONAL_KEYS, *GROUP_KEYS, *COUPLING_KEYS, *SPIN_KEYS)
         table = Table(document["nondimensional"], "nondimensional", known=known)
         if table.has(*COUPLING_KEYS):
             table.require(
                 "lam", "eta and rho belong to lam, by which friction changes the approach"
             )
-        groups = _present(table, (*GROUP_KEYS, "eta", "rho"))
+        groups = _present(table, (*GROUP_KEYS, *SPIN_KEYS, "eta", "rho"))
         for key in (*NONDIMENSIONAL_KEYS, "lam"):
             if table.has("rho") and isinstance(table.content.get(key), list):
                 groups[key] = table.content[key]  # a vector or tensor of the tangent plane
@@ -175,7 +176,8 @@ def _encounter(table: Table, sphere: Any, target: Any, **contacts: Any) -> Encou
 
 def _impact(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Scene:
     """Return the scene of an impact with polar or normal and tangential velocity."""
-    numbers = _numbers(table, ("friction_coefficient",)) | _present(table, ("spin",))
+    numbers = _numbers(table, ("friction_coefficient",))
+    numbers |= _present(table, ("spin", "normal_spin"))
     polar, cartesian = ("speed", "angle_deg"), ("normal_speed", "tangential_velocity")
     if table.has(*polar) and table.has(*cartesian):
         raise ValueError(

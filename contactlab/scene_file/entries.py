@@ -13,6 +13,7 @@ from contactlab.scene_file.table import MATERIAL_KEYS
 SPHERE_KEYS = ("radius", "mass", "gyration_ratio", "material")
 IMPACT_KEYS = (
     "friction_coefficient", "speed", "angle_deg", "normal_speed", "tangential_velocity", "spin",
+    "normal_spin",
 )  # fmt: skip
 #: Keys of an encounter in space; ``spin`` is a vector if ``velocity`` is given.
 SPHERE_VECTORS = ("velocity", "normal", "spin", "target_velocity", "target_spin")
@@ -20,6 +21,8 @@ VECTOR_KEYS = (*SPHERE_VECTORS, "contact", "target_contact")
 NONDIMENSIONAL_KEYS = ("psi1", "chi")
 #: Parameters where friction changes the approach: eta or rho beside lam.
 COUPLING_KEYS = ("lam", "eta", "rho")
+#: Parameters of spin about the normal, in a scene without bodies.
+SPIN_KEYS = ("spin", "spin_inertia")
 #: Keys of a body that is no sphere: those of ``RigidBody``, and those of each of its shapes.
 RIGID_KEYS = (
     "mass", "inertia", "principal", "axes", "curvature_radius", "cross_radius", "curvature_axis",
@@ -54,9 +57,9 @@ UNITS = SCENE_UNITS | {
 def _entries() -> dict[str, str]:
     """Return the dotted path of every entry that may vary, by short and by dotted name."""
     names = {key: f"impact.{key}" for key in IMPACT_KEYS}
-    scaled = (*NONDIMENSIONAL_KEYS, "coupling_number", *COUPLING_KEYS)
+    scaled = (*NONDIMENSIONAL_KEYS, "coupling_number", *COUPLING_KEYS, "spin_inertia")
     names |= {key: f"nondimensional.{key}" for key in scaled} | {TILT: f"body.{TILT}"}
-    dotted = [*names.values(), *(f"nondimensional.{key}" for key in GROUP_KEYS)]
+    dotted = [*names.values(), *(f"nondimensional.{key}" for key in ("spin", *GROUP_KEYS))]
     for body in ("sphere", "target"):
         dotted += [f"{body}.{key}" for key in SPHERE_KEYS if key != "material"]
         dotted += [f"{body}.material.{key}" for key in MATERIAL_KEYS]

@@ -49,7 +49,7 @@ def test_the_finite_element_case_has_its_coupling_number():
 
 def test_two_groups_are_as_before():
     scene = Scene.nondimensional(psi1=1.2, chi=1.4412)
-    assert attrs.astuple(scene.pair) == (1.0, 0.9375, 0.9375, 1.0, 0.5 / 1.4412, 0.0, 1.0, 1.0)
+    assert attrs.astuple(scene.pair) == (1.0, 0.9375, 0.9375, 1.0, 0.5 / 1.4412, 0.0, 1.0, 1.0, 0.0)
     assert (scene.friction_coefficient, scene.tangential_velocity) == (1.0, 1.2)
 
 
