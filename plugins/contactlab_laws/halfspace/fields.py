@@ -36,12 +36,14 @@ class Fields:
     def __init__(self, options: Options, every: NormalMotion, left: Any) -> None:
         self._options, self._every = options, every
         self._places = [tuple(place) for place in np.argwhere(left).tolist()]
-        self._kept: list[tuple[Array, Array, Array]] = []
+        self._kept: list[tuple[Array, Array, Array, Array]] = []
 
     def at(self, load_impulse: Any) -> Mapping[str, NDArray[Any]]:
         """Return the fields at the instants with the integrals ``load_impulse`` of the load, N s.
 
-        The last axes are angles and rings. Angles are from the direction x of positive slip.
+        The last axes are angles and rings. Angles are from the direction x of positive slip, over
+        the half circle of positive y; where bodies spin over that of negative x. Along the other
+        half both x components are equal, both y components of opposite sign.
         ``radius`` in m, ``angle`` in radians, ``traction_x`` and ``traction_y``, positive where
         they oppose positive slip, and ``pressure`` in Pa, ``slip_x`` and ``slip_y`` in m,
         ``stuck`` True where a point in contact does not slip.
@@ -54,12 +56,13 @@ class Fields:
         shape, angles = self._every.scene.shape, self._options.angles
         if not self._kept:
             self._kept = [self._followed(place) for place in self._places]
-        rings = max(len(radius) for _, radius, _ in self._kept)
+        rings = max(len(radius) for _, radius, _, _ in self._kept)
         tables = np.full((5, *shape, angles, rings), np.nan)
         radii = np.full((*shape, rings), np.nan)
         stuck = np.zeros((*shape, angles, rings), dtype=bool)
-        passed = np.broadcast_to(load_impulse, shape)
-        for place, (impulse, radius, values) in zip(self._places, self._kept, strict=True):
+        passed, around = np.broadcast_to(load_impulse, shape), np.zeros((*shape, angles))
+        for place, (impulse, radius, values, theta) in zip(self._places, self._kept, strict=True):
+            around[place] = theta
             one = self._every.take(place) if shape else self._every
             unit, pair, mu = units(one), one.scene.pair, one.scene.friction_coefficient
             wanted = float(passed[place]) / float(pair.normal_mass * one.scene.normal_speed)
@@ -80,7 +83,7 @@ class Fields:
         along, across, slip_x, slip_y, pressed = tables
         return {
             "radius": radii,
-            "angle": np.broadcast_to(_angles(angles), (*shape, angles)),
+            "angle": around,
             "traction_x": along,
             "traction_y": across,
             "slip_x": slip_x,
@@ -89,8 +92,8 @@ class Fields:
             "stuck": stuck & (pressed > 0.0),
         }
 
-    def _followed(self, place: tuple[int, ...]) -> tuple[Array, Array, Array]:
-        """Return impulses (K + 1,), radii (rings,) and values (5, K + 1, angles, rings)."""
+    def _followed(self, place: tuple[int, ...]) -> tuple[Array, Array, Array, Array]:
+        """Return impulses (K + 1,), radii (rings,), values (5, K + 1, angles, rings), angles."""
         # The values are traction along x and y, slip along x and y, and pressure.
         rings, angles = self._options.rings, self._options.angles
         one = self._every.take(place) if self._every.scene.shape else self._every
@@ -99,7 +102,8 @@ class Fields:
         spare = SPARE if motion.departures is not None else 0.0
         radii = basis(rings, 1 if group.plain else angles + 2, spare).edges[:-1]
         values = np.zeros((5, len(motion.impulse), angles, len(radii)))
-        cosine, sine = np.cos(_angles(angles))[:, None], np.sin(_angles(angles))[:, None]
+        theta = _angles(angles) + (0.5 * np.pi if group.spins else 0.0)
+        cosine, sine = np.cos(theta)[:, None], np.sin(theta)[:, None]
         for k, (traction, slip, pressure) in enumerate(motion.fields, start=1):
             values[4, k] = pressure
             for first, vector in ((0, traction), (2, slip)):
@@ -108,7 +112,7 @@ class Fields:
                 else:
                     values[first, k] = vector[0] * cosine - vector[1] * sine
                     values[first + 1, k] = vector[0] * sine + vector[1] * cosine
-        return motion.impulse[:, 0], radii, values
+        return motion.impulse[:, 0], radii, values, theta
 
 
 def _angles(count: int) -> Array:

@@ -36,6 +36,11 @@ class Options(NamedTuple):
     coupling: str
     extrapolate: bool
 
+    @property
+    def spins(self) -> bool:
+        """True if spin about the normal is answered."""
+        return self.angles > 1 and self.coupling == "none"
+
 
 class Matter(NamedTuple):
     """The dimensionless numbers of each impact of a batch, arrays of shape (impacts,).
@@ -50,6 +55,8 @@ class Matter(NamedTuple):
         Lam = kappa beta/mu, and mu beta.
     stiffness : array
         Unit of force times that of time over M_n v1.
+    rim, turning : array
+        w and chi_w of spin about the normal, theory §17, by the radius of this motion.
     """
 
     psi1: Array
@@ -58,6 +65,8 @@ class Matter(NamedTuple):
     drag: Array
     lift: Array
     stiffness: Array
+    rim: Array
+    turning: Array
 
     @classmethod
     def of(cls, normal: NormalMotion) -> Matter:
@@ -74,6 +83,12 @@ class Matter(NamedTuple):
             coupling_number(scene),
             np.abs(scene.friction_coefficient * pair.dundurs_beta),
             unit.force * unit.time / momentum,
+            scene.normal_spin * unit.length * scene.psi_scale if scene.turns else 0.0,
+            0.5
+            * kappa
+            * pair.normal_mass
+            * pair.inverse_spin_mass
+            * (unit.length / pair.radius) ** 2,
         )
         return cls(*(np.broadcast_to(np.asarray(each, float), (count,)) for each in columns))
 
@@ -87,8 +102,8 @@ class Group(NamedTuple):
         Their places among all impacts.
     normal, matter : NormalMotion, Matter
         Normal motion and numbers of these impacts.
-    plain : bool
-        Whether tractions stay along one direction.
+    plain, spins : bool
+        Whether tractions stay along one direction, and whether bodies spin about the normal.
     coupling : str
         The law's, ``"none"`` where nothing couples.
     parts : int
@@ -99,6 +114,7 @@ class Group(NamedTuple):
     normal: NormalMotion
     matter: Matter
     plain: bool
+    spins: bool
     coupling: str
     parts: int
 
@@ -121,11 +137,13 @@ class Group(NamedTuple):
             return follow_all(rings, path, *numbers, fields=fields)
         each, both = [], self.coupling == "two_way"
         for item, numbers in enumerate(np.transpose(matter).tolist()):
-            psi1, chi, poisson, drag, lift, stiffness = numbers
+            psi1, chi, poisson, drag, lift, stiffness, rim, turning = numbers
             drag = 0.0 if self.coupling == "none" else drag
-            table = modes(rings, angles, poisson, drag, lift if both else None)
+            table = modes(rings, angles, poisson, drag, lift if both else None, self.spins)
             kind = Answering if both else Prescribed
-            each.append(follow(kind(table, path.take([item]), stiffness), psi1, chi, fields=fields))
+            pressure = kind(table, path.take([item]), stiffness)
+            spin = (rim, turning) if self.spins else ()
+            each.append(follow(pressure, psi1, chi, *spin, fields=fields))
         return joined(each)
 
 
@@ -133,12 +151,13 @@ def groups(options: Options, normal: NormalMotion) -> Iterator[Group]:
     """Iterate over the groups of the impacts of a normal motion, of shape () or (impacts,)."""
     matter = Matter.of(normal)
     drags = (matter.drag > 0.0) & (options.coupling != "none")
-    plain = ~drags & ((np.abs(matter.poisson) < ROUNDING) | (options.angles == 1))
+    spins = (matter.rim != 0.0) & options.spins
+    plain = ~(drags | spins) & ((np.abs(matter.poisson) < ROUNDING) | (options.angles == 1))
     answering = drags & (options.coupling == "two_way")
     least = np.where(plain, STEPS, np.where(answering, ANSWERING, VECTORS))
     fewest = options.rings // 2 if options.extrapolate else options.rings
     parts = [_parts(*each, fewest) for each in zip(matter.chi, least, strict=True)]
-    kinds = np.stack((plain, drags, parts))
+    kinds = np.stack((plain, drags, parts, spins))
     for key in np.unique(kinds, axis=1).T:
         items = np.flatnonzero((kinds == key[:, None]).all(axis=0))
         yield Group(
@@ -146,6 +165,7 @@ def groups(options: Options, normal: NormalMotion) -> Iterator[Group]:
             normal=normal.take(items) if normal.scene.shape else normal,
             matter=Matter(*(column[items] for column in matter)),
             plain=bool(key[0]),
+            spins=bool(key[3]),
             coupling=options.coupling if key[1] else "none",
             parts=int(key[2]),
         )

@@ -89,6 +89,15 @@ class HalfSpace(WholeImpactTangentialLaw):
                 "give fewer rings, or angles=1",
             )
 
+    @property
+    def normal_spin(self) -> bool:
+        """True without coupling and with more than one angle: friction of slip and spin is one."""
+        return self._options.spins
+
+    @property
+    def _options(self) -> Options:
+        return Options(self.rings, self.angles, self.coupling, self.extrapolate)
+
     def books_bound(self, scene: Scene) -> Real:
         """Return the imbalance of the books: one-way coupling loses up to 0.14 Lambda²."""
         if self.coupling != "one_way":
@@ -120,8 +129,7 @@ class HalfSpace(WholeImpactTangentialLaw):
         known = super().whole_impacts(scene, normal)
         if self.coupling == "none" and self.angles == 1:
             known = (*known, *gross_slip(scene, normal))
-        options = Options(self.rings, self.angles, self.coupling, self.extrapolate)
-        return (*known, *own_answers(options, scene, normal, known))
+        return (*known, *own_answers(self._options, scene, normal, known))
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the caution of coupling, if it is left out, and of the pressure."""

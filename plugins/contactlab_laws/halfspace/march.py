@@ -35,6 +35,8 @@ class Followed(NamedTuple):
     departures : array, shape (3, K + 1, impacts), or None
         Departures of approach, rate and force from the normal motion without friction; None unless
         traction changes the pressure.
+    spin : array, shape (impacts,), or None
+        Change of the spin about the normal, in w; None unless bodies spin.
     """
 
     change: Array
@@ -44,6 +46,7 @@ class Followed(NamedTuple):
     residual: Array
     fields: list[tuple[Array, Array, Array]]
     departures: Array | None = None
+    spin: Array | None = None
 
 
 def joined(parts: Sequence[Followed]) -> Followed:
@@ -55,7 +58,15 @@ def joined(parts: Sequence[Followed]) -> Followed:
     return Followed(*columns)._replace(fields=parts[0].fields)
 
 
-def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = False) -> Followed:
+def follow(
+    pressure: Prescribed,
+    psi1: float,
+    chi: float,
+    w1: float = 0.0,
+    chi_w: float = 0.0,
+    *,
+    fields: bool = False,
+) -> Followed:
     """Return one impact with slip velocity ``psi1`` at first touch.
 
     Parameters
@@ -64,6 +75,9 @@ def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = Fals
         Pressure of the impact, prescribed or answering.
     psi1, chi : float
         Dimensionless angle of incidence, and inertia ratio.
+    w1, chi_w : float
+        Spin about the normal as the speed of the rim, and its inertia ratio; the bodies' rotation
+        in a step takes the moment of the step before.
     fields : bool
         Whether to keep tractions, slips and pressures.
     """
@@ -75,6 +89,7 @@ def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = Fals
     zero = np.zeros((table.parts, table.angles, table.count))
     slips, traction, memory = begun(zero[:2]), zero, zero
     displaced, work, residual = 0.0, 0.0, 0.0
+    rotation, slowed, moment = 0.0, 0.0, 0.0
     touched, kept = False, []
     for k in range(1, len(change)):
         duration, gain = float(pressure.duration[k - 1]), 2.0 * chi * pressure.impulse(k)
@@ -82,11 +97,17 @@ def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = Fals
         contact, new = pressure.contact(k), np.zeros(zero.shape)
         fixed = displaced + duration * (psi1 + change[k - 1] - gain * shares[k - 1] * early)
         slowing, share, force, surface = duration * gain * late, shares[k - 1], 0.0, zero[:2]
+        turning: Any = 0.0
+        acted = moment
+        if table.spins:
+            rotation += duration * (w1 + slowed - chi_w * pressure.impulse(k) * moment)
+            turning, moment = table.turn * rotation, 0.0
         if contact is not None:
             number = contact.rings
             resting = rest(slips, duration, vectors=True)
             target = np.empty((*zero.shape[:2], number))
-            target[:2] = (along * fixed - contact.dragged - resting)[:, :, :number]
+            bodies = along * fixed + turning
+            target[:2] = (bodies - contact.dragged - resting)[:, :, :number]
             target[2:] = contact.depth
             start = np.zeros(target.shape)
             known = min(number, memory.shape[2])
@@ -96,10 +117,12 @@ def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = Fals
             share, force = solution.share, solution.force
             residual = max(residual, solution.residual)
             surface = table.displaced(solution.traction)[:2] + contact.dragged
+            if table.spins:
+                moment = table.moment(solution.traction) / force
             if not touched:
                 shares[k - 1], touched = share, True
         displaced = fixed - slowing * share
-        slip = along * displaced - surface
+        slip = along * displaced + turning - surface
         work += table.work(0.5 * (traction + new)[:2], slip - slips.last)
         touching = np.arange(table.count) < (0 if contact is None else contact.rings)
         if table.parts == 3:
@@ -108,6 +131,7 @@ def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = Fals
         passed = pressure.advance(k, force)
         impulse[k] = impulse[k - 1] + passed
         change[k] = change[k - 1] - chi * passed * (shares[k - 1] + share)
+        slowed -= chi_w * passed * (acted + moment)
         shares[k], traction = share, new
         if fields:
             pressed = new[2] if table.parts == 3 else np.zeros(table.count)
@@ -119,4 +143,5 @@ def follow(pressure: Prescribed, psi1: float, chi: float, *, fields: bool = Fals
         departures = np.stack((pressure.approach, pressure.rate, pressure.excess))[..., None]
     works = np.array([6.0 * chi * pressure.stiffness * work])
     change, shares, impulse = (column[:, None] for column in columns)
-    return Followed(change, shares, impulse, works, np.array([residual]), kept, departures)
+    spin = np.array([slowed]) if table.spins else None
+    return Followed(change, shares, impulse, works, np.array([residual]), kept, departures, spin)

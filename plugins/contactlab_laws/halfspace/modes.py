@@ -3,6 +3,10 @@
 Traction and displacement have a radial part sum R_m cos(m theta), a tangential part
 sum T_m sin(m theta), and a normal part sum P_m cos(m theta). They are given at angles in the middle
 of equal parts of the half circle; the other half is its mirror image. Every m stands alone.
+
+Where bodies spin about the normal too the mirror stands along the slip, not across (theory §17):
+angles are from the normal to the slip, the radial part is -sum R_m sin(m theta), the tangential
+part sum T_m cos(m theta), and m = 0 is torsion.
 """
 
 from __future__ import annotations
@@ -36,21 +40,34 @@ class Modes:
         Lam = kappa beta/mu, how far pressure drags the surfaces sideways.
     lift : float or None
         mu beta, how far traction lifts the surfaces. None: pressure is prescribed, two parts.
+    spins : bool
+        Whether bodies spin about the normal; then without drag and lift.
     """
 
     def __init__(
-        self, rings: int, angles: int, poisson: float, drag: float, lift: float | None
+        self,
+        rings: int,
+        angles: int,
+        poisson: float,
+        drag: float,
+        lift: float | None,
+        spins: bool,
     ) -> None:
+        self.spins = spins
+        #: The part that goes with the cosine, and so has a mode 0.
+        self.even = int(spins)
         self.parts = 2 if lift is None else 3
         self.angles = angles
         self.basis = basis(rings, angles + 2, 0.0 if lift is None else SPARE)
         self.points = self.basis.edges[:-1]
         self.count = len(self.points)
         theta = (np.arange(angles) + 0.5) * np.pi / angles
-        self.to, self.back = _transforms(theta, self.parts)
-        #: A unit displacement along x, shape (2, angles, 1).
-        self.along = np.stack((np.cos(theta), -np.sin(theta)))[:, :, None]
-        self.compliance = _compliance(self.basis, angles, poisson, drag, lift)
+        self.to, self.back = _transforms(theta, self.parts, spins)
+        turned = theta + 0.5 * np.pi if spins else theta
+        #: A unit displacement along x, shape (2, angles, 1); a unit rotation about the normal.
+        self.along = np.stack((np.cos(turned), -np.sin(turned)))[:, :, None]
+        self.turn = np.stack((0.0 * self.points, self.points))[:, None]
+        self.compliance = _compliance(self.basis, angles, poisson, drag, lift, spins)
         local = np.diag(self.basis.compliance(0, 0))
         self._metric = METRIC / local
         self._resolvents: dict[int, Array] = {}
@@ -75,6 +92,13 @@ class Modes:
         """Return the weights of F, the mean over the angles, shape (2, angles, number)."""
         return self.along * self.basis.force[:number] / self.angles
 
+    def moment(self, traction: Array) -> float:
+        """Return the moment about the normal, over mu a times the force of the largest contact."""
+        edges = self.basis.edges[1 : traction.shape[2] + 1]
+        torsion = (self.to @ traction)[1, 0]
+        inner = self.basis.coefficients[1][: len(edges), : len(edges)]
+        return float(0.4 * edges**4 @ inner @ torsion)
+
     def displaced(self, traction: Array) -> Array:
         """Return the displacements at all rings, shape (parts, angles, rings)."""
         number = traction.shape[2]
@@ -87,7 +111,7 @@ class Modes:
     def work(self, traction: Array, slip: Array) -> float:
         """Return the integral of traction times slip over the contact, over 2 pi."""
         ours, moved = self.to[:2] @ traction, self.to[:2] @ slip
-        total = moved[0, 0] @ self.basis.work[1] @ ours[0, 0]
+        total = moved[self.even, 0] @ self.basis.work[1] @ ours[self.even, 0]
         outer, outer_slip = 0.5 * (ours[0] + ours[1]), 0.5 * (moved[0] + moved[1])
         inner, inner_slip = 0.5 * (ours[0] - ours[1]), 0.5 * (moved[0] - moved[1])
         for m in range(1, self.angles + 1):
@@ -99,7 +123,7 @@ class Modes:
 modes = lru_cache(maxsize=6)(Modes)
 
 
-def _transforms(theta: Array, parts: int) -> tuple[Array, Array]:
+def _transforms(theta: Array, parts: int, spins: bool) -> tuple[Array, Array]:
     """Return the matrices from values to modes and back, shape (parts, modes, angles) and back."""
     count = len(theta)
     order = np.arange(count + 1)[:, None]
@@ -110,11 +134,13 @@ def _transforms(theta: Array, parts: int) -> tuple[Array, Array]:
     for table in (even, cosines):
         table[-1] = 0.0  # the angles are its zeros
     chosen, inverse = [even, odd, even][:parts], [cosines, sines, cosines][:parts]
+    if spins:
+        chosen, inverse = [-odd, even], [-sines, cosines]
     return np.stack(chosen), np.stack([each.T for each in inverse])
 
 
 def _compliance(
-    table: Basis, angles: int, poisson: float, drag: float, lift: float | None
+    table: Basis, angles: int, poisson: float, drag: float, lift: float | None, spins: bool
 ) -> Array:
     """Return the blocks of every m, shape (modes, parts, rings, parts, rings)."""
     # The complex modes 1 + m and 1 - m are (R_m + T_m)/2 and (R_m - T_m)/2.
@@ -122,7 +148,8 @@ def _compliance(
     blocks = np.zeros((angles + 1, parts, count, parts, count))
     cross = poisson / (2.0 - poisson)
     same = [table.compliance(order, order) for order in range(angles + 2)]
-    blocks[0, 0, :, 0] = (1.0 - cross) * same[1]
+    even = int(spins)
+    blocks[0, even, :, even] = (1.0 + cross if spins else 1.0 - cross) * same[1]
     for m in range(1, angles + 1):
         outer, inner = same[m + 1], same[m - 1]
         rise = cross * table.compliance(m + 1, m - 1)
@@ -143,6 +170,6 @@ def _compliance(
             blocks[m, 2, :, 0] = 0.5 * lift * (inner - outer)
             blocks[m, 2, :, 1] = -0.5 * lift * (inner + outer)
             blocks[m, 2, :, 2] = same[m]
-    blocks[angles, 0] = 0.0
-    blocks[angles, :, :, 0] = 0.0
+    blocks[angles, even] = 0.0
+    blocks[angles, :, :, even] = 0.0
     return blocks

@@ -14,6 +14,7 @@ from contactlab_laws.halfspace.changed_motion import changed_motion
 from contactlab_laws.halfspace.fields import Fields
 from contactlab_laws.halfspace.groups import Options, groups
 from contactlab_laws.halfspace.hemispheres import Array
+from contactlab_laws.halfspace.instants import units
 from contactlab_laws.halfspace.march import Followed
 
 #: Residual above which a step counts as unsolved.
@@ -25,8 +26,12 @@ GRAZING = 1e6
 #: answers agree by chance: this times chi², from ``LEAST`` to 1. Beyond chi = 2.5 slip comes and
 #: goes more often.
 GROWTH, LEAST = 0.07, 0.1
-#: Largest error by eight angles: eight and sixteen differ by less, for Lam up to 2.
-ANGLES_ERROR = 3e-4
+#: Largest error by eight angles: eight and sixteen differ by less, for Lam up to 2, and with spin
+#: about the normal.
+ANGLES_ERROR, ANGLES_OF_SPIN = 3e-4, 1e-3
+#: The error falls as 1/rings to these powers: hemispheres are exact for slip along one direction,
+#: and not for the tractions of spin.
+ORDER, ORDER_OF_SPIN = 2.0, 1.5
 
 
 def own_answers(
@@ -39,6 +44,8 @@ def own_answers(
         left = left & ~np.broadcast_to(each.where, shape)
     with np.errstate(all="ignore"):
         grazing = left & (np.abs(scene.psi1) >= GRAZING * np.maximum(1.0, 4.0 * scene.chi))
+        if options.spins and scene.turns:
+            grazing &= scene.normal_spin == 0.0
     answers = []
     if grazing.any():
         reason = "the impact slips throughout: it grazes"
@@ -53,7 +60,8 @@ def own_answers(
 class _Solved(NamedTuple):
     """One impact in dimensionless units; change, work and share may be extrapolated."""
 
-    numbers: list[float]  # change of slip velocity, friction work, error of psi2, residual
+    # change of slip velocity, friction work, error of psi2, residual, change of spin
+    numbers: list[float]
     impulse: Array
     share: Array
     changed: tuple[Array, Array] | None  # phases and departures of its normal motion
@@ -67,6 +75,7 @@ def _solved(options: Options, normal: NormalMotion) -> list[_Solved]:
         fine, matter = group.followed(rings, angles), group.matter
         change, work, share = fine.change[-1], fine.work, fine.share
         residual, error = fine.residual, np.full(work.shape, math.nan)
+        spin = np.zeros(work.shape) if fine.spin is None else fine.spin
         if options.extrapolate:
             coarse = group.followed(rings // 2, angles)
             off = change - coarse.change[-1]
@@ -77,11 +86,19 @@ def _solved(options: Options, normal: NormalMotion) -> list[_Solved]:
             if group.coupling != "none":
                 error += ANGLES_ERROR
             else:
-                work = work + (work - coarse.work) / 3.0
-                share = _extrapolated(fine, coarse)
+                further = 1.0 / (2.0 ** (ORDER_OF_SPIN if group.spins else ORDER) - 1.0)
+                work = work + (work - coarse.work) * further
+                share = _extrapolated(fine, coarse, further)
+                if coarse.spin is not None:
+                    error += ANGLES_OF_SPIN * slow
+                    spin = spin + (spin - coarse.spin) * further
                 passed = np.diff(fine.impulse, axis=0) * (share[1:] + share[:-1])
                 change = -matter.chi * passed.sum(axis=0)
-        numbers: Any = np.stack((change, np.maximum(work, 0.0), error, residual), axis=1).tolist()
+        if group.spins:  # by symmetry there is no force without slip
+            change = np.where(matter.psi1 == 0.0, 0.0, change)
+        numbers: Any = np.stack(
+            (change, np.maximum(work, 0.0), error, residual, spin), axis=1
+        ).tolist()
         phase = None if fine.departures is None else group.path(rings).phase[:, 0]
         for place, item in enumerate(group.items.tolist()):
             changed = None
@@ -91,7 +108,7 @@ def _solved(options: Options, normal: NormalMotion) -> list[_Solved]:
     return [solved[item] for item in range(len(solved))]
 
 
-def _extrapolated(fine: Followed, coarse: Followed) -> Array:
+def _extrapolated(fine: Followed, coarse: Followed, further: float) -> Array:
     """Return the extrapolated shares of Coulomb's limit, at the instants of ``fine``."""
     # Instants of half the rings are every other instant of all: their share is linear between.
     between = coarse.share.repeat(2, axis=0)[:-1]
@@ -100,7 +117,7 @@ def _extrapolated(fine: Followed, coarse: Followed) -> Array:
         part = (middle[1] - middle[0]) / (middle[2] - middle[0])
     part = np.where(np.isfinite(part), part, 0.5)
     between[1::2] = coarse.share[:-1] + part * (coarse.share[1:] - coarse.share[:-1])
-    return np.clip(fine.share + (fine.share - between) / 3.0, -1.0, 1.0)
+    return np.clip(fine.share + (fine.share - between) * further, -1.0, 1.0)
 
 
 def _whole_impact(options: Options, every: NormalMotion, left: Any) -> WholeImpact:
@@ -112,7 +129,7 @@ def _whole_impact(options: Options, every: NormalMotion, left: Any) -> WholeImpa
     changed = {n: each.changed for n, each in zip(numbers, solved, strict=True) if each.changed}
     if changed:
         own, own_impulses = changed_motion(every, changed)
-    change, work, error, residual = np.array([each.numbers for each in solved]).T
+    change, work, error, residual, spin = np.array([each.numbers for each in solved]).T
     unit: Any = 1.0 / np.atleast_1d(scene.psi_scale)
     mass: Any = np.atleast_1d(scene.pair.tangential_mass)
     # Under huge friction unit² may exceed what a float holds, and the work is as small.
@@ -163,6 +180,7 @@ def _whole_impact(options: Options, every: NormalMotion, left: Any) -> WholeImpa
         fields=Fields(options, every, left).at,
         psi2_error=spread(error),
         normal=own,
+        normal_spin_change=spread(spin * (unit / units(normal).length)),
         status=status,
         detail=detail if bad.any() else "",
     )
