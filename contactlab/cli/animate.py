@@ -42,7 +42,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if scene.shape:
         raise ValueError("scene: must be a single impact, not a sweep; leave out [sweep]")
     encounter = None if file is None else file.encounter
-    shared.tell_normal_spin(encounter)
+    shared.tell_normal_spin(scene, simulation)
     if encounter is not None and isinstance(encounter.body, RigidBody):
         return _bodies(arguments, encounter, simulation)
     with shared.working(arguments.progress, "frames") as progress:

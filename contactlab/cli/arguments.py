@@ -24,7 +24,8 @@ from contactlab.compose.names import KINDS
 from contactlab.outcome.files import distinct, unwritable, write_table
 
 if TYPE_CHECKING:
-    from contactlab.impact.encounter import Encounter
+    from contactlab.compose.simulation import Simulation
+    from contactlab.impact.scene import Scene
     from contactlab.scene_file import SceneFile
 
 
@@ -224,13 +225,15 @@ def working(wanted: bool | None, what: str) -> Iterator[Callable[[int, int], obj
         yield counted
 
 
-def tell_normal_spin(encounter: Encounter | None) -> None:
-    """Say on stderr what spin about the normal would change, where no plan is shown."""
-    if encounter is None:
-        return
+def tell_normal_spin(scene: Scene, *simulations: Simulation | None) -> None:
+    """Say on stderr what spin about the normal would change, where no plan is shown.
+
+    Nothing is said if all ``simulations`` answer it; None stands for ``contactlab.rebound``.
+    """
     from contactlab.compose.normal_spin_words import with_normal_spin  # only for vectors
 
-    _, _, cautions = with_normal_spin(((), (), ()), encounter)
+    answered = all(each is not None and each.tangential.normal_spin for each in simulations)
+    _, _, cautions = with_normal_spin(((), (), ()), scene, answered=answered)
     for sentence in cautions:
         print(f"contactlab: caution: {sentence}", file=sys.stderr)
 

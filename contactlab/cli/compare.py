@@ -110,7 +110,7 @@ def execute(arguments: argparse.Namespace) -> int:
         interrupted=comparison.interrupted,
     )
     if arguments.json or arguments.csv or arguments.all:  # these show no plan
-        shared.tell_normal_spin(file.encounter)
+        shared.tell_normal_spin(file.scene, *compared.values())
     if arguments.json:
         content = to_dict(comparison, quantities) | {"title": file.title}
         content["complete"] = not comparison.interrupted

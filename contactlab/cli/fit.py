@@ -86,8 +86,8 @@ def execute(arguments: argparse.Namespace) -> int:
     defaults = {"friction_coefficient": SOME_FRICTION}
     allow = arguments.allow_code
     file = read_scene(path, entries=impacts.given, defaults=defaults, allow_code=allow)
-    shared.tell_normal_spin(file.encounter)
     simulations = _simulations(arguments, file)
+    shared.tell_normal_spin(file.scene, *simulations.values())
     own = parameters_of(impacts, path, simulations, arguments.fit)
     selection: dict[str, Any] = {"quantities": arguments.quantity}
     first, *others = simulations

@@ -87,7 +87,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if before:
         print(f"contactlab sweep: {before} impacts were done before", file=sys.stderr)
     varied = file.varied if file else {}
-    shared.tell_normal_spin(file.encounter if file else None)
+    shared.tell_normal_spin(scene, simulation)
     written: list[Path] = []
 
     def write(path: Path) -> None:

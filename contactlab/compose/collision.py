@@ -46,8 +46,9 @@ class Collision(Answer):
     velocity, target_velocity : ndarray
         Velocities of the centres of mass, in m/s. A half-space keeps its velocity.
     spin, target_spin : ndarray
-        In rad/s. Friction of spin about the normal is left out: that spin does not change, and the
-        plan tells how far it would, and how far it would move slip and the other spin.
+        In rad/s. Friction of spin about the normal needs a law that answers it, such as
+        ``tangential.halfspace``, and bodies whose centre is on the normal; else that spin does not
+        change, and the plan tells how far it would, and how far it would move slip.
     normal_velocity : float or array
         Rate of approach of the contact points after the impact, in m/s; negative: they part.
     slip_velocity_change : float or array
@@ -114,7 +115,10 @@ class Collision(Answer):
             ``simulation`` and ``restitution`` of the collision.
         """
         if encounter.of_spheres:
-            moved = impulses.moved(encounter, _columns(encounter, result, met))
+            columns = _columns(encounter, result, met)
+            moved = impulses.moved(encounter, columns[:3].reshape(3, -1))
+            if columns[3].any():
+                moved = impulses.turned(encounter, moved, columns[3])
         else:
             moved = _moved(encounter, result, met)
         return cls(encounter=encounter, **moved, known=result, **about)
@@ -170,9 +174,13 @@ class Collision(Answer):
             shear[self.collided] = self.known.motion.shear_loss
         after = self.normal_velocity, self.slip_velocity_change
         with np.errstate(over="ignore", under="ignore", invalid="ignore"):
-            energies = self.encounter.pair.energies(contact.approach, contact.slip, *after)
-            losses = self.friction_work, shear
-            return books(energies, losses, exchange, checked)
+            start, lost, slip = self.encounter.pair.energies(contact.approach, contact.slip, *after)
+            if np.any(self.collided) and (scene := self._met.scene).turns:
+                change = 0.0 if self.known is None else self.known.motion.normal_spin_change
+                whole, taken = np.zeros(self.encounter.shape), np.zeros(self.encounter.shape)
+                whole[self.collided], taken[self.collided] = scene.spin_energies(change)
+                start, slip = start + whole, slip + taken
+            return books((start, lost, slip), (self.friction_work, shear), exchange, checked)
 
     def _energy_of_bodies(self) -> EnergyLedger:
         """Return the books of the impacts, spread over the encounters."""
@@ -266,20 +274,23 @@ class Collision(Answer):
 
 
 def _columns(encounter: Encounter, result: ImpactResult, met: Any) -> Array:
-    """Return rebound rate, slip change and friction work, shape (3, n); 0 without a collision."""
+    """Return rebound rate, slip change, friction work and spin change; 0 without a collision."""
     motion = result.motion
-    columns = np.zeros((3, *encounter.shape))
-    quantities = (motion.normal_velocity, motion.slip_velocity_change, motion.friction_work)
+    columns = np.zeros((4, *encounter.shape))
+    quantities = (
+        motion.normal_velocity, motion.slip_velocity_change, motion.friction_work,
+        motion.normal_spin_change,
+    )  # fmt: skip
     for k, quantity in enumerate(quantities):
         columns[k, met] = quantity
-    return columns.reshape(3, -1)
+    return columns
 
 
 def _moved(encounter: Encounter, result: ImpactResult, met: Any) -> dict[str, Any]:
     """Return the attributes of a collision of bodies that are no spheres."""
     motion, part = result.motion, encounter if np.all(met) else encounter.take(met)
     axes: Any = result.scene.frame
-    moved: dict[str, Any] = pushed(part, axes, result.impulse) | {
+    moved: dict[str, Any] = pushed(part, axes, result.impulse, result.couple) | {
         "normal_velocity": motion.normal_velocity,
         "slip_velocity_change": motion.slip_velocity_change,
         "friction_work": motion.friction_work,

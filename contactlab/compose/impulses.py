@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose.rebound import rebound
-from contactlab.impact.bodies import Pair, Sphere
+from contactlab.impact.bodies import Pair, Sphere, inverse_turning_mass
 from contactlab.impact.body_contact import Contact
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import LEAST_IMPULSE
@@ -117,6 +117,22 @@ def moved(
         friction_work=work,
         collided=locked(collided) if shape else bool(collided),
     )
+
+
+def turned(encounter: Encounter, moved: Moved, change: Any) -> Moved:
+    """Return what ``moved`` returned, with a change (rad/s) of the relative spin about the normal.
+
+    The couple is opposite on both spheres: each takes its share by its inertia.
+    """
+    axis = np.stack(np.broadcast_arrays(*encounter.meeting().normal), axis=-1)
+    about = np.asarray(change)[..., None] * axis
+    share: Any = 1.0
+    body, target = encounter.body, encounter.target
+    if isinstance(body, Sphere) and isinstance(target, Sphere):
+        own, other = (inverse_turning_mass(each, body.radius) for each in (body, target))
+        share = np.asarray(own / (own + other))[..., None]
+    spins = moved["spin"] + share * about, moved["target_spin"] - (1.0 - share) * about
+    return moved | dict(zip(("spin", "target_spin"), map(locked, spins), strict=True))
 
 
 def _alone(encounter: Encounter, restitution: Any, strict: bool) -> Moved:

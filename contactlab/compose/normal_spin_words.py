@@ -1,4 +1,4 @@
-"""What a plan says of spin about the normal, whose friction is left out."""
+"""What a plan says of spin about the normal where its friction is left out."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.impact.encounter import Encounter
 from contactlab.impact.normal_spin import NormalSpin, normal_spin
+from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import some
 from contactlab.outcome.plan import NORMAL_SPIN, PSI2_ERROR, WITHOUT_SPIN, Clause, Clauses, Words
 
+ANSWERED = "spin about the normal: friction of slip and of spin is one"
 TURNS = "spin about the normal: its friction is left out"
 #: Smallest shift of psi2, and smallest loss of spin, with a caution.
 LEAST_SHIFT, LEAST_LOSS = 1e-3, 1e-2
@@ -21,19 +22,23 @@ MEASURED = (
 )
 
 
-def with_normal_spin(words: Words, encounter: Encounter) -> Words:
+def with_normal_spin(words: Words, scene: Scene, *, answered: bool = False) -> Words:
     """Return the words of a plan with what spin about the normal would change.
 
-    ``encounter`` has the bodies of the plan's impacts, which approach each other.
+    ``answered`` is True if the law answers spin about the normal, as it does unless a body is off
+    centre.
     """
-    spin = normal_spin(encounter)
-    if spin is None:
-        return words
+    spin = normal_spin(scene, answered=answered)
     computed, left_out, cautions = words
+    if answered and scene.turns:
+        where = np.broadcast_to(np.asarray(scene.normal_spin) != 0.0, scene.shape)
+        computed = (*computed, Clause(ANSWERED, np.array(where), code=NORMAL_SPIN))
+    if spin is None:
+        return computed, left_out, cautions
     acts = np.array(spin.acts)
     computed = tuple(part for clause in computed for part in _without_spin(clause, acts))
     left_out = (*left_out, Clause(TURNS, acts, code=NORMAL_SPIN))
-    return computed, left_out, (*cautions, *_sizes(spin, batch=bool(encounter.shape)))
+    return computed, left_out, (*cautions, *_sizes(spin, batch=bool(scene.shape)))
 
 
 def _without_spin(clause: Clause, acts: Any) -> Clauses:

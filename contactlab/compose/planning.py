@@ -114,8 +114,7 @@ def plan_of(
     asked = _Asked(history, estimated)
 
     def words() -> Words:
-        said = of_impacts()
-        return said if scene.encounter is None else with_normal_spin(said, scene.encounter)
+        return with_normal_spin(of_impacts(), scene, answered=laws.tangential.normal_spin)
 
     def of_impacts() -> Words:
         parts = scene.parts(as_one=bool(history))

@@ -50,11 +50,8 @@ def run_by_restitution(scene: Scene, restitution: Real) -> ImpactResult:
 
 def planned(scene: Scene, restitution: Real) -> Plan:
     """Return the plan of impacts that ``contactlab.rebound`` answers."""
-    encounter, scene = scene.encounter, attrs.evolve(scene, encounter=None)
-    plan = _of_groups(scene, restitution)
-    if encounter is None:
-        return plan
-    return Plan(plan.columns, lambda: with_normal_spin(plan.words, encounter))
+    plan = _of_groups(attrs.evolve(scene, encounter=None, normal_spin=0.0), restitution)
+    return Plan(plan.columns, lambda: with_normal_spin(plan.words, scene))
 
 
 def _of_groups(scene: Scene, restitution: Any) -> Plan:
