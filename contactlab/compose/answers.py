@@ -163,7 +163,8 @@ def _checked(known: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) -> 
     LawFaultError
         If it is not.
     """
-    for entry in (known.slip_velocity_change, known.friction_work, known.normal_spin_change):
+    entries = [known.slip_velocity_change, known.friction_work]
+    for entry in entries + [known.normal_spin_change] * law.normal_spin:
         if faults.malformed(entry, shape):
             sentence = faults.sentence(law, f"the answer {shown(entry)} to a whole impact", 1)
             raise faults.LawFaultError(Status.MALFORMED, sentence)

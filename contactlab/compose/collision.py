@@ -115,10 +115,12 @@ class Collision(Answer):
             ``simulation`` and ``restitution`` of the collision.
         """
         if encounter.of_spheres:
-            columns = _columns(encounter, result, met)
-            moved = impulses.moved(encounter, columns[:3].reshape(3, -1))
-            if columns[3].any():
-                moved = impulses.turned(encounter, moved, columns[3])
+            motion = result.motion
+            told = motion.normal_velocity, motion.slip_velocity_change, motion.friction_work
+            moved = impulses.moved(encounter, _columns(encounter, met, *told).reshape(3, -1))
+            if result.scene.turns:
+                (change,) = _columns(encounter, met, motion.normal_spin_change)
+                moved = impulses.turned(encounter, moved, change)
         else:
             moved = _moved(encounter, result, met)
         return cls(encounter=encounter, **moved, known=result, **about)
@@ -273,14 +275,9 @@ class Collision(Answer):
         return {name: json_value(np.asarray(getattr(self, name))) for name, _ in VECTORS_AFTER}
 
 
-def _columns(encounter: Encounter, result: ImpactResult, met: Any) -> Array:
-    """Return rebound rate, slip change, friction work and spin change; 0 without a collision."""
-    motion = result.motion
-    columns = np.zeros((4, *encounter.shape))
-    quantities = (
-        motion.normal_velocity, motion.slip_velocity_change, motion.friction_work,
-        motion.normal_spin_change,
-    )  # fmt: skip
+def _columns(encounter: Encounter, met: Any, *quantities: Any) -> Array:
+    """Return quantities of the encounters that met as rows, 0 without a collision."""
+    columns = np.zeros((len(quantities), *encounter.shape))
     for k, quantity in enumerate(quantities):
         columns[k, met] = quantity
     return columns

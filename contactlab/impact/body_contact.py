@@ -21,6 +21,7 @@ from contactlab.impact.bodies import (
 )
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import chosen, some
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.vectors import components, cross, moving, solved
 
@@ -153,17 +154,17 @@ def relative_velocity(encounter: Any, normal: Array) -> Array:
 
 def spin_about(encounter: Any, normal: tuple[Any, Any, Any]) -> Any:
     """Return the spin about the normal of the first body over the target, in rad/s."""
-    if not (moving(encounter.spin) or moving(encounter.target_spin)):
-        return 0.0
+    if encounter.shape and not (moving(encounter.spin) or moving(encounter.target_spin)):
+        return 0.0  # of one encounter three products take less
     spins = [components(spin) for spin in (encounter.spin, encounter.target_spin)]
     omega: Any = 0.0
     for n, one, other in zip(normal, *spins, strict=True):
         omega = omega + (one - other) * n
-    if not np.any(omega):
+    if not some(omega != 0.0):
         return 0.0
     whole = sum(abs(one) for spin in spins for one in spin)
-    turning = np.where(np.abs(omega) > TURNING * whole, omega, 0.0)
-    return np.broadcast_to(turning, encounter.shape) if encounter.shape else float(turning)
+    omega = chosen(abs(omega) > TURNING * whole, omega, 0.0)
+    return np.broadcast_to(omega, encounter.shape) if encounter.shape else omega
 
 
 def _spin_alone(encounter: Any, n: Array, ways: Any, radius: Any) -> tuple[Any, Any]:

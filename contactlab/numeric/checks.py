@@ -148,6 +148,8 @@ def _checked(value: object, owner: object, field: attrs.Attribute[Any]) -> Real 
     if value is None and field.default is None:
         return None
     meta = field.metadata
+    if type(value) is float and math.isfinite(value) and meta["rule"].holds(value):
+        return value  # the remedy of a refusal takes longer to write than a number to check
     remedy = unit_remedy(meta["unit"])
     number = real(field.name, value, rule=meta["rule"], remedy=remedy, empty=meta["empty"])
     if isinstance(number, np.ndarray) and getattr(type(owner), "plain_options", False):

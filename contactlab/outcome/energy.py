@@ -125,11 +125,14 @@ def balanced(motion: Motion, scene: Scene, bound: Real, *, together: bool = Fals
 
 
 def _balances(motion: Motion, scene: Scene, bound: Any) -> bool:
-    """Return whether the books of one impact balance: ``_with_unbalanced`` in a few floats."""
+    """Return whether the books of one impact balance: ``_with_unbalanced`` in a few floats.
+
+    Of a spin about the normal that does not change the energy is left out.
+    """
     speed: Any = scene.normal_speed
     slip: Any = scene.slip_velocity
     change: Any = motion.slip_velocity_change
-    start, _, slip_loss = scene.energies(motion.normal_velocity, change, motion.normal_spin_change)
+    start, _, slip_loss = scene.pair.energies(speed, slip, motion.normal_velocity, change)
     bound = LARGEST_UNDECLARED if bound == math.inf else bound
     return not (
         abs(motion.normal_velocity) > LARGEST_RESTITUTION * speed

@@ -85,6 +85,11 @@ class SquareGrid:
         """(3/2 pi) times the integral."""
         return 1.5 / np.pi * self.area * float(traction.sum())
 
+    def moment(self, traction):
+        """(3/2 pi) times the integral of the moment about the centre."""
+        moments = self.x * traction[1] - self.y * traction[0]
+        return 1.5 / np.pi * self.area * float(moments.sum())
+
     def pressure(self, depth, start, tolerance=1e-6):
         """The pressure under ``depth`` of surfaces that touch where it is positive."""
         return descend(
@@ -123,8 +128,8 @@ def descend(operator, cut, aim, start, largest, tolerance):
     return now
 
 
-def rebound(grid, psi1, chi, *, steps=60, two_way=False):
-    """psi2 and the normal restitution."""
+def rebound(grid, psi1, chi, *, steps=60, two_way=False, w1=0.0, chi_w=0.0):
+    """psi2, the normal restitution, and w2 of spin about the normal."""
     angle = np.linspace(0.0, np.pi, steps + 1)
     depth = np.sin(angle) ** 0.8  # zeta; V = cos(angle)
     half = 0.5 * 2.9432751843
@@ -134,10 +139,13 @@ def rebound(grid, psi1, chi, *, steps=60, two_way=False):
     p, q = zero, np.stack((zero, zero))
     slip = q.copy()
     psi, moved, share, approach, rate, excess = psi1, 0.0, 0.0, 0.0, 0.0, 0.0
+    w, turned, couple, circles = w1, 0.0, 0.0, np.stack((-grid.y, grid.x))
     for k in range(1, steps):
         gap = time[k] - time[k - 1]
         gain = 2.0 * chi * (np.cos(angle[k - 1]) - np.cos(angle[k])) + 2.5 * chi * gap * excess
         after, surplus, now = share, excess, approach
+        pull = chi_w / chi * gain
+        turned += gap * (w - 0.5 * pull * couple)
         for _ in range(5 if two_way else 2):
             now = approach + gap * rate - 1.25 * gap**2 * (excess / 3.0 + surplus / 6.0)
             raised = depth[k] + now - 0.5 * grid.square
@@ -147,7 +155,7 @@ def rebound(grid, psi1, chi, *, steps=60, two_way=False):
             load = grid.force(p)
             total = moved + gap * (psi - gain * (share / 3.0 + after / 6.0))
             carried = grid.dragged(p)
-            uniform = np.stack((zero + total, zero))
+            uniform = np.stack((zero + total, zero)) + turned * circles
             q = grid.traction(uniform - carried - slip, p, q)
             after = grid.force(q[0]) / load
             surplus = load - depth[k] ** 1.5 if two_way else 0.0
@@ -157,7 +165,9 @@ def rebound(grid, psi1, chi, *, steps=60, two_way=False):
         moved = total
         gain += 1.25 * chi * gap * (surplus - excess)
         psi -= 0.5 * gain * (share + after)
+        w -= 0.5 * pull * (couple + grid.moment(q) / load)
+        couple = grid.moment(q) / load
         rate -= 0.625 * gap * (excess + surplus)
         share, approach, excess = after, now, surplus
     gain = 2.0 * chi * (np.cos(angle[-2]) - np.cos(angle[-1]))
-    return psi - gain * share, 1.0 - rate
+    return psi - gain * share, 1.0 - rate, w - chi_w / chi * gain * couple

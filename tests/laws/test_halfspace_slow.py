@@ -66,7 +66,7 @@ def test_square_cells(coupling, cells, steps, bound):
     drag = 0.0 if coupling == "none" else lam
     lift = lam * mu * mu / kappa if coupling == "two_way" else 0.0
     grid = SquareGrid(cells, 0.3, drag, lift)
-    psi2, restitution = rebound(grid, 0.98, CHI, steps=steps, two_way=coupling == "two_way")
+    psi2, restitution, _ = rebound(grid, 0.98, CHI, steps=steps, two_way=coupling == "two_way")
     result = simulation(coupling=coupling).run(finite_element_case(0.98))
     assert result.psi2 == pytest.approx(psi2, abs=bound)
     assert result.normal_restitution == pytest.approx(restitution, abs=6e-4)

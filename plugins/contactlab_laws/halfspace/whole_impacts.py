@@ -26,11 +26,12 @@ GRAZING = 1e6
 #: answers agree by chance: this times chi², from ``LEAST`` to 1. Beyond chi = 2.5 slip comes and
 #: goes more often.
 GROWTH, LEAST = 0.07, 0.1
-#: Largest error by eight angles: eight and sixteen differ by less, for Lam up to 2, and with spin
-#: about the normal.
-ANGLES_ERROR, ANGLES_OF_SPIN = 3e-4, 1e-3
-#: The error falls as 1/rings to these powers: hemispheres are exact for slip along one direction,
-#: and not for the tractions of spin.
+#: Largest error by eight angles: eight and sixteen differ by less, for Lam up to 2.
+ANGLES_ERROR = 3e-4
+#: The same with spin about the normal: up to a w, and beyond.
+LITTLE_SPIN, ANGLES_OF_SPIN = 0.5, (1e-3, 5e-3)
+#: The error falls as 1/rings to these powers. Tractions of slip are sums of hemispheres; those of
+#: spin are not, and a sum of roots that meets them at points is off between by 1/rings^1.5.
 ORDER, ORDER_OF_SPIN = 2.0, 1.5
 
 
@@ -90,7 +91,8 @@ def _solved(options: Options, normal: NormalMotion) -> list[_Solved]:
                 work = work + (work - coarse.work) * further
                 share = _extrapolated(fine, coarse, further)
                 if coarse.spin is not None:
-                    error += ANGLES_OF_SPIN * slow
+                    little = np.abs(matter.rim) <= LITTLE_SPIN
+                    error += np.where(little, *ANGLES_OF_SPIN) * slow
                     spin = spin + (spin - coarse.spin) * further
                 passed = np.diff(fine.impulse, axis=0) * (share[1:] + share[:-1])
                 change = -matter.chi * passed.sum(axis=0)
