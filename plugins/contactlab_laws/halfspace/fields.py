@@ -112,6 +112,10 @@ class Fields:
                 else:
                     values[first, k] = vector[0] * cosine - vector[1] * sine
                     values[first + 1, k] = vector[0] * sine + vector[1] * cosine
+        if group.spins:  # a negative spin is the mirror image along the slip
+            hand = float(np.sign(group.matter.rim[0]))
+            values[[1, 3]] *= hand
+            theta = hand * theta
         return motion.impulse[:, 0], radii, values, theta
 
 

@@ -125,6 +125,8 @@ class Group(NamedTuple):
     def followed(self, rings: int, angles: int, *, fields: bool = False) -> Followed:
         """Return these impacts over ``rings`` rings: together, or as vectors one after the other.
 
+        All spins about the normal are followed as positive; others are mirror images.
+
         Parameters
         ----------
         rings, angles : int
@@ -142,7 +144,7 @@ class Group(NamedTuple):
             table = modes(rings, angles, poisson, drag, lift if both else None, self.spins)
             kind = Answering if both else Prescribed
             pressure = kind(table, path.take([item]), stiffness)
-            spin = (rim, turning) if self.spins else ()
+            spin = (abs(rim), turning) if self.spins else ()
             each.append(follow(pressure, psi1, chi, *spin, fields=fields))
         return joined(each)
 

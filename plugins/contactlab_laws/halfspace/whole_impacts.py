@@ -76,7 +76,7 @@ def _solved(options: Options, normal: NormalMotion) -> list[_Solved]:
         fine, matter = group.followed(rings, angles), group.matter
         change, work, share = fine.change[-1], fine.work, fine.share
         residual, error = fine.residual, np.full(work.shape, math.nan)
-        spin = np.zeros(work.shape) if fine.spin is None else fine.spin
+        spin = 0.0 * work if fine.spin is None else fine.spin
         if options.extrapolate:
             coarse = group.followed(rings // 2, angles)
             off = change - coarse.change[-1]
@@ -97,7 +97,7 @@ def _solved(options: Options, normal: NormalMotion) -> list[_Solved]:
                 passed = np.diff(fine.impulse, axis=0) * (share[1:] + share[:-1])
                 change = -matter.chi * passed.sum(axis=0)
         if group.spins:  # by symmetry there is no force without slip
-            change = np.where(matter.psi1 == 0.0, 0.0, change)
+            change, spin = np.where(matter.psi1 == 0.0, 0.0, change), spin * np.sign(matter.rim)
         numbers: Any = np.stack(
             (change, np.maximum(work, 0.0), error, residual, spin), axis=1
         ).tolist()
