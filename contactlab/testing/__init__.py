@@ -35,8 +35,8 @@ from contactlab.testing.parametrize import parametrize_with_checks
 ORDER = (
     "every_law", "normal", "normal_contact", "normal_motions", "motion", "stepping", "friction",
     "stiffness", "energy", "memory", "coulomb_at_a_point", "impacts", "whole_impacts", "coulomb",
-    "unlike_bodies", "vectors", "rigid_bodies", "integrators", "integrator_faults", "accuracy",
-    "declared_errors", "declarations",
+    "unlike_bodies", "vectors", "normal_spin", "rigid_bodies", "integrators", "integrator_faults",
+    "accuracy", "declared_errors", "declarations",
 )  # fmt: skip
 for _module in ORDER:
     importlib.import_module(f"contactlab.testing.{_module}")

@@ -37,6 +37,7 @@ WORDS: tuple[tuple[str, Any, str], ...] = (
     ("together", TangentialLaw, "impacts_together"),
     ("together", Integrator, "integrate_together"),
     ("vectors", SteppedTangentialLaw, "begin"),
+    ("normal_spin", TangentialLaw, "whole_impacts"),
 )
 
 

@@ -23,6 +23,7 @@ from tests.testing import broken_laws as laws
 from tests.testing import broken_normal as normal
 from tests.testing import broken_partners as partners
 from tests.testing import broken_rigid as rigid
+from tests.testing import broken_spin as spin
 from tests.testing import broken_vectors as vectors
 from tests.testing import fresh_faults
 from tests.testing.made import checked
@@ -41,6 +42,7 @@ BROKEN = [
     *fresh_faults.FAULTS,
     *rigid.BROKEN,
     *vectors.BROKEN,
+    *spin.BROKEN,
 ]
 
 
@@ -55,6 +57,7 @@ def failed(law):
     [
         laws.Sound(),
         impacts.Whole(),
+        spin.Torsion(),
         *longer(
             normal.Stepwise(),
             declarations.TwoRequired(stretch=1e-3, count=3),
