@@ -59,6 +59,21 @@ def test_speed_and_angle_are_measured_from_the_normal(read):
     assert scene.tangential_velocity == pytest.approx(1.0)
 
 
+def test_spin_about_the_normal_is_read_and_swept(read):
+    text = BALL + "speed = 2.0\nangle_deg = 30.0\n"
+    file = read(text + "normal_spin = 40.0\n[sweep]\nnormal_spin = [-1.0, 5.0]\n")
+    assert file.scene.normal_spin.tolist() == [-1.0, 5.0]
+    groups = "[nondimensional]\npsi1 = 1.0\nchi = 1.4\nspin = 0.5\nspin_inertia = 0.01\n"
+    assert read(groups).scene == Scene.nondimensional(
+        psi1=1.0, chi=1.4, spin=0.5, spin_inertia=0.01
+    )
+    swept = read(
+        groups + "[sweep]\n'nondimensional.spin' = [0.0, 0.2]\nspin_inertia = [0.1, 0.2]\n"
+    )
+    assert swept.scene.w1 == pytest.approx([0.0, 0.2])
+    assert swept.scene.chi_w[1] == pytest.approx(0.2)
+
+
 def test_rest_is_assumed_where_tangential_motion_is_not_given(read):
     scene = read(BALL + "normal_speed = 1.0\n").scene
     assert (scene.tangential_velocity, scene.spin) == (0.0, 0.0)

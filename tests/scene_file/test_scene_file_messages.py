@@ -8,7 +8,8 @@ from tests.scene_file.test_scene_file_refusals import GOOD, document, refusal
 
 ABSENT = "write friction_coefficient = ...: a number such as 0.2; `contactlab fit` finds it from "
 IMPACT = (
-    "friction_coefficient, speed, angle_deg, normal_speed, tangential_velocity, spin, psi1, chi"
+    "friction_coefficient, speed, angle_deg, normal_speed, tangential_velocity, spin, normal_spin, "
+    "psi1, chi"
 )
 BODY = "radius, mass, gyration_ratio, material"
 MATERIAL = "shear_modulus, young_modulus, poisson_ratio, density, yield_stress"
@@ -37,7 +38,8 @@ SPACE = "impact.velocity = [1.0, 0.0, -1.0]\nimpact.normal = [0.0, 0.0, 1.0]\n"
          f"sphere.material: is missing; add a table [sphere.material] with {MATERIAL}"),
         ([key for key in GOOD if key.startswith("impact")],
          "impact: is missing; add a table [impact] with friction_coefficient, speed, angle_deg, "
-         "normal_speed, tangential_velocity, spin, velocity, normal, target_velocity, target_spin"),
+         "normal_speed, tangential_velocity, spin, normal_spin, velocity, normal, target_velocity, "
+         "target_spin"),
         (["impact.speed"], "impact.speed: is missing; write speed = ...: give speed in m/s and "
          "angle_deg in degrees from the normal"),
         (["impact.speed", "impact.angle_deg"],
@@ -61,7 +63,8 @@ def test_what_is_missing(tmp_path, missing, words):
         ("sphere.raduis", "1",
          f"sphere.raduis: is not a known key; did you mean 'radius'? known: {BODY}"),
         ("impact.xyz", "1", "impact.xyz: is not a known key; known: friction_coefficient, speed, "
-         "angle_deg, normal_speed, tangential_velocity, spin, velocity, normal, target_velocity, "
+         "angle_deg, normal_speed, tangential_velocity, spin, normal_spin, velocity, normal, "
+         "target_velocity, "
          "target_spin"),
         ("impact.density", "1", None),
         ("about.title", "3", "about.title = 3: must be text; put it in quotes"),
