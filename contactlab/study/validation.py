@@ -73,6 +73,13 @@ ELLIPSES = (
 )  # fmt: skip
 #: Springs and steps against these values, and the bound.
 LOSS_SPRINGS, LOSS_STEPS, LOSS_BOUND = 50, 200, 1.2e-3
+#: Pure torsion: spin and inertia ratio in its own unit, 1 - nu/2 times w and chi_w, and the spin
+#: after the impact, to 1e-9 by springs and by integrals (theory §17).
+TORSION = (
+    (0.2, 0.05, 0.145379967), (0.5, 0.05, 0.408654101), (1.0, 0.1, 0.792230865),
+    (2.0, 0.05, 1.894555291), (0.5, 0.3, -0.02858620),
+)  # fmt: skip
+TORSION_BOUND, TORSION_POISSON = 1e-3, 0.3
 #: Relative bounds of force, and of approach or duration, as read off figures. Two readers of one
 #: approach differ by 0.0054; the end of contact is read off a curve that meets its axis at a
 #: small angle.
@@ -135,6 +142,8 @@ def _checks() -> Iterator[Callable[[], Finding]]:
         yield _loss
     if {"tangential.springs", "integrator.symplectic"} <= set(installed):
         yield _aside
+    if "tangential.halfspace" in installed:
+        yield _torsion
     for name, (scene, published) in hertz_scalars().items():
         for entries, bound in (
             (("force",), FORCE_READING),
@@ -283,6 +292,17 @@ def _aside() -> Finding:
     off = Simulation(tangential=law, integrator=march).run(scene).check().psi2 - ASIDE_PSI2
     what = f"springs, an ellipse aside, springs={LOSS_SPRINGS}, steps={LOSS_STEPS}"
     return _finding(what, "psi2 by two programs", off, ASIDE_BOUND)
+
+
+def _torsion() -> Finding:
+    before, inertia, after = np.transpose(TORSION)
+    unit = 1.0 - 0.5 * TORSION_POISSON
+    entries = {"poisson_ratio": TORSION_POISSON, "spin": before / unit}
+    scene = Scene.nondimensional(psi1=0.0, chi=1.0, spin_inertia=inertia / unit, **entries)
+    w2 = uninterrupted(Simulation(tangential="halfspace").sweep(scene)).w2
+    return _finding(
+        "halfspace: pure spin", "5 values of exact torsion", unit * w2 - after, TORSION_BOUND
+    )
 
 
 def _codes(number: int, form: str) -> Finding:
