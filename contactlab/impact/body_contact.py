@@ -167,25 +167,21 @@ def spin_about(encounter: Any, normal: tuple[Any, Any, Any]) -> Any:
     return np.broadcast_to(omega, encounter.shape) if encounter.shape else omega
 
 
-def _spin_alone(encounter: Any, n: Array, ways: Any, radius: Any) -> tuple[Any, Any]:
-    """Return the spin about the normal that a couple alone moves, and R²/J of both bodies.
+def _spin_alone(encounter: Any, n: Array, round_: Any) -> Any:
+    """Return the spin about the normal that a couple alone moves; ``round_`` where it may.
 
-    The spin is 0 where a body is off centre, the normal is no principal axis of its inertia, or
-    slip turns.
+    It is 0 where a body is off centre, or the normal is no principal axis of its inertia.
     """
-    spin: Any = np.where(ways == inverse_mass.CENTRAL, spin_about(encounter, components(n)), 0.0)
-    if not np.any(spin):
-        return 0.0, 0.0
+    spin: Any = np.where(round_, spin_about(encounter, components(n)), 0.0)
     for body, arm in zip((encounter.body, encounter.target), arms(encounter, n), strict=True):
-        if isinstance(body, RigidBody):
+        if isinstance(body, RigidBody) and np.any(spin):
             for vector in (arm, turned(body, n)):
                 size = np.sqrt(np.einsum("...i,...i->...", vector, vector))
                 aside = np.abs(cross(np.asarray(vector), n)).max(axis=-1)
                 spin = np.where(aside <= inverse_mass.ROUNDING * size, spin, 0.0)
     if not np.any(spin):
-        return 0.0, 0.0
-    inverse = turning_compliance(encounter, n, radius)
-    return (spin, inverse) if encounter.shape else (float(spin), float(inverse))
+        return 0.0
+    return spin if encounter.shape else float(spin)
 
 
 def turning_compliance(encounter: Any, normal: Array, radius: Any) -> Any:
@@ -347,9 +343,10 @@ def scene_of_bodies(encounter: Any) -> Scene:
         along, entries = number(np.hypot(slip[..., 0], slip[..., 1])), {}
     friction = encounter.friction_coefficient
     where: dict[str, Any] = {"encounter": encounter, "frame": axes}
-    alone = _spin_alone(encounter, axes[..., 0, :], ways, pair.radius)
-    where["normal_spin"], inverse = alone
-    if np.any(inverse):
+    n, round_ = axes[..., 0, :], (ways == inverse_mass.CENTRAL) & np.logical_not(gap.elliptic)
+    where["normal_spin"] = spin = _spin_alone(encounter, n, round_)
+    if np.any(spin):
+        inverse = number(turning_compliance(encounter, n, pair.radius))
         pair = attrs.evolve(pair, inverse_spin_mass=inverse)
     return Scene(None, None, friction, number(speed), along, pair=pair, **where, **entries)
 

@@ -79,9 +79,9 @@ def entries(
         if not np.all(turning):
             remedy = "chi_w = (kappa/2) M_n a²/J; 5/7 chi (a/R)² for a solid sphere"
             raise refuse("spin_inertia", spin_inertia, "must be positive with spin", remedy)
-        if in_space or np.any(drag):
-            rule = "stands without lam and without vectors: no law answers spin off centre"
-            raise refuse("spin", spin, rule, "leave out spin, or lam")
+        if in_space or np.any(drag) or np.any(np.not_equal(cross, 1.0)):
+            rule = "needs a circular contact of bodies whose centres are on the normal"
+            raise refuse("spin", spin, rule, "leave out lam, vectors and cross_stiffness_ratio")
         scene["normal_spin"] = rim * mu / kappa
         pair["inverse_spin_mass"] = 2.0 * turning / kappa
     scene |= {"unit_friction": friction is None and (squared is None or given is None)}

@@ -39,8 +39,7 @@ def spun(psi1: float, w1: float) -> Scene:
 def run(way: Way, psi1: float, w1: float) -> ImpactResult:
     """Return the result of an impact under a law, of its whole-impact answers if it has any."""
     limits.begin(f"an impact, psi1 = {psi1}, w = {w1} ({way})")
-    parts = {"normal": way.normal, "tangential": way.law, "integrator": way.integrator}
-    simulation = Simulation(**{kind: law for kind, law in parts.items() if law is not None})
+    simulation = Simulation(normal=way.normal, tangential=way.law, integrator=way.integrator)
     result = simulation.run(spun(psi1, w1))
     hold_success(result.motion, f"psi1 = {psi1}, w = {w1}: {{}} ({way})")
     return result

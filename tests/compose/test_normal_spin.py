@@ -423,6 +423,20 @@ def test_a_normal_that_is_no_principal_axis_keeps_the_caution(tilted):
     assert (made.result.scene.normal_spin == 0.0) is tilted
 
 
+def test_an_elliptic_contact_keeps_the_caution():
+    ball = met(1.0, 0.5)
+    body = RigidBody(
+        mass=1.0, inertia=0.4 * np.eye(3), material=ball.body.material, curvature_radius=1.0,
+        cross_radius=1.5, curvature_axis=(1.0, 0.0, 0.0),
+    )  # fmt: skip
+    scene = Encounter(
+        body, ball.target, MU, normal=ball.normal, velocity=ball.velocity, spin=ball.spin,
+        contact=(0.0, 0.0, -1.0),
+    ).scene  # fmt: skip
+    assert scene.normal_spin == 0.0
+    assert "its friction, left out, shifts psi2" in " ".join(Simulation().run(scene).cautions)
+
+
 def test_a_scene_without_vectors_is_cautioned_too():
     """By every law without the word, whatever made the scene."""
     scenes = (
@@ -450,7 +464,7 @@ def turning(**changes):
 REFUSED = [
     (of_groups, {}, "spin_inertia = 0.0: must be positive with spin"),
     (of_groups, {"spin_inertia": -1.0}, "spin_inertia = -1.0: must"),
-    (of_groups, {"spin_inertia": 0.1, "lam": 0.1, "eta": 0.1}, "spin = 0.5: stands without lam"),
+    (of_groups, {"spin_inertia": 0.1, "lam": 0.1, "eta": 0.1}, "spin = 0.5: needs a circular"),
     (of_groups, {"spin": math.nan}, "spin = nan: must"),
     (turning, {"normal_spin": math.inf}, "normal_spin = inf: must be a finite real number; give"),
     (turning, {"normal_spin": 1e200}, "normal_spin = 1e+200: the kinetic energy of the spin"),
