@@ -35,7 +35,7 @@ PARTS = {
     ),
     "theory": (
         "theory-impact", "theory-springs", "theory-methods", "theory-coupling",
-        "theory-normal-laws", "theory-more-laws", "theory-loss", "theory-elliptic",
+        "theory-normal-laws", "theory-more-laws", "theory-loss", "theory-elliptic", "theory-spin",
         "theory-references",
     ),
 }  # fmt: skip

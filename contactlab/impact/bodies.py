@@ -250,3 +250,13 @@ def inverse_turning_mass(sphere: Sphere, radius: Any) -> Any:
     """Return radius²/J of a sphere, in 1/kg; J of a tiny sphere would underflow."""
     share: Any = radius / (sphere.gyration_ratio * sphere.radius)
     return share * share / sphere.mass
+
+
+def size_ratio(
+    normal_mass: Real, effective_modulus: Real, radius: Real, normal_speed: Real
+) -> Real:
+    """Return C of eq. (9) for any pair, C⁵ = 15 M v1² / (16 E* R³); arguments M, E*, R, v1."""
+    # Factors are raised to their powers one by one: v1² and R³ might underflow or overflow.
+    stiffness = 15.0 * normal_mass / (16.0 * effective_modulus)
+    ratio: Real = stiffness**0.2 * normal_speed**0.4 / radius**0.6
+    return ratio

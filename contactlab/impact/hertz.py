@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from contactlab.impact.bodies import Pair
+from contactlab.impact.bodies import size_ratio as size_ratio  # a closed form too
+from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Mask, Real
-
-if TYPE_CHECKING:
-    from contactlab.impact.scene import Scene
 
 #: 2.9432751843: duration of an elastic Hertz impact times v1/(C²R), eq. (7) unrounded.
 DURATION_CONSTANT = 4.0 * math.gamma(0.4) * math.sqrt(math.pi) / (5.0 * math.gamma(0.9))
@@ -24,16 +23,6 @@ class HertzScales(NamedTuple):
     approach: Real
     force: Real
     duration: Real
-
-
-def size_ratio(
-    normal_mass: Real, effective_modulus: Real, radius: Real, normal_speed: Real
-) -> Real:
-    """Return C of eq. (9) for any pair, C⁵ = 15 M v1² / (16 E* R³); arguments M, E*, R, v1."""
-    # Factors are raised to their powers one by one: v1² and R³ might underflow or overflow.
-    stiffness = 15.0 * normal_mass / (16.0 * effective_modulus)
-    ratio: Real = stiffness**0.2 * normal_speed**0.4 / radius**0.6
-    return ratio
 
 
 def hertz_scales(scene: Scene) -> HertzScales:

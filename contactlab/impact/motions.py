@@ -10,9 +10,8 @@ import attrs
 import numpy as np
 
 from contactlab.impact import inverse_mass
-from contactlab.impact.bodies import Pair
+from contactlab.impact.bodies import Pair, size_ratio
 from contactlab.impact.grid import Array
-from contactlab.impact.hertz import size_ratio
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Real
 
