@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import re
 
 import numpy as np
 import pytest
@@ -111,6 +112,8 @@ def test_slip_and_spin_against_two_other_programs(rings, case):
     bound = 2e-3 if w1 <= 0.5 else 5e-3
     assert result.psi2 == pytest.approx(psi2, abs=bound)
     assert result.w2 == pytest.approx(w2, abs=5e-5)
+    (told,) = re.findall(r"numerical error of w2 (\S+)", str(result.plan))
+    assert abs(result.w2 - w2) <= float(told) + 2e-5
     assert abs(result.psi2 - psi2) <= result.plan.psi2_error + 1e-3
     assert abs(result.energy.relative_imbalance) < 3e-4
     assert result.energy.checked
@@ -215,23 +218,29 @@ def test_a_viscous_normal_motion_takes_spin_by_its_own_radius():
 
 
 def test_fields_carry_force_and_moment():
-    """Their sum over the half circle of negative x and its mirror image is the force."""
-    scene = spun(1.0, 0.5)
-    law = simulation(rings=32, extrapolate=False)
-    history = law.run(scene, history="fields").check().history
-    fields = history.fields
-    where = int(np.argmin(np.abs(history.time - 0.45 * history.time[-1])))
-    angle, radius = fields["angle"][where], fields["radius"][where]
-    assert (np.cos(angle) < 0.0).all()
-    along, across = fields["traction_x"][where], fields["traction_y"][where]
-    friction = float(scene.friction_coefficient)
-    assert (np.hypot(along, across) <= friction * fields["pressure"][where] * (1 + 1e-6)).all()
-    ring = np.gradient(radius) * radius
-    force = 2.0 * np.pi * (along.mean(axis=0) * ring).sum()
-    assert force == pytest.approx(history.tangential_force[where], rel=0.02)
-    circling = across * np.cos(angle)[:, None] - along * np.sin(angle)[:, None]
-    assert (circling.mean(axis=0) * ring * radius).sum() > 0.0  # opposes a positive spin
-    assert fields["stuck"][where].any()
+    """Their sum over the half circle and its mirror image is the force, for all signs."""
+    law, told = simulation(rings=32, extrapolate=False), {}
+    for psi1, w1 in ((1.0, 0.5), (1.0, -0.5), (-1.0, 0.5)):
+        scene = spun(psi1, w1)
+        history = law.run(scene, history="fields").check().history
+        fields = history.fields
+        where = int(np.argmin(np.abs(history.time - 0.45 * history.time[-1])))
+        angle, radius = fields["angle"][where], fields["radius"][where]
+        assert (np.cos(angle) < 0.0).all()
+        along, across = fields["traction_x"][where], fields["traction_y"][where]
+        friction = float(scene.friction_coefficient)
+        limit = friction * fields["pressure"][where] * (1.0 + 1e-6)
+        assert (np.hypot(along, across) <= limit).all()
+        ring = np.gradient(radius) * radius
+        force = 2.0 * np.pi * (along.mean(axis=0) * ring).sum()
+        assert force == pytest.approx(history.tangential_force[where], rel=0.02)
+        circling = across * np.cos(angle)[:, None] - along * np.sin(angle)[:, None]
+        moment = 2.0 * np.pi * (circling.mean(axis=0) * ring * radius).sum()
+        assert moment * w1 > 0.0  # opposes the spin
+        assert fields["stuck"][where].any()
+        told[psi1, w1] = force, moment
+    assert told[1.0, -0.5] == pytest.approx((told[1.0, 0.5][0], -told[1.0, 0.5][1]), rel=1e-12)
+    assert told[-1.0, 0.5] == pytest.approx((-told[1.0, 0.5][0], told[1.0, 0.5][1]), rel=1e-12)
 
 
 @pytest.mark.parametrize(

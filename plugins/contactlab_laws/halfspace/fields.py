@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from contactlab.contracts import NormalMotion
 from contactlab_laws.halfspace.basis import basis
-from contactlab_laws.halfspace.groups import Options, groups
+from contactlab_laws.halfspace.groups import Options, groups, signs
 from contactlab_laws.halfspace.hemispheres import Array
 from contactlab_laws.halfspace.instants import units
 from contactlab_laws.halfspace.modes import SPARE
@@ -102,7 +102,9 @@ class Fields:
         spare = SPARE if motion.departures is not None else 0.0
         radii = basis(rings, 1 if group.plain else angles + 2, spare).edges[:-1]
         values = np.zeros((5, len(motion.impulse), angles, len(radii)))
-        theta = _angles(angles) + (0.5 * np.pi if group.spins else 0.0)
+        theta = _angles(angles)
+        if group.spins:
+            theta = (theta + 0.5 * np.pi) * signs(*group.matter.psi1, *group.matter.rim)[1]
         cosine, sine = np.cos(theta)[:, None], np.sin(theta)[:, None]
         for k, (traction, slip, pressure) in enumerate(motion.fields, start=1):
             values[4, k] = pressure
@@ -112,10 +114,6 @@ class Fields:
                 else:
                     values[first, k] = vector[0] * cosine - vector[1] * sine
                     values[first + 1, k] = vector[0] * sine + vector[1] * cosine
-        if group.spins:  # a negative spin is the mirror image along the slip
-            hand = float(np.sign(group.matter.rim[0]))
-            values[[1, 3]] *= hand
-            theta = hand * theta
         return motion.impulse[:, 0], radii, values, theta
 
 

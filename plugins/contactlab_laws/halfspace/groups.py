@@ -21,8 +21,8 @@ from contactlab_laws.halfspace.pressure import Answering, Prescribed
 #: Steps from one ring to the next of vectors, and of pressure that answers to traction. With more
 #: the error of the rings is larger than that of the steps.
 VECTORS, ANSWERING = 1, 2
-#: Least steps of an impact over sqrt(chi), over half the rings too: with fewer the swing of the
-#: stuck contact is not followed, and the error does not fall as 1/rings².
+#: Least steps of an impact over the root of chi, or of chi_w, over half the rings too: with fewer
+#: the swing of the stuck contact is not followed, and the error does not fall as 1/rings².
 SWING = 22.0
 #: Effective Poisson's ratio below which tractions along one direction stay so.
 ROUNDING = 1e-12
@@ -125,8 +125,6 @@ class Group(NamedTuple):
     def followed(self, rings: int, angles: int, *, fields: bool = False) -> Followed:
         """Return these impacts over ``rings`` rings: together, or as vectors one after the other.
 
-        All spins about the normal are followed as positive; others are mirror images.
-
         Parameters
         ----------
         rings, angles : int
@@ -144,9 +142,28 @@ class Group(NamedTuple):
             table = modes(rings, angles, poisson, drag, lift if both else None, self.spins)
             kind = Answering if both else Prescribed
             pressure = kind(table, path.take([item]), stiffness)
-            spin = (abs(rim), turning) if self.spins else ()
-            each.append(follow(pressure, psi1, chi, *spin, fields=fields))
+            if self.spins:
+                motion = follow(pressure, abs(psi1), chi, abs(rim), turning, fields=fields)
+                each.append(_mirrored(motion, *signs(psi1, rim)))
+            else:
+                each.append(follow(pressure, psi1, chi, fields=fields))
         return joined(each)
+
+
+def signs(psi1: float, rim: float) -> tuple[float, float]:
+    """Return the sign of the slip, and that of the spin seen along it."""
+    slip = -1.0 if psi1 < 0.0 else 1.0
+    return slip, slip * math.copysign(1.0, rim)
+
+
+def _mirrored(motion: Followed, slip: float, hand: float) -> Followed:
+    """Return an impact followed with positive slip and spin, with those of ``signs``."""
+    # Friction is odd, and a mirror along the slip turns the spin: answers are odd to the last bit.
+    parts = np.array((slip, slip * hand))[:, None, None]
+    spin = None if motion.spin is None else slip * hand * motion.spin
+    fields = [(traction * parts, slips * parts, p) for traction, slips, p in motion.fields]
+    share = slip * motion.share
+    return motion._replace(change=slip * motion.change, share=share, spin=spin, fields=fields)
 
 
 def groups(options: Options, normal: NormalMotion) -> Iterator[Group]:
@@ -158,7 +175,8 @@ def groups(options: Options, normal: NormalMotion) -> Iterator[Group]:
     answering = drags & (options.coupling == "two_way")
     least = np.where(plain, STEPS, np.where(answering, ANSWERING, VECTORS))
     fewest = options.rings // 2 if options.extrapolate else options.rings
-    parts = [_parts(*each, fewest) for each in zip(matter.chi, least, strict=True)]
+    swings = np.maximum(matter.chi, np.where(spins, matter.turning, 0.0))
+    parts = [_parts(*each, fewest) for each in zip(swings, least, strict=True)]
     kinds = np.stack((plain, drags, parts, spins))
     for key in np.unique(kinds, axis=1).T:
         items = np.flatnonzero((kinds == key[:, None]).all(axis=0))

@@ -19,8 +19,8 @@ from contactlab_laws.halfspace.march import Followed
 
 #: Residual above which a step counts as unsolved.
 LARGEST_RESIDUAL = 1e-6
-#: Slip velocity, in psi over max(1, Lam, 4 chi), from which the answer is gross slip: all that it
-#: leaves out is smaller by this squared.
+#: Slip velocity, in psi over max(1, Lam, 4 chi, w), from which the answer is gross slip: all that
+#: it leaves out of psi2 is smaller by this squared, and the loss of spin by this.
 GRAZING = 1e6
 #: Least declared error times rings² over chi and 3 psi1 (up to 1), for numbers of rings whose
 #: answers agree by chance: this times chi², from ``LEAST`` to 1. Beyond chi = 2.5 slip comes and
@@ -44,9 +44,10 @@ def own_answers(
     for each in known:
         left = left & ~np.broadcast_to(each.where, shape)
     with np.errstate(all="ignore"):
-        grazing = left & (np.abs(scene.psi1) >= GRAZING * np.maximum(1.0, 4.0 * scene.chi))
+        far = np.maximum(1.0, 4.0 * scene.chi)
         if options.spins and scene.turns:
-            grazing &= scene.normal_spin == 0.0
+            far = np.maximum(far, np.abs(scene.w1))
+        grazing = left & (np.abs(scene.psi1) >= GRAZING * far)
     answers = []
     if grazing.any():
         reason = "the impact slips throughout: it grazes"
@@ -61,7 +62,7 @@ def own_answers(
 class _Solved(NamedTuple):
     """One impact in dimensionless units; change, work and share may be extrapolated."""
 
-    # change of slip velocity, friction work, error of psi2, residual, change of spin
+    # change of slip velocity, friction work, error of psi2, residual, change of w, its error
     numbers: list[float]
     impulse: Array
     share: Array
@@ -77,6 +78,7 @@ def _solved(options: Options, normal: NormalMotion) -> list[_Solved]:
         change, work, share = fine.change[-1], fine.work, fine.share
         residual, error = fine.residual, np.full(work.shape, math.nan)
         spin = 0.0 * work if fine.spin is None else fine.spin
+        spin_error = 0.0 * work
         if options.extrapolate:
             coarse = group.followed(rings // 2, angles)
             off = change - coarse.change[-1]
@@ -93,14 +95,14 @@ def _solved(options: Options, normal: NormalMotion) -> list[_Solved]:
                 if coarse.spin is not None:
                     little = np.abs(matter.rim) <= LITTLE_SPIN
                     error += np.where(little, *ANGLES_OF_SPIN) * slow
+                    spin_error = np.abs(spin - coarse.spin)
                     spin = spin + (spin - coarse.spin) * further
                 passed = np.diff(fine.impulse, axis=0) * (share[1:] + share[:-1])
                 change = -matter.chi * passed.sum(axis=0)
         if group.spins:  # by symmetry there is no force without slip
-            change, spin = np.where(matter.psi1 == 0.0, 0.0, change), spin * np.sign(matter.rim)
-        numbers: Any = np.stack(
-            (change, np.maximum(work, 0.0), error, residual, spin), axis=1
-        ).tolist()
+            change = np.where(matter.psi1 == 0.0, 0.0, change)
+        columns = change, np.maximum(work, 0.0), error, residual, spin, spin_error
+        numbers: Any = np.stack(columns, axis=1).tolist()
         phase = None if fine.departures is None else group.path(rings).phase[:, 0]
         for place, item in enumerate(group.items.tolist()):
             changed = None
@@ -131,7 +133,7 @@ def _whole_impact(options: Options, every: NormalMotion, left: Any) -> WholeImpa
     changed = {n: each.changed for n, each in zip(numbers, solved, strict=True) if each.changed}
     if changed:
         own, own_impulses = changed_motion(every, changed)
-    change, work, error, residual, spin = np.array([each.numbers for each in solved]).T
+    change, work, error, residual, spin, off = np.array([each.numbers for each in solved]).T
     unit: Any = 1.0 / np.atleast_1d(scene.psi_scale)
     mass: Any = np.atleast_1d(scene.pair.tangential_mass)
     # Under huge friction unit² may exceed what a float holds, and the work is as small.
@@ -173,11 +175,14 @@ def _whole_impact(options: Options, every: NormalMotion, left: Any) -> WholeImpa
         status = np.full(shape, Status.SUCCESS, dtype=object)
         status[left] = [Status.UNSETTLED if each else Status.SUCCESS for each in bad.tolist()]
     most = "at most " if shape else ""
+    reason = f"followed by the law over {options.rings} rings, residual {most}{worst:.1e}"
+    if off.any():
+        reason += f", numerical error of w2 {most}{off.max():.1e}"
     return WholeImpact(
         where=left if shape else True,
         slip_velocity_change=spread(change),
         friction_work=spread(work),
-        reason=f"followed by the law over {options.rings} rings, residual {most}{worst:.1e}",
+        reason=reason,
         course=course,
         fields=Fields(options, every, left).at,
         psi2_error=spread(error),
