@@ -39,7 +39,7 @@ class Motions:
 
         slip_velocity: Any
         psi1: Any
-        psi_scale: Any
+        psi: Any
         take: Any
 
     @property
@@ -61,20 +61,16 @@ class Motions:
         return spin != 0.0 if isinstance(spin, float) else bool(spin.any())
 
     def rim(self, spin: Any) -> Any:
-        """Return w of spins about the normal, kappa omega_n a/(mu v1), theory §17, without unit.
+        """Return w = kappa omega_n a/(mu v1) of spins about the normal, theory §17, without unit.
 
         It is the speed of the rim of the largest elastic Hertz contact in the unit of psi.
 
         Parameters
         ----------
         spin : float or array
-            In rad/s, of the batch shape.
+            omega_n in rad/s, of the batch shape.
         """
-        with np.errstate(invalid="ignore", over="ignore"):
-            w = np.where(
-                np.asarray(spin) == 0.0, 0.0, spin * (self._radius() * np.asarray(self.psi_scale))
-            )
-        return w if w.ndim else float(w)
+        return self.central.psi(spin * self._size() * self.pair.radius)
 
     @property
     def w1(self) -> Any:
@@ -84,16 +80,14 @@ class Motions:
     @property
     def chi_w(self) -> Any:
         """chi_w = (kappa/2) M_n a²/J, inertia ratio of spin about the normal; 0 without spin."""
-        pair = self.pair
-        size: Any = self._radius() / pair.radius
+        pair, size = self.pair, self._size()
         inertia = pair.normal_mass * pair.inverse_spin_mass
         return 0.5 * pair.stiffness_ratio * inertia * size * size
 
-    def _radius(self) -> Any:
-        """Return the largest contact radius of an elastic Hertz impact, in m."""
+    def _size(self) -> Any:
+        """Return C of eq. (9), the largest contact radius of an elastic Hertz impact over R."""
         pair = self.pair
-        numbers = pair.normal_mass, pair.effective_modulus, pair.radius, self.normal_speed
-        return size_ratio(*numbers) * pair.radius
+        return size_ratio(pair.normal_mass, pair.effective_modulus, pair.radius, self.normal_speed)
 
     def spin_energies(self, change: Any) -> tuple[Any, Any]:
         """Return the energy ½ J omega_n² at the start, and what it loses, in J.
@@ -306,26 +300,14 @@ class Motions:
             self.inverse_mass, self._vectors(rate - self.normal_speed, change)
         )
 
-    def energies(self, rate: Any, change: Any, spin_change: Any = 0.0) -> tuple[Any, Any, Any]:
+    def energies(self, rate: Any, change: Any) -> tuple[Any, Any, Any]:
         """Return the energy at the start, and what approach and slip lose of it, in J.
-
-        The spin about the normal counts with the slip.
 
         Parameters
         ----------
         rate, change : float or array
             Rate of approach after, and change of the slip velocity, in m/s.
-        spin_change : float or array
-            Change of the spin about the normal, in rad/s.
         """
-        start, lost, slip = self._energies(rate, change)
-        if self.turns:
-            of_spin, taken = self.spin_energies(spin_change)
-            start, slip = start + of_spin, slip + taken
-        return start, lost, slip
-
-    def _energies(self, rate: Any, change: Any) -> tuple[Any, Any, Any]:
-        """Return the energies without spin about the normal."""
         speed: Any = self.normal_speed
         if self.inverse_mass is None:
             return self.pair.energies(speed, self.slip_velocity, rate, change)

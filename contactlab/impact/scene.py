@@ -250,18 +250,14 @@ class Scene(Motions):
 
     def _check_normal_spin(self) -> None:
         """Refuse spin about the normal without its inertia, or with an energy that overflows."""
-        spin: Any = np.asarray(self.normal_spin)
-        inverse = np.asarray(self.pair.inverse_spin_mass)
-        if np.any((spin != 0.0) & (inverse == 0.0)):
-            raise refuse(
-                "pair.inverse_spin_mass",
-                self.pair.inverse_spin_mass,
-                "must be positive where the bodies spin about the normal",
-                "give spheres, or R²/J in 1/kg with J about the normal",
-            )
+        inverse = self.pair.inverse_spin_mass
+        if np.any((np.asarray(self.normal_spin) != 0.0) & (np.asarray(inverse) == 0.0)):
+            rule = "must be positive where the bodies spin about the normal"
+            remedy = "give spheres, or R²/J in 1/kg with J about the normal"
+            raise refuse("pair.inverse_spin_mass", inverse, rule, remedy)
         with np.errstate(all="ignore"):
-            energy, _ = self.spin_energies(0.0)
-        if not np.all(np.isfinite(energy)):
+            finite = np.isfinite(self.spin_energies(0.0)[0])
+        if not np.all(finite):
             rule = "the kinetic energy of the spin about the normal must be finite"
             raise refuse("normal_spin", self.normal_spin, rule, "give it in rad/s")
 

@@ -81,11 +81,12 @@ class EnergyLedger:
 def ledger(scene: Scene, motion: Motion, checked: Mask = True) -> EnergyLedger:
     """Return the energy books of ``motion``, in J, from its velocities and its friction work."""
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
-        energies = scene.energies(
-            motion.normal_velocity, motion.slip_velocity_change, motion.normal_spin_change
-        )
+        start, lost, slip = scene.energies(motion.normal_velocity, motion.slip_velocity_change)
+        if scene.turns:
+            whole, taken = scene.spin_energies(motion.normal_spin_change)
+            start, slip = start + whole, slip + taken
         losses = motion.friction_work, motion.shear_loss
-        return books(energies, losses, motion.exchange, checked)
+        return books((start, lost, slip), losses, motion.exchange, checked)
 
 
 def books(
