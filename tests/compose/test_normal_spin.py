@@ -27,6 +27,7 @@ from contactlab.outcome.plan import NORMAL_SPIN
 from contactlab.outcome.tables import sections
 from contactlab.outcome.text_table import table
 from tests.longer import longer
+from tests.testing.broken_spin import Torsion
 
 SOLID = 49.0 / 34.0
 NU, MU = 0.3, 0.1
@@ -284,6 +285,13 @@ def test_the_table_is_read_when_a_plan_is():
     assert nodes.cache_info().currsize == 1
 
 
+class TakesHalf(Torsion):
+    """Friction takes half of the spin."""
+
+    def spin_change(self, scene):
+        return -0.5 * np.asarray(scene.normal_spin)
+
+
 HALF_SPACE = Simulation(tangential=create("tangential.halfspace", rings=32))
 
 
@@ -435,6 +443,18 @@ def test_an_elliptic_contact_keeps_the_caution():
     ).scene  # fmt: skip
     assert scene.normal_spin == 0.0
     assert "its friction, left out, shifts psi2" in " ".join(Simulation().run(scene).cautions)
+
+
+def test_a_law_of_ones_own_with_the_word_turns_both_bodies():
+    """Half of the spin, in a batch, beside impacts without it."""
+    law = Simulation(tangential=TakesHalf())
+    made = collide(unlike(spin=[(40.0, 0.0, 0.0), (-70.0, 0.0, 3.0)]), law).check()
+    assert made.spin[0, 0] - made.target_spin[0, 0] == pytest.approx(55.0, rel=1e-12)
+    assert made.spin[1, 0] == -70.0
+    (cautioned,) = {"about the normal" in str(one) for one in made.plan.cautions} or {False}
+    assert not cautioned
+    one = collide(unlike(), law).check()
+    assert one.energy.imbalance == pytest.approx(0.0, abs=1e-12 * one.energy.start)
 
 
 def test_a_scene_without_vectors_is_cautioned_too():

@@ -18,7 +18,7 @@ from contactlab.compose import normal_motion
 from contactlab.contracts import error_model
 from contactlab.impact import bodies, coupling, hertz, normal_spin
 from contactlab.outcome import energy, history, motion, plan, result
-from contactlab.study.validation import REFERENCE_PSI2
+from contactlab.study.validation import REFERENCE_PSI2, TORSION
 from contactlab.testing import Verdict, check_law
 from tests.present import PACKAGE, ROOT, extra
 
@@ -186,6 +186,15 @@ def test_tables_of_the_theory_are_those_of_the_code():
     reference = {round(row[0], 6): tuple(row[1:]) for row in rows("5")}
     for chi, psi2 in REFERENCE_PSI2.items():
         assert reference[round(chi, 6)] == psi2
+    assert set(TORSION) < {tuple(row) for row in rows("17")}
+    (angles, ratios, rims), psi2, _ = normal_spin.nodes()
+    places = np.searchsorted(rims, [0.1, 0.2, 0.5, 1.0, 2.0, 5.0])
+    moved = {row[0]: row[1:] for row in rows("17") if len(row) == 7}
+    for place, psi1 in enumerate(angles):
+        if psi1 in moved:
+            along = psi2[place, np.argmin(np.abs(ratios - 49 / 34))]
+            assert moved[psi1] == pytest.approx(along[places] - along[0], abs=6e-4)
+    assert len(moved) == 5
     angles = np.array([0.5, 1.0, 1.5, 2.0, 3.0])
     shifts = {row[0]: [abs(cell) for cell in row[1:]] for row in rows("9")}
     for strength in (0.25, 0.5, 1.0, 2.0):
