@@ -24,7 +24,7 @@ from contactlab.contracts.status import Status, succeeded
 from contactlab.contracts.tangential_motion import Observer, TangentialMotion
 from contactlab.impact.inverse_mass import along
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import consecutive, every, some
+from contactlab.numeric.arrays import are_zeros, consecutive, every, some, zeros
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.energy import balanced
 from contactlab.outcome.history import Recorder
@@ -290,7 +290,9 @@ def _march(laws: Laws, normal: NormalMotion, observer: Observer | None = None) -
 def _answered(normal: NormalMotion, known: list[Answer]) -> TangentialMotion:
     """Return the tangential motion of a batch by its whole-impact answers, NaN elsewhere."""
     shape = normal.scene.shape
-    change, work, spin_change = np.full((3, *shape), math.nan)
+    change, work = np.full((2, *shape), math.nan)
+    turns = not all(are_zeros(answer.normal_spin_change) for _, answer in known)
+    spin_change = np.full(shape, math.nan) if turns else zeros(shape)
     status, detail = (
         np.array(np.broadcast_to(np.asarray(entry, dtype=object), shape))
         for entry in (normal.status, normal.detail)
@@ -299,7 +301,8 @@ def _answered(normal: NormalMotion, known: list[Answer]) -> TangentialMotion:
     for where, answer in known:
         np.copyto(change, answer.slip_velocity_change, where=where)
         np.copyto(work, answer.friction_work, where=where)
-        np.copyto(spin_change, answer.normal_spin_change, where=where)
+        if turns:
+            np.copyto(spin_change, answer.normal_spin_change, where=where)
         if not isinstance(normal.detail, str):
             detail[where] = ""
         if answer.status is not Status.SUCCESS:

@@ -12,7 +12,7 @@ import attrs
 import numpy as np
 
 from contactlab.contracts.status import Status
-from contactlab.numeric.arrays import consecutive, filled, merged
+from contactlab.numeric.arrays import are_zeros, consecutive, filled, merged, zeros
 from contactlab.numeric.checks import Mask
 
 #: Entries of motions that are no numbers.
@@ -52,10 +52,10 @@ class BatchMotion:
 
     @classmethod
     @cache
-    def _vectors(cls) -> frozenset[str]:
-        """Return the names of the entries that may be vectors of the tangent plane."""
+    def _marked(cls, word: str) -> frozenset[str]:
+        """Return the names of the entries that have a word: ``vectors`` of the plane, ``rare``."""
         fields: Any = attrs.fields(cls)
-        return frozenset(field.name for field in fields if "vectors" in field.metadata)
+        return frozenset(field.name for field in fields if word in field.metadata)
 
     @classmethod
     def joined(cls, motions: Sequence[Self], shape: tuple[int, ...]) -> Self:
@@ -93,8 +93,11 @@ class BatchMotion:
         entries: dict[str, Any] = {}
         for name in (*cls.numbers(), "status", "detail"):
             columns = [(where, getattr(motion, name)) for where, motion in parts]
+            if name in cls._marked("rare") and all(are_zeros(value) for _, value in columns):
+                entries[name] = zeros(shape)
+                continue
             ends: tuple[int, ...] = ()
-            if name in cls._vectors():
+            if name in cls._marked("vectors"):
                 axes = [np.ndim(motion.status) for _, motion in parts]
                 columns, ends = _vectors_alike(columns, axes)
             kind = float if name in cls.numbers() else object
@@ -125,7 +128,7 @@ class BatchMotion:
         """
         entries: dict[str, Any] = {}
         for name in cls.numbers():
-            whole = (*shape, *axes) if name in cls._vectors() else shape
+            whole = (*shape, *axes) if name in cls._marked("vectors") else shape
             entries[name] = np.full(whole, math.nan) if whole else math.nan
         return cls(
             **entries,

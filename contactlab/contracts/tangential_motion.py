@@ -83,7 +83,7 @@ class TangentialMotion(BatchMotion):
     slip_velocity_change: Any = attrs.field(metadata={"vectors": True})
     friction_work: Real
     shear_loss: Real = 0.0
-    normal_spin_change: Real = 0.0
+    normal_spin_change: Real = attrs.field(default=0.0, metadata={"rare": True})
     normal: NormalMotion | Ends | None = None
 
     @classmethod

@@ -13,7 +13,7 @@ from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential_motion import TangentialMotion
-from contactlab.numeric.arrays import locked, spread
+from contactlab.numeric.arrays import are_zeros, locked, spread, zeros
 from contactlab.numeric.checks import Real
 
 #: Entries of ``Motion`` by the name of their source in a normal motion.
@@ -91,9 +91,9 @@ class Motion(TangentialMotion):
             entries |= _coupled(normal, tangential, entries)
         entries["friction_work"] = tangential.friction_work
         entries["shear_loss"] = tangential.shear_loss
-        entries["normal_spin_change"] = tangential.normal_spin_change
-        change = tangential.slip_velocity_change
+        change, turned = tangential.slip_velocity_change, tangential.normal_spin_change
         return cls(
+            normal_spin_change=zeros(shape) if are_zeros(turned) else locked(spread(turned, shape)),
             **{name: locked(spread(value, shape)) for name, value in entries.items()},
             slip_velocity_change=locked(spread(change, (*shape, *axes))),
             status=locked(tangential.status),

@@ -1226,10 +1226,7 @@ STACKED = [
         [attrs.evolve(WITH_BODIES, sphere=YIELDING), WITH_BODIES], "yield",
         marks=lost("the same, of spheres: the yield stress of one is dropped"),
     ),
-    pytest.param(
-        [AGAINST_A_BALL["spheres"].scene, SPHERES.scene], "spin about the normal",
-        marks=lost("an encounter has bodies of one kind: a batch of several has none"),
-    ),
+    ([AGAINST_A_BALL["spheres"].scene, SPHERES.scene], "spin about the normal"),
 ]  # fmt: skip
 
 
