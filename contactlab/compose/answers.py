@@ -163,8 +163,10 @@ def _checked(known: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) -> 
     LawFaultError
         If it is not.
     """
-    entries = [known.slip_velocity_change, known.friction_work]
-    for entry in entries + [known.normal_spin_change] * law.normal_spin:
+    entries: tuple[Any, ...] = known.slip_velocity_change, known.friction_work
+    if law.normal_spin:
+        entries = (*entries, known.normal_spin_change)
+    for entry in entries:
         if faults.malformed(entry, shape):
             sentence = faults.sentence(law, f"the answer {shown(entry)} to a whole impact", 1)
             raise faults.LawFaultError(Status.MALFORMED, sentence)
