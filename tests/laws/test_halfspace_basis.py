@@ -65,6 +65,27 @@ def test_cosine_of_twice_the_angle():
     assert uniform == pytest.approx(1.0 - 0.5 * table.points**2, abs=1e-10)
 
 
+def test_both_mirror_classes_have_the_displacements_of_a_hemisphere():
+    """Along x, at the angles of spin about the normal, which are a right angle further."""
+    table = modes(24, 8, 0.3, 0.0, None, True)
+    angle = (np.arange(8)[:, None] + 0.5) * np.pi / 8 + 0.5 * np.pi
+    radial, around = table.displaced(table.along * np.sqrt(1.0 - table.points**2))
+    ux = radial * np.cos(angle) - around * np.sin(angle)
+    uy = radial * np.sin(angle) + around * np.cos(angle)
+    second = 0.3 / 1.7 * 0.25 * table.points**2
+    assert ux == pytest.approx(1.0 - 0.5 * table.points**2 + second * np.cos(2 * angle), abs=1e-10)
+    assert uy == pytest.approx(second * np.sin(2 * angle), abs=1e-10)
+
+
+def test_the_moment_of_torsion_is_its_integral():
+    """3 times the integral of q r²: of a pressure all of which rubs in circles 3 pi/16."""
+    table = modes(96, 4, 0.3, 0.0, None, True)
+    rubbing = np.zeros((2, 4, table.count))
+    rubbing[1] = np.sqrt(1.0 - table.points**2)
+    assert table.moment(table.points * rubbing) == pytest.approx(0.4, rel=1e-12)
+    assert table.moment(rubbing) == pytest.approx(3.0 * np.pi / 16.0, rel=1e-3)
+
+
 def test_traction_does_as_much_work_on_pressure_as_pressure_on_traction():
     """Betti's theorem: -Lam and mu beta couple reciprocally, at every mode; exact integrals."""
     table = modes(40, 4, 0.3, 1.0, 1.0)

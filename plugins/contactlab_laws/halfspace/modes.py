@@ -51,7 +51,7 @@ class Modes:
         poisson: float,
         drag: float,
         lift: float | None,
-        spins: bool,
+        spins: bool = False,
     ) -> None:
         self.spins = spins
         #: The part that goes with the cosine, and so has a mode 0.
