@@ -89,6 +89,13 @@ class Motions:
         pair = self.pair
         return size_ratio(pair.normal_mass, pair.effective_modulus, pair.radius, self.normal_speed)
 
+    @property
+    def normal_inertia(self) -> Any:
+        """J about the normal in kg m², 1/J the sum of both bodies'; 0 without spin about it."""
+        inverse, size = np.asarray(self.pair.inverse_spin_mass), np.asarray(self.pair.radius)
+        with np.errstate(divide="ignore"):
+            return np.where(inverse > 0.0, size * size / inverse, 0.0)[()]
+
     def spin_energies(self, change: Any) -> tuple[Any, Any]:
         """Return the energy ½ J omega_n² at the start, and what it loses, in J.
 
@@ -97,12 +104,8 @@ class Motions:
         change : float or array
             Change of the spin about the normal, in rad/s.
         """
-        inverse, size = np.asarray(self.pair.inverse_spin_mass), np.asarray(self.pair.radius)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            mass = np.where(inverse > 0.0, 1.0 / inverse, 0.0)
-        spin, change = self.normal_spin * size, change * size
-        start, lost = 0.5 * mass * spin * spin, -mass * change * (spin + 0.5 * change)
-        return (start, lost) if self.shape else (float(start), float(lost))
+        spin, momentum = self.normal_spin, self.normal_inertia * self.normal_spin
+        return 0.5 * momentum * spin, -self.normal_inertia * change * (spin + 0.5 * change)
 
     def size_of(self, slip: Any) -> Any:
         """Return the magnitude of slip velocities, of the batch shape.

@@ -115,14 +115,13 @@ def balanced(motion: Motion, scene: Scene, bound: Real, *, together: bool = Fals
 
     The imbalance over the energy at the start exceeds ``bound``, or 1 if that is infinite, or the
     bodies separate or slip faster than at first touch. If friction changed the normal motion, as in
-    motions of both ``together``, one of the two may gain what the other loses, and the sum of both
-    energies is judged; so of slip and of spin about the normal.
+    motions of both ``together``, or the spin about the normal, one of the two may gain what the
+    other loses, and the sum of both energies is judged.
     """
-    alone = (motion.exchange == 0.0) & (not together)
-    slips_alone = alone & (motion.normal_spin_change == 0.0)
-    if not scene.shape and slips_alone and _balances(motion, scene, bound):
+    alone = (motion.exchange == 0.0) & (motion.normal_spin_change == 0.0) & (not together)
+    if not scene.shape and alone and _balances(motion, scene, bound):
         return motion
-    return _with_unbalanced(motion, scene, bound, alone, slips_alone)
+    return _with_unbalanced(motion, scene, bound, alone)
 
 
 def _balances(motion: Motion, scene: Scene, bound: Any) -> bool:
@@ -143,15 +142,12 @@ def _balances(motion: Motion, scene: Scene, bound: Any) -> bool:
 
 
 @np.errstate(all="ignore")
-def _with_unbalanced(
-    motion: Motion, scene: Scene, bound: Any, alone: Any, slips_alone: Any
-) -> Motion:
+def _with_unbalanced(motion: Motion, scene: Scene, bound: Any, alone: Any) -> Motion:
     """Return ``motion`` with the status of each impact whose books do not balance.
 
-    ``alone`` marks impacts whose approach friction did not change, ``slips_alone`` those whose
-    spin about the normal it did not change either.
+    ``alone`` marks impacts whose slip alone friction changed.
     """
-    coupled = np.logical_not(slips_alone)
+    coupled = np.logical_not(alone)
     books = ledger(scene, motion)
     speed: Any = abs(motion.normal_velocity)
     before: Any = scene.slip_speed
@@ -164,7 +160,7 @@ def _with_unbalanced(
         (imbalance > bound * books.start,
          "Off by {:.2g} of the energy at the start; declared: {:.2g}.",
          lambda: (imbalance / books.start, bound)),
-        (slips_alone & (after > LARGEST_SLIP * before),
+        (alone & (after > LARGEST_SLIP * before),
          "The contact slips {:.4g} times as fast as it met.",
          lambda: (np.divide(after, before),)),
         (coupled & (books.end > LARGEST_RESTITUTION**2 * books.start),

@@ -137,13 +137,7 @@ class ImpactResult(Answer):
     @property
     def couple(self) -> Any:
         """Angular impulse on the target about the normal, of the batch shape, in N m s."""
-        scene, change = self.scene, np.asarray(self.motion.normal_spin_change)
-        if not scene.turns:
-            return 0.0 * change
-        inverse = np.asarray(scene.pair.inverse_spin_mass)
-        with np.errstate(all="ignore"):
-            couple = np.where(inverse > 0.0, -change * scene.pair.radius**2 / inverse, 0.0)
-        return couple if scene.shape else float(couple)
+        return -self.scene.normal_inertia * self.motion.normal_spin_change
 
     @property
     def normal_velocity(self) -> Real:

@@ -139,7 +139,7 @@ def test_spence(strength, lift):
     table = modes(rings, 4, 0.3, kappa * strength, None if lift is None else lift * strength)
     path = instants(MOTION, rings, 1)
     pressure = (Prescribed if lift is None else Answering)(table, path, 1.25)
-    traction, _, pressed = follow(pressure, 0.0, 1.0, fields=True).fields[rings - 1]
+    traction, _, pressed = follow(pressure, 0.0, 1.0, 0.0, 0.0, fields=True).fields[rings - 1]
     pressed = np.atleast_2d(pressed)[0]
     stuck = (np.hypot(*traction[:2, 0]) < (1.0 - 1e-6) * pressed) & (pressed > 0.0)
     edge = int(np.flatnonzero(stuck)[-1]) + 1

@@ -76,6 +76,7 @@ class Matter(NamedTuple):
         kappa: Any = pair.stiffness_ratio
         unit = units(normal)
         momentum = np.atleast_1d(pair.normal_mass * scene.normal_speed)
+        inertia: Any = 0.5 * kappa * pair.normal_mass * pair.inverse_spin_mass
         columns = (
             scene.psi1,
             scene.chi,
@@ -84,11 +85,7 @@ class Matter(NamedTuple):
             np.abs(scene.friction_coefficient * pair.dundurs_beta),
             unit.force * unit.time / momentum,
             scene.normal_spin * unit.length * scene.psi_scale if scene.turns else 0.0,
-            0.5
-            * kappa
-            * pair.normal_mass
-            * pair.inverse_spin_mass
-            * (unit.length / pair.radius) ** 2,
+            inertia * (unit.length / pair.radius) ** 2,
         )
         return cls(*(np.broadcast_to(np.asarray(each, float), (count,)) for each in columns))
 
@@ -142,11 +139,9 @@ class Group(NamedTuple):
             table = modes(rings, angles, poisson, drag, lift if both else None, self.spins)
             kind = Answering if both else Prescribed
             pressure = kind(table, path.take([item]), stiffness)
-            if self.spins:
-                motion = follow(pressure, abs(psi1), chi, abs(rim), turning, fields=fields)
-                each.append(_mirrored(motion, *signs(psi1, rim)))
-            else:
-                each.append(follow(pressure, psi1, chi, fields=fields))
+            slip, hand = signs(psi1, rim) if self.spins else (1.0, 1.0)
+            motion = follow(pressure, slip * psi1, chi, abs(rim), turning, fields=fields)
+            each.append(_mirrored(motion, slip, hand) if self.spins else motion)
         return joined(each)
 
 

@@ -59,13 +59,7 @@ def joined(parts: Sequence[Followed]) -> Followed:
 
 
 def follow(
-    pressure: Prescribed,
-    psi1: float,
-    chi: float,
-    w1: float = 0.0,
-    chi_w: float = 0.0,
-    *,
-    fields: bool = False,
+    pressure: Prescribed, psi1: float, chi: float, w1: float, chi_w: float, *, fields: bool = False
 ) -> Followed:
     """Return one impact with slip velocity ``psi1`` at first touch.
 

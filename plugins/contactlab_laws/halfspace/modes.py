@@ -54,8 +54,6 @@ class Modes:
         spins: bool = False,
     ) -> None:
         self.spins = spins
-        #: The part that goes with the cosine, and so has a mode 0.
-        self.even = int(spins)
         self.parts = 2 if lift is None else 3
         self.angles = angles
         self.basis = basis(rings, angles + 2, 0.0 if lift is None else SPARE)
@@ -111,7 +109,8 @@ class Modes:
     def work(self, traction: Array, slip: Array) -> float:
         """Return the integral of traction times slip over the contact, over 2 pi."""
         ours, moved = self.to[:2] @ traction, self.to[:2] @ slip
-        total = moved[self.even, 0] @ self.basis.work[1] @ ours[self.even, 0]
+        even = int(self.spins)
+        total = moved[even, 0] @ self.basis.work[1] @ ours[even, 0]
         outer, outer_slip = 0.5 * (ours[0] + ours[1]), 0.5 * (moved[0] + moved[1])
         inner, inner_slip = 0.5 * (ours[0] - ours[1]), 0.5 * (moved[0] - moved[1])
         for m in range(1, self.angles + 1):
