@@ -394,6 +394,25 @@ def test_bodies_exchanged_and_the_frame_turned_change_nothing():
         assert getattr(turned, name) == pytest.approx(there, rel=1e-9, abs=1e-9)
 
 
+@pytest.mark.parametrize("units", [(1e3, 1e-3, 1e6), (3e-7, 2e5, 1e-9)])
+def test_other_units_give_the_same_collision(units):
+
+    def collided(length, time, mass):
+        steel = Material(
+            young_modulus=208e9 * mass / (length * time**2), poisson_ratio=0.3,
+            density=7850.0 * mass / length**3,
+        )  # fmt: skip
+        met = Encounter(
+            Sphere(0.01 * length, steel), Sphere(0.006 * length, steel), 0.1,
+            normal=(0, 0, -1), velocity=np.array((0.12, 0.0, -1.0)) * length / time,
+            spin=np.array((0.0, 3.0, 100.0)) / time,
+        )  # fmt: skip
+        made = collide(met, HALF_SPACE).check()
+        return np.array([made.velocity * time / length, made.spin * time, made.target_spin * time])
+
+    assert collided(*units) == pytest.approx(collided(1.0, 1.0, 1.0), rel=1e-6, abs=1e-9)
+
+
 def test_a_mirror_turns_the_spin_and_keeps_the_rest():
     spin = met(1.0, 0.5).spin
     made, other = (collide(met(1.0, 0.5, spin=sense * spin), HALF_SPACE) for sense in (1.0, -1.0))

@@ -32,7 +32,8 @@ class HalfSpace(WholeImpactTangentialLaw):
     Tractions are vectors on rings and angles; every displacement follows in closed form. Nothing
     is left out but the curvature of the surfaces: neither the terms in cos 2 theta and sin 2 theta,
     nor the coupling of pressure and slip between unlike bodies. The law follows the impact by
-    itself, in steps that end with the contact edge on an edge of a ring.
+    itself, in steps that end with the contact edge on an edge of a ring. Without coupling and with
+    more than one angle it answers spin about the normal (theory §17).
 
     Parameters
     ----------
@@ -41,7 +42,8 @@ class HalfSpace(WholeImpactTangentialLaw):
         known to about 5e-5 along one direction, with coupling to about 2e-3.
     angles : int
         Angles on the half circle; one angle is the axisymmetric problem, with tractions along
-        the slip velocity. Eight angles and sixteen differ by at most 3e-4 in psi2.
+        the slip velocity. Eight angles and sixteen differ by at most 3e-4 in psi2; with spin about
+        the normal by 1e-3 for w up to 0.5, and by 5e-3 beyond.
     coupling : str
         ``"none"``: pressure and slip of unlike bodies do not act on each other. ``"one_way"``:
         pressure drags the surfaces sideways. ``"two_way"``: traction changes the pressure and
