@@ -22,17 +22,16 @@ MEASURED = (
 )
 
 
-def with_normal_spin(words: Words, scene: Scene, *, answered: bool = False) -> Words:
+def with_normal_spin(words: Words, scene: Scene, *, answered: Any = False) -> Words:
     """Return the words of a plan with what spin about the normal would change.
 
-    ``answered`` is True if the law answers spin about the normal, as it does unless a body is off
-    centre.
+    ``answered`` marks impacts whose law answers spin about the normal, unless a body is off centre.
     """
     spin = normal_spin(scene, answered=answered)
     computed, left_out, cautions = words
-    if answered and scene.turns:
-        where = np.broadcast_to(np.asarray(scene.normal_spin) != 0.0, scene.shape)
-        computed = (*computed, Clause(ANSWERED, np.array(where), code=NORMAL_SPIN))
+    where = np.array(np.broadcast_to(answered & np.not_equal(scene.normal_spin, 0.0), scene.shape))
+    if where.any():
+        computed = (*computed, Clause(ANSWERED, where, code=NORMAL_SPIN))
     if spin is None:
         return computed, left_out, cautions
     acts = np.array(spin.acts)

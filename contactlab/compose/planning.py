@@ -114,7 +114,8 @@ def plan_of(
     asked = _Asked(history, estimated)
 
     def words() -> Words:
-        return with_normal_spin(of_impacts(), scene, answered=laws.tangential.normal_spin)
+        answered = ~columns.marched & laws.tangential.normal_spin  # no march takes spin
+        return with_normal_spin(of_impacts(), scene, answered=answered)
 
     def of_impacts() -> Words:
         parts = scene.parts(as_one=bool(history))

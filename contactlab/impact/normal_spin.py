@@ -130,14 +130,14 @@ def gross_slip(psi1: Any, chi: Any, w: Any) -> tuple[Any, Any]:
     return 1.0 / (5.0 / (chi * shift) + 0.25 / chi), np.minimum(0.4 * loss, ALL_SLIPS)
 
 
-def normal_spin(scene: Scene, *, answered: bool = False) -> NormalSpin | None:
+def normal_spin(scene: Scene, *, answered: Any = False) -> NormalSpin | None:
     """Return what spin about the normal does in each impact, or None if nothing turns.
 
     Parameters
     ----------
     scene : Scene
-    answered : bool
-        True if the law answers the spin of ``scene``: only bodies off centre are left then.
+    answered : bool or array of bool
+        True where the law answers the spin of ``scene``: only bodies off centre are left then.
     """
     omega, inverse = scene.normal_spin, scene.pair.inverse_spin_mass
     if scene.frame is not None and scene.encounter is not None:
@@ -146,8 +146,7 @@ def normal_spin(scene: Scene, *, answered: bool = False) -> NormalSpin | None:
         if np.any(omega):
             inverse = turning_compliance(scene.encounter, normal, scene.pair.radius)
     acts = (np.asarray(omega) != 0.0) & (np.asarray(scene.friction_coefficient) > 0.0)
-    if answered:
-        acts = acts & (np.asarray(scene.normal_spin) == 0.0)
+    acts = acts & ~(answered & np.not_equal(scene.normal_spin, 0.0))
     acts = np.broadcast_to(acts, scene.shape)
     if not acts.any():
         return None

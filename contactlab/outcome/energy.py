@@ -153,20 +153,24 @@ def _with_unbalanced(motion: Motion, scene: Scene, bound: Any, alone: Any) -> Mo
     before: Any = scene.slip_speed
     after: Any = scene.size_of(scene.slip_velocity + motion.slip_velocity_change)
     imbalance: Any = abs(books.imbalance)
+    start: Any = books.start
+    if scene.turns:  # a spin that friction left has no part in what is judged
+        left = scene.energies(motion.normal_velocity, motion.slip_velocity_change)
+        start = np.where(motion.normal_spin_change == 0.0, left[0], start)[()]
     for where, sentence, numbers in (
         (alone & (speed > LARGEST_RESTITUTION * scene.normal_speed),
          "The bodies part {:.4g} times as fast as they met.",
          lambda: (speed / scene.normal_speed,)),
-        (imbalance > bound * books.start,
+        (imbalance > bound * start,
          "Off by {:.2g} of the energy at the start; declared: {:.2g}.",
-         lambda: (imbalance / books.start, bound)),
+         lambda: (imbalance / start, bound)),
         (alone & (after > LARGEST_SLIP * before),
          "The contact slips {:.4g} times as fast as it met.",
          lambda: (np.divide(after, before),)),
         (coupled & (books.end > LARGEST_RESTITUTION**2 * books.start),
          "The bodies gain {:.2g} of their energy.", lambda: (books.end / books.start - 1.0,)),
-        ((bound == math.inf) & (imbalance > LARGEST_UNDECLARED * books.start),
-         "Off by {:.3g} times the energy at the start.", lambda: (imbalance / books.start,)),
+        ((bound == math.inf) & (imbalance > LARGEST_UNDECLARED * start),
+         "Off by {:.3g} times the energy at the start.", lambda: (imbalance / start,)),
     ):  # fmt: skip
         if some(where):
             motion = motion.failing(where, Status.UNBALANCED, _sentences(sentence, *numbers()))

@@ -21,13 +21,15 @@ from contactlab import (
     create,
     rebound,
 )
+from contactlab.contracts.status import Status
 from contactlab.impact.normal_spin import nodes
 from contactlab.outcome.columns import columns, quantity_named
 from contactlab.outcome.plan import NORMAL_SPIN
 from contactlab.outcome.tables import sections
 from contactlab.outcome.text_table import table
 from tests.longer import longer
-from tests.testing.broken_spin import Torsion
+from tests.testing.broken_impacts import Whole
+from tests.testing.broken_spin import MarchesItsSpin, Torsion
 
 SOLID = 49.0 / 34.0
 NU, MU = 0.3, 0.1
@@ -448,6 +450,35 @@ def test_a_normal_that_is_no_principal_axis_keeps_the_caution(tilted):
     assert cautioned is tilted
     assert bool(about[0] == pytest.approx(about[1], rel=1e-12)) is tilted
     assert (made.result.scene.normal_spin == 0.0) is tilted
+
+
+def test_a_law_with_the_word_that_is_marched_is_cautioned_of():
+    """No step takes spin: the word holds for whole-impact answers."""
+    made = collide(met(1.0, 0.5), Simulation(tangential=MarchesItsSpin())).check()
+    assert made.spin[2] == met(1.0, 0.5).spin[2]
+    assert "its friction, left out, shifts psi2 by about 0.33" in str(made)
+    assert "is one" not in str(made.plan)
+
+
+@attrs.frozen(kw_only=True)
+class LosesWork(Whole):
+    """A tenth more friction work than the slip loses, against a declared 0.01 of the energy."""
+
+    def books_bound(self, scene):
+        return 0.01
+
+    def told(self, known, scene):
+        work = known.friction_work + 0.1 * scene.pair.tangential_mass * scene.slip_velocity**2
+        return attrs.evolve(known, friction_work=work)
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_a_spin_that_nothing_changes_hides_no_energy_that_is_lost(count):
+    """Of one impact and of a batch alike."""
+    given = of_groups(psi1=np.full(count, 2.0), spin=1e3, spin_inertia=0.01)
+    scene = given if count > 1 else given.take((0,))
+    result = Simulation(tangential=LosesWork()).run(scene)
+    assert (np.asarray(result.status) == Status.UNBALANCED).all()
 
 
 def test_an_elliptic_contact_keeps_the_caution():
