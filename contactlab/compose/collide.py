@@ -30,7 +30,9 @@ def collide(
     """Return velocities and spins of both bodies after an encounter, or after each of a batch.
 
     Between bodies that are no spheres each impact goes its own way: as spheres where friction does
-    not change the approach, else by laws that are exact in a plane, and by springs in space.
+    not change the approach, else by laws that are exact in a plane, and by springs in space. They
+    leave out the friction of spin about the normal, with a caution in the plan;
+    ``Simulation(tangential="halfspace")`` answers it.
 
     Parameters
     ----------

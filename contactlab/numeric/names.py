@@ -24,6 +24,8 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
     "speed": ("normal_speed",), "v1": ("normal_speed",), "vn": ("normal_speed",),
     "vz": ("normal_speed",), "v2": ("rebound_normal_velocity",),
     "omega": ("spin", "rebound_spin"), "w": ("spin", "rebound_spin"), "spin": ("rebound_spin",),
+    "normal_spin": ("spin",), "side_spin": ("normal_spin", "spin"), "english": ("spin",),
+    "w1": ("spin",), "chi_w": ("spin_inertia",), "chi_t": ("spin_inertia",),
     "e": ("restitution", "normal_restitution"), "restitution": ("normal_restitution",),
     "e_n": ("normal_restitution",), "e_t": ("tangential_restitution",),
     "et": ("tangential_restitution",), "t": ("time",), "T": ("duration",),

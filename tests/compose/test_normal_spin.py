@@ -552,6 +552,20 @@ def test_spins_that_nobody_can_have_are_refused(make, changes, words):
         make(**changes)
 
 
+MISNAMED = [
+    (met, {"normal_spin": 3.0, "psi1": 1.0, "w": 0.5}, "spin"),
+    (of_groups, {"w1": 0.5}, "spin"),
+    (of_groups, {"chi_w": 0.5}, "spin_inertia"),
+    (turning, {"side_spin": 3.0}, "normal_spin"),
+]
+
+
+@pytest.mark.parametrize(("make", "changes", "meant"), MISNAMED)
+def test_names_that_users_try_lead_to_those_that_are(make, changes, meant):
+    with pytest.raises(TypeError, match=f"did you mean '{meant}'"):
+        make(**changes)
+
+
 def test_scenes_with_and_without_spin_are_stacked_and_taken():
     made = [of_groups(spin=w, spin_inertia=0.01) for w in (0.5, 0.0)]
     stacked = Scene.stack(made)
