@@ -158,12 +158,12 @@ def yielding(scene: Scene, peak: Real | None = None) -> tuple[str, ...]:
     limits = np.stack(
         [np.broadcast_to(FIRST_YIELD * stress, scene.shape) for stress in stresses.values()]
     )
-    limit = limits.min(axis=0)
+    limit = np.fmin.reduce(limits)  # NaN where the yield stress is not known
     yields = pressure > limit
     if not yields.any():
         return ()
-    worst = np.unravel_index(np.argmax(pressure / limit), scene.shape) if scene.shape else ()
-    softest = list(stresses)[int(np.argmin([each[worst] for each in limits]))]
+    worst = np.unravel_index(np.nanargmax(pressure / limit), scene.shape) if scene.shape else ()
+    softest = list(stresses)[int(np.nanargmin([each[worst] for each in limits]))]
     return (
         f"yield{for_share(yields)}: the peak pressure of Hertz's contact is "
         f"{pressure[worst] / GPA:.2g} GPa, above 1.6 Y = {limit[worst] / GPA:.2g} GPa of the "
@@ -286,7 +286,7 @@ def three_numbers(scene: Scene) -> tuple[str, ...]:
 
 def _least(value: Any) -> float:
     """Return the smallest number of a batch, or the number itself."""
-    return value if isinstance(value, float) else float(np.min(value))
+    return value if isinstance(value, float) else float(np.nanmin(value))
 
 
 def _most(value: Any) -> float:

@@ -36,10 +36,10 @@ class Material:
     poisson_ratio : float
         nu, from -1 to 0.5.
     density : float, optional
-        Density in kg/m³; needed only by a sphere without given mass.
+        Density in kg/m³; needed only by a sphere without given mass. NaN in an array: not known.
     yield_stress : float, optional
         Y in Pa, from a tension test. Plans have a caution where the contact pressure exceeds
-        1.6 Y; no law uses this number.
+        1.6 Y; no law uses this number. NaN in an array: not known.
 
     Raises
     ------
@@ -49,8 +49,8 @@ class Material:
 
     shear_modulus: Real = quantity("Pa", rule=POSITIVE)
     poisson_ratio: Real = quantity("1", rule=POISSON)
-    density: Real | None = quantity("kg/m³", rule=POSITIVE, default=None)
-    yield_stress: Real | None = quantity("Pa", rule=POSITIVE, default=None)
+    density: Real | None = quantity("kg/m³", rule=POSITIVE, default=None, unknown=True)
+    yield_stress: Real | None = quantity("Pa", rule=POSITIVE, default=None, unknown=True)
 
     def __init__(
         self,

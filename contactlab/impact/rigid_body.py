@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import attrs
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.impact.material import Material
-from contactlab.numeric.arrays import taken
+from contactlab.numeric.arrays import known, taken
 from contactlab.numeric.checks import POSITIVE, Real, Rule, instance, key, quantity, real, refuse
 from contactlab.numeric.names import arguments_told
 
@@ -123,7 +124,7 @@ class RigidBody:
     axes: Any = _array("1", (3, 3))
     cross_radius: Real | None = _curved(default=None)
     curvature_axis: Any = _array("1", (3,))
-    bending_period: Real | None = quantity("s", rule=POSITIVE, default=None)
+    bending_period: Real | None = quantity("s", rule=POSITIVE, default=None, unknown=True)
     #: Inertia about the centre of mass, in kg m², shape (..., 3, 3), whatever was given.
     inertia: Any = attrs.field(init=False, eq=False, repr=False)
     #: Batch shape of mass, inertia and curvature together.
@@ -228,12 +229,25 @@ class RigidBody:
         """
         inertia = np.broadcast_to(self.inertia, (*shape, 3, 3))[part]
         entries = {
-            name: taken(getattr(self, name), shape, part)
+            name: known(taken(getattr(self, name), shape, part))
             for name in ("mass", "material", "curvature_radius", "cross_radius", "bending_period")
         }
         if self.curvature_axis is not None:
             entries["curvature_axis"] = np.broadcast_to(self.curvature_axis, (*shape, 3))[part]
         return RigidBody(inertia=inertia, **entries)
+
+    @staticmethod
+    def alike(bodies: Sequence[RigidBody]) -> list[RigidBody]:
+        """Return bodies of which all have two radii of curvature if any has, to be stacked."""
+        if all(body.cross_radius is None for body in bodies):
+            return list(bodies)
+        any_axis = (1.0, 0.0, 0.0)  # says nothing where both radii are one
+        return [
+            body
+            if body.cross_radius is not None and body.curvature_axis is not None
+            else attrs.evolve(body, cross_radius=body.crossing, curvature_axis=any_axis)
+            for body in bodies
+        ]
 
     def cautions(self, duration: float) -> list[str]:
         """Return a sentence for each doubt about a rigid body.
@@ -245,7 +259,7 @@ class RigidBody:
         """
         cautions = []
         if self.bending_period is not None:
-            ratio = float(np.max(self.bending_period)) / duration
+            ratio = float(np.nanmax(self.bending_period)) / duration
             if ratio > RINGING:
                 cautions.append(
                     f"first bending period over duration of contact = {ratio:.3g}: above "

@@ -50,9 +50,14 @@ def stacked(items: Sequence[Any]) -> Any:
     first = items[0]
     if all(item is first for item in items):
         return first
+    if all(item is None or isinstance(item, float | np.ndarray) for item in items):
+        items = [math.nan if item is None else item for item in items]  # not known of some
+        first = items[0]
     if any(type(item) is not type(first) for item in items):
         return None  # bodies of different kinds: laws need the pair only
     if attrs.has(type(first)):
+        if alike := getattr(type(first), "alike", None):
+            items = alike(items)
         names = {field.alias: field.name for field in attrs.fields(type(first)) if field.init}
         return type(first)(
             **{
@@ -80,9 +85,16 @@ def taken(tree: Any, shape: tuple[int, ...], part: Any) -> Any:
         copy = object.__new__(type(tree))  # every number was checked when the tree was made
         for field in attrs.fields(type(tree)):
             value = taken(getattr(tree, field.name), shape, part)
+            if "unknown" in field.metadata:
+                value = known(value)
             object.__setattr__(copy, field.name, value)
         return copy
     return tree
+
+
+def known(value: Any) -> Any:
+    """Return a value; None for NaN, which stands for None in arrays."""
+    return None if isinstance(value, float) and value != value else value
 
 
 def equal(one: Any, other: Any) -> bool:

@@ -151,6 +151,9 @@ def _checked(value: object, owner: object, field: attrs.Attribute[Any]) -> Real 
     if type(value) is float and math.isfinite(value) and meta["rule"].holds(value):
         return value  # the remedy of a refusal takes longer to write than a number to check
     remedy = unit_remedy(meta["unit"])
+    if "unknown" in meta and isinstance(value, np.ndarray) and np.isnan(value).any():
+        real(field.name, value[~np.isnan(value)], rule=meta["rule"], remedy=remedy, empty=True)
+        return np.array(value, dtype=np.float64)
     number = real(field.name, value, rule=meta["rule"], remedy=remedy, empty=meta["empty"])
     if isinstance(number, np.ndarray) and getattr(type(owner), "plain_options", False):
         rule = "must be one number: an option of a law holds for every impact"
@@ -173,6 +176,7 @@ def quantity(
     default: Any = attrs.NOTHING,
     kw_only: bool = False,
     empty: bool = False,
+    unknown: bool = False,
 ) -> Any:
     """Return an attrs field for a checked real quantity with its unit in the metadata.
 
@@ -191,6 +195,8 @@ def quantity(
         Whether the field is keyword-only, in a class whose other fields are not.
     empty : bool
         Whether an array without numbers is accepted.
+    unknown : bool
+        Whether an array may hold NaN, of an impact for which the quantity is not known.
     """
     keywords: Any = {"kw_only": True} if kw_only else {}  # False would override the class
     return attrs.field(
@@ -198,7 +204,13 @@ def quantity(
         **keywords,
         converter=attrs.Converter(_checked, takes_self=True, takes_field=True),
         eq=key,
-        metadata={"unit": unit, "rule": rule, "range": rule.sentence, "empty": empty},
+        metadata={
+            "unit": unit,
+            "rule": rule,
+            "range": rule.sentence,
+            "empty": empty,
+            **({"unknown": True} if unknown else {}),
+        },
     )
 
 
