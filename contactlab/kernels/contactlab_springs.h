@@ -37,10 +37,29 @@ static inline int contactlab_springs_within(CONTACTLAB_REAL u, int n)
   return u < n ? (int) (u + (CONTACTLAB_REAL) 0.5) : n;
 }
 
-/* Fits the grid to the contact radius b, so that A/4 < b <= A. Returns the energy lost over 2 G*, in m^3:
- * merged springs lose some, springs beyond a halved grid all of theirs. */
+/* Widens each of n cells by a quarter: a new one has the mean w of what it covers, zero beyond the old grid.
+ * Returns the energy lost over 2 G*, in m^3. */
+static inline CONTACTLAB_REAL contactlab_springs_widen(CONTACTLAB_REAL *state, int n)
+{
+  CONTACTLAB_REAL *w = state + 2, sum = 0;
+  int j, k;
+  for (j = 0; j < n; ++j) { /* five cells become four, of 4/5 and 1/5, 3/5 and 2/5, ... of two neighbours */
+    const CONTACTLAB_REAL share = (CONTACTLAB_REAL) 0.2 * (CONTACTLAB_REAL) (4 - j % 4);
+    const int first = j + j / 4;
+    for (k = 0; k < 3; ++k) {
+      const CONTACTLAB_REAL inner = first < n ? w[3 * first + k] : 0, outer = first + 1 < n ? w[3 * first + 3 + k] : 0;
+      w[3 * j + k] = share * inner + (1 - share) * outer;
+      sum += share * (1 - share) * (inner - outer) * (inner - outer);
+    }
+  }
+  state[0] *= (CONTACTLAB_REAL) 1.25;
+  return sum * state[0] / (2 * n);
+}
+
+/* Fits the grid to the contact radius b, so that A/4 < b <= A; with loss it grows by quarters, else it doubles.
+ * Returns the energy lost over 2 G*, in m^3: merged springs lose some, springs beyond a halved grid all of theirs. */
 static inline CONTACTLAB_REAL contactlab_springs_fit(CONTACTLAB_REAL *state, int n, CONTACTLAB_REAL b,
-                                                     CONTACTLAB_REAL unit)
+                                                     CONTACTLAB_REAL unit, int lossy)
 {
   CONTACTLAB_REAL *w = state + 2, lost = 0, sum;
   int i, exponent;
@@ -48,6 +67,7 @@ static inline CONTACTLAB_REAL contactlab_springs_fit(CONTACTLAB_REAL *state, int
     const double fraction = frexp((double) (b / unit), &exponent);
     state[0] = unit * (CONTACTLAB_REAL) ldexp(1.0, fraction == 0.5 ? exponent - 1 : exponent);
   }
+  while (lossy && b > state[0]) lost += contactlab_springs_widen(state, n);
   for (; b > state[0]; state[0] *= 2) { /* neighbours merge, the outer half starts from zero */
     for (sum = 0, i = 0; i < 3 * (n / 2); ++i) {
       const CONTACTLAB_REAL inner = w[i / 3 * 6 + i % 3], outer = w[i / 3 * 6 + 3 + i % 3];
@@ -116,7 +136,7 @@ static inline void contactlab_springs_bounded(CONTACTLAB_REAL *w, const CONTACTL
  * normal   unit normal of the contact at the end of the step; either sense
  * radius   contact radius sqrt(R overlap) at the end of the step, in m; 0 out of contact
  * limit    mu times the normal force at the end of the step, in N, at least 0
- * unit     any fixed length of the pair, in m, such as its radius: A is a power of two times it
+ * unit     any fixed length of the pair, in m, such as its radius: A begins as a power of two times it
  * modulus  2 G*, 1/G* = sum (2 - nu)/(4 G), in Pa; 8 G* with the G* of discrete-element codes
  * force    friction on the first body, in N; the second has the opposite; set
  * elastic  mu times the elastic part of the normal force, Hertz's, in N, at least 0
@@ -152,7 +172,7 @@ static inline CONTACTLAB_REAL contactlab_springs_damped_step(CONTACTLAB_REAL *st
     /* Where damping pulls, the contact shrinks before the overlap does. */
     if (limit < elastic) radius *= (CONTACTLAB_REAL) cbrt((double) (limit / elastic));
   }
-  if (radius > unit * CONTACTLAB_SPRINGS_TOUCH) lost = contactlab_springs_fit(state, n, radius, unit);
+  if (radius > unit * CONTACTLAB_SPRINGS_TOUCH) lost = contactlab_springs_fit(state, n, radius, unit, lag > 0);
   else radius = 0;
   force[0] = force[1] = force[2] = 0;
   if (!(state[0] > 0)) return 0;

@@ -69,7 +69,7 @@ export function dampedStep(state, n, moved, normal, radius, limit, unit, modulus
   // Where damping pulls, the contact shrinks before the overlap does.
   const reached = lag > 0 && limit < elastic ? radius * Math.cbrt(limit / elastic) : radius;
   const b = reached > unit * TOUCH ? reached : 0;
-  const lost = b > 0 ? fit(state, n, b, unit) : 0;
+  const lost = b > 0 ? fit(state, n, b, unit, lag > 0) : 0;
   if (!(state[0] > 0)) return 0;
 
   const cell = state[0] / n, u = b / cell, v = state[1] / cell, growth = u - v;
@@ -163,10 +163,28 @@ function relaxed(x) {
   return {left, ramp: 1 - (1 - left) / x, gone: 1 - left};
 }
 
-/** Fits the grid to the contact radius b, so that A/4 < b <= A. Returns the energy lost over 2 G*. */
-function fit(state, n, b, unit) {
+/** Widens each of n cells by a quarter: a new one has the mean w of what it covers, zero beyond the old grid. Returns
+ *  the energy lost over 2 G*. */
+function widen(state, n) {
+  let sum = 0;
+  for (let j = 0; j < n; j++) {  // five cells become four, of 4/5 and 1/5, 3/5 and 2/5, ... of two neighbours
+    const share = 0.2 * (4 - j % 4), first = j + Math.floor(j / 4);
+    for (let k = 0; k < 3; k++) {
+      const inner = first < n ? state[2 + 3 * first + k] : 0, outer = first + 1 < n ? state[5 + 3 * first + k] : 0;
+      state[2 + 3 * j + k] = share * inner + (1 - share) * outer;
+      sum += share * (1 - share) * (inner - outer) ** 2;
+    }
+  }
+  state[0] *= 1.25;
+  return sum * state[0] / (2 * n);
+}
+
+/** Fits the grid to the contact radius b, so that A/4 < b <= A; with loss it grows by quarters, else it doubles.
+ *  Returns the energy lost over 2 G*. */
+function fit(state, n, b, unit, lossy) {
   let lost = 0;
   if (!(state[0] > 0)) state[0] = unit * leastPower(b / unit);
+  while (lossy && b > state[0]) lost += widen(state, n);
   for (; b > state[0]; state[0] *= 2) {  // neighbours merge, the outer half starts from zero
     let sum = 0;
     for (let i = 0; i < 3 * (n / 2); i++) {

@@ -61,11 +61,12 @@ force
 where every :math:`\mathbf{w}_i` follows the tangential displacement since the
 contact reached :math:`r_i`.  This is the theory of
 :ref:`Mindlin and Deresiewicz <Mindlin1953>` for any path of load and
-displacement.  :math:`A` is a power of two times the effective radius.  When the
-contact outgrows :math:`A`, neighboring springs are merged and :math:`A`
-doubles; when :math:`a \le A/4`, every cell is split into halves and :math:`A`
-halves.  Nothing about the future of the contact needs to be known, and no path
-gains energy.  A change of the tangent plane is treated as for *mindlin*.
+displacement.  :math:`A` begins as a power of two times the effective radius.
+When the contact outgrows :math:`A`, neighboring springs are merged and :math:`A`
+doubles, or with damping grows by a quarter; when :math:`a \le A/4`, every cell
+is split into halves and :math:`A` halves.  Nothing about the future of the
+contact needs to be known, and no path gains energy.  A change of the tangent
+plane is treated as for *mindlin*.
 
 The number of springs :math:`N` is even, from 2 to 64, and a contact stores
 :math:`3 + 3N` values, and three more with damping.  After an impact of elastic

@@ -93,6 +93,9 @@ def by_vectors(springs, rows):
             continue
         if size == 0.0:
             size = UNIT * 2.0 ** np.ceil(np.log2(radius / UNIT))
+        while lag > 0.0 and radius > size:
+            w = widened(w)
+            size *= 1.25
         while radius > size:
             w = np.concatenate((0.5 * (w[::2] + w[1::2]), np.zeros((springs // 2, 3))))
             size *= 2.0
@@ -125,6 +128,14 @@ def by_vectors(springs, rows):
         before = radius
         forces.append(-MODULUS * size / springs * force)
     return np.array(forces)
+
+
+def widened(w):
+    """Return w in cells of 5/4 of the width: means over what they cover, by the integral of w."""
+    edges = np.arange(len(w) + 1.0)
+    sums = np.concatenate((np.zeros((1, 3)), np.cumsum(w, axis=0)))
+    integral = np.transpose([np.interp(1.25 * edges, edges, each) for each in sums.T])
+    return np.diff(integral, axis=0) / 1.25
 
 
 def cut(vector, most):
