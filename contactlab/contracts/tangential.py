@@ -86,8 +86,9 @@ class TangentialResponse(NamedTuple):
     friction_work : float or array
         Friction work in J over ``displacement``, at least 0: the sum of traction times slip over
         slipping parts, not an energy balance. The slip is part of the displacement; the traction
-        is the mean of the tractions at the two ends of the step. With these two rules the energy
-        books close under every integrator.
+        is the mean of the tractions at the two ends of the step; where the law shares a loss,
+        whose steps are uneven, that at the end counts ``duration/(2 drift)``. With these two
+        rules the energy books close under every integrator.
     settled : bool or array
         False where the law has no answer; the run then ends with a status.
     shear_loss : float or array

@@ -191,6 +191,7 @@ def advance(
     drive = Drive(
         tangential(increment.displacement) * scales.displacement,
         row(increment.drift),
+        acted(row(increment.duration), row(increment.drift)),
         *rates,
         friction * limit,
         friction * acting,
@@ -240,6 +241,16 @@ def limits(b: Array, load: Array) -> tuple[Array, Array]:
     return np.where(excess < 0.0, np.cbrt(load), b), np.maximum(excess, 0.0)
 
 
+def acted(duration: Array, drift: Array) -> Array:
+    """Return the share of a drift under the force of its end, the rest being that of its begin.
+
+    A drift goes from the middle of the time for which one force acts to the middle of the next.
+    """
+    half = 0.5 + 0.0 * (duration + drift)  # also where no body is moved by the force
+    share: Array = np.divide(0.5 * duration, drift, out=half, where=duration * drift > 0.0)
+    return np.minimum(share, 1.0)
+
+
 class Drive(NamedTuple):
     """The tangential motion of a step, each of shape (items,); tangential ones may be complex.
 
@@ -248,6 +259,7 @@ class Drive(NamedTuple):
 
     move: Array
     drift: Array
+    acted: Array
     slip: Array
     force: Array
     mobility: Array
@@ -266,13 +278,18 @@ def moved(
     middle = np.where(before.time > 0.0, 0.5 * (before.time + contact.time), contact.time)
     decay = drive.drift / np.maximum(middle, TINY)
     edge, excess, decay = (_column(each, items) for each in (contact.edge, contact.excess, decay))
-    held, size = before.deflection, before.size
+    held, size, old = before.deflection, before.size, None
+    ratio: Any = 1.0
     if grows or splits:
-        size, held, _ = fitted(
-            size, held, np.sqrt(edge + 0.0 * size), 1.0, spans=not splits, cross=drive.cross
-        )
-    squares = np.square(np.multiply.outer(np.arange(len(held)) + 0.5, size / len(held)))
+        reach = np.sqrt(edge + 0.0 * size)
+        size, held, _ = fitted(size, held, reach, 1.0, spans=not splits, cross=drive.cross)
+    squares = squared_places(size, len(held))
     least = profile(squares, before.edge, before.excess)
+    if size is not before.size:  # as many springs over another length: tractions as they were
+        cut = profile(squared_places(before.size, len(held)), before.edge, before.excess)
+        old = _cut(before.deflection + before.lead, cut, drive.cross)
+        old = fitted(before.size, old, reach, 1.0, spans=not splits)[1]
+        ratio = np.where(before.size > 0.0, size / (before.size + TINY), 1.0)
     most = profile(squares, edge, excess)
     part, first = entered(squares, least, (before.edge, before.excess), edge, excess)
     lead = contact.time * drive.scale
@@ -291,10 +308,8 @@ def moved(
         pulled = lead * stretched(drive.slip, drive.cross)
         share = np.where(in_contact, share, alone(pulled, excess, before.share))
     # the work on springs is lost or stored; what is stored is lost when a spring leaves, or after
-    old = _cut(held + before.lead, least, drive.cross)
-    if size is not before.size:  # as many springs over another length
-        old = old * np.where(before.size > 0.0, size / (before.size + TINY), 1.0)
-    mean = 0.5 * (before.weight * old + weight * traction)
+    old = _cut(held + before.lead, least, drive.cross) if old is None else old
+    mean = (1.0 - drive.acted) * ratio * before.weight * old + drive.acted * weight * traction
     # springs that entered count as if they had moved all the time: the force is their mean
     gained = _real(mean, relaxed(deflection - held, drive.cross) / np.maximum(part, TINY))
     work = _real(mean, drive.move) - gained
@@ -356,6 +371,12 @@ def _cut(traction: Any, most: Any, cross: Any = None) -> Any:
 def _column(value: Array, items: tuple[int, ...]) -> Array:
     """Return one number where all impacts agree, as an array."""
     return np.atleast_1d(common(value, items))
+
+
+def squared_places(size: Array, springs: int) -> Array:
+    """Return r² of springs in the middle of cells, shape (springs, K)."""
+    places: Array = np.multiply.outer(np.arange(springs) + 0.5, size / springs)
+    return places * places
 
 
 def profile(squares: Array, edge: Array, excess: Array) -> Array:

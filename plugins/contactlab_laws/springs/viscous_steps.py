@@ -125,6 +125,7 @@ def _march(
     mass = np.reshape(np.asarray(scene.pair.tangential_mass, dtype=float), (1, -1))
     velocity = np.broadcast_to(np.asarray(scene.slip_velocity, dtype=float), shape).reshape(-1)
     acting, limit = friction * acting, friction * rows(steps.contact.friction_load)
+    acted = viscous.acted(kick, drift)
     mobility, drift, lead = 0.5 * kick / mass, drift * scale, time * scale
     springs = len(state.memory.deflection)
     w, moved, traction, before = np.zeros((4, springs, items))
@@ -149,9 +150,11 @@ def _march(
             step[entered:] /= grid.part[k, entered:now, None]
         both = min(last, now)  # the others had no traction
         energy = np.einsum("ij,ij->j", before[:both], step[:both])
-        energy *= weight
+        energy *= (1.0 - acted[k]) * weight
         slip = slip - mobility[k] * force
-        drive = viscous.Drive(move, drift[k], slip, force, mobility[k], limit[k], acting[k], scale)
+        drive = viscous.Drive(
+            move, drift[k], acted[k], slip, force, mobility[k], limit[k], acting[k], scale
+        )
         most = grid.most[k, :now, None]
         share, f, _ = viscous.solved(held, most, lead[k], drive, grid.per_total[k], out=f)
         if grid.per_total[k] == 0.0:
@@ -159,16 +162,16 @@ def _march(
         last_share = share
         weight = limit[k] * grid.per_total[k]
         total = np.einsum("ij,ij->j", f, step)
-        energy += weight * total
-        passed = earlier * move
+        energy += acted[k] * weight * total
+        passed = (1.0 - acted[k]) * earlier
         earlier = weight * ones[:now].dot(f)
         gained += energy
-        work += np.maximum(passed + earlier * move - energy, 0.0)
+        work += np.maximum((passed + acted[k] * earlier) * move - energy, 0.0)
         force = acting[k] * share
         forces[k] = force
         change = change - 2.0 * mobility[k] * force
         traction, before, last = before, traction, now
-    metres = 0.5 * np.reshape(scales.metres, -1)
+    metres = np.reshape(scales.metres, -1)
     work, gained = work * metres, gained * metres
     if not shape:
         return AllStepsResponse(forces[:, 0], work.item(), True, gained.item())
