@@ -145,7 +145,7 @@ class Collision(Answer):
         met = self._met
         known, e = self.known, self._restitutions
         plan = planned(met.scene, e) if known is None else known.plan
-        return collision_plan(plan, met, passed, e)
+        return collision_plan(plan, met, passed)
 
     @property
     def _restitutions(self) -> Real:

@@ -1,4 +1,4 @@
-"""Plan entries specific to collisions: bodies that separate, and a restitution."""
+"""Plan entries specific to collisions: bodies that separate, and a restitution by its table."""
 
 from __future__ import annotations
 
@@ -17,32 +17,21 @@ PARTED = "collision: the bodies separate, they pass through untouched"
 #: Seconds that springs take for impacts with a restitution beyond the table: the first, and each at
 #: chi = 3; they grow as chi^0.75.
 FIRST, EACH = 0.1, 6e-4
-STANDS_FOR = (
-    "restitution {}: of a frictionless impact on the mass 1/W_nn, normal.viscoelastic; a body's "
-    "own V2 follows from it"
-)
 
 
-def collision_plan(plan: Plan, met: Encounter | None, passed: Any, restitution: Any = 1.0) -> Plan:
-    """Return the plan with clauses on separating bodies, contacts of bodies and a restitution.
+def collision_plan(plan: Plan, met: Encounter | None, passed: Any) -> Plan:
+    """Return the plan with clauses on separating bodies and contacts of bodies.
 
     ``plan`` is that of the encounters that ``met``, None if no bodies did; ``passed`` marks the
     encounters of the whole batch whose bodies separate.
     """
-    computed, left_out, cautions = list(plan.computed), list(plan.left_out), list(plan.cautions)
+    left_out, cautions = list(plan.left_out), list(plan.cautions)
     if met is not None and not met.of_spheres:
         everywhere = np.ones(met.shape, dtype=bool)
-        damped = np.broadcast_to(np.asarray(restitution) < 1.0, met.shape)
-        if damped.any():
-            e = np.asarray(restitution)[damped] if np.ndim(restitution) else restitution
-            low, high = float(np.min(e)), float(np.max(e))
-            told = f"{low:g}" if low == high else f"{low:g} to {high:g}"
-            computed.append(Clause(STANDS_FOR.format(told), damped))
         cautions += [Clause(text, everywhere) for text in contact_vectors(met)]
     if passed.any():
         left_out.append(Clause(PARTED, passed))
-    kinds = {"computed": computed, "left_out": left_out, "cautions": cautions}
-    return plan.changed(**{kind: tuple(clauses) for kind, clauses in kinds.items()})
+    return plan.changed(left_out=tuple(left_out), cautions=tuple(cautions))
 
 
 def by_rebound(plan: Plan, chi: Any, restitution: Real) -> Plan:

@@ -60,7 +60,9 @@ UNCHECKED = (
 )
 #: Entries of a plan of impacts in which friction changes the approach.
 TOGETHER = "normal and tangential motion together: friction changes the approach, or slip turns"
-OF_CONTACT = "restitution: of the contact without coupling; that of the bodies follows from it"
+OF_CONTACT = (
+    "restitution: of a frictionless impact on the mass 1/W_nn; that of the bodies follows from it"
+)
 ONE_PLANE = "second tangent: the motion stays in a plane"
 OF_SPHERES = (
     "cautions of laws: their sizes were measured for spheres, where friction does not change the "

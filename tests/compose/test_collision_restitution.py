@@ -1,5 +1,6 @@
 """Collisions with a restitution instead of laws."""
 
+import attrs
 import numpy as np
 import pytest
 
@@ -7,6 +8,7 @@ import contactlab
 from contactlab import Simulation, collide
 from contactlab.compose.rebound import RESTITUTED_ERROR
 from tests.compose.test_collision import BALL, meeting
+from tests.compose.test_eccentric import rod
 
 
 def test_a_restitution_is_that_of_springs_that_lose_as_the_normal_contact():
@@ -159,3 +161,15 @@ def test_a_restitution_that_depends_on_the_speed():
         collide(met.take(0), restitution=lambda speed: 1.5 * speed)
     with pytest.raises(ValueError, match="shape"):
         collide(met.take(slice(0, 2)), restitution=lambda _: [0.9] * 3)
+
+
+def test_the_plan_of_bodies_says_once_whose_restitution_it_is():
+    met = rod(-35.0, slip=0.3)
+    several = attrs.evolve(met, friction_coefficient=[0.3, 0.4, 0.5])
+    for each, e in ((met, 0.8), (several, [0.5, 0.8, 1.0])):
+        said = map(str, collide(each, restitution=e).plan.computed)
+        told = [text for text in said if text.startswith("restitution")]
+        assert len(told) == 1
+        assert "of a frictionless impact on the mass 1/W_nn" in told[0]
+    for none in (collide(met), collide(meeting(), restitution=0.8)):
+        assert "1/W_nn" not in str(none.plan)

@@ -203,7 +203,10 @@ def test_bodies_of_the_theory(psi1, chi, lam, eta, a, rate, psi2):
 
 def test_the_plan_says_whose_restitution_it_is():
     """That of the contact: a body's own follows, and is that of a sphere where nothing couples."""
-    told = "restitution: of the contact without coupling; that of the bodies follows from it"
+    told = (
+        "restitution: of a frictionless impact on the mass 1/W_nn; that of the bodies follows "
+        "from it"
+    )
     for lam, eta, own in ((0.2, 1.7, False), (0.0, 0.0, True)):
         scene = PLANAR(psi1=0.7, chi=1.3, lam=lam, eta=eta)
         result = springs(viscoelastic(0.8)).run(scene).check()
