@@ -149,7 +149,10 @@ def fit(
             raise
         raise ValueError(f"{'. '.join(causes)}. As it is, {error}") from None
     notes = (*left_out, *slipped, *of_restitution, *outcome.notes)
-    warned = (*cautions(problem, values), *(() if notes else assumed(every, values, reaches)))
+    warned = (
+        *cautions(problem, values),
+        *(() if notes else assumed(every, table.given, values, reaches)),
+    )
     aic = every.criterion(values)  # over all numbers, so that laws that leave some out compare
     outcome = attrs.evolve(outcome, notes=notes, cautions=warned, aic=aic)
     if counted is not None:

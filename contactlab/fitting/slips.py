@@ -41,7 +41,7 @@ WORTH_FITTING = 3.0
 #: Most readings reported, and difference of scores up to which they are as good as the best.
 LISTED, ALIKE = 3, 6.0
 #: A tilt, or a loss in shear, is fitted if normal scatter follows its derivative with less than
-#: this chance.
+#: this chance; a tilt that is no less likely and moves a parameter out of its interval is told.
 WORTH_FITTING_MORE = 1e-2
 #: Largest tilt, in degrees.
 TILT = 15.0
@@ -228,11 +228,7 @@ def _better_with(problem: Problem, values: Array, *tried: Wider) -> Pattern:
 
     The chance is that of the F test of one parameter, times the number tried.
     """
-    from scipy.special import fdtrc  # only a fit needs scipy
-
-    number = sum(problem.counts.values())
-    freedom = number - len(values) - 1
-    if freedom < SPARE:
+    if _freedom(problem, values) < SPARE:
         return NO_PATTERN
     own = _score(problem, values, problem)
     found = []
@@ -244,10 +240,23 @@ def _better_with(problem: Problem, values: Array, *tried: Wider) -> Pattern:
     found.sort(key=lambda read: read.score)
     if not found or found[0].score >= own:
         return NO_PATTERN
-    ratio = math.expm1((own - found[0].score) / number) * freedom
     alike = [read for read in found if read.score - found[0].score < ALIKE]
-    chance = float(fdtrc(1, freedom, ratio)) * len(found)
+    chance = _chance(problem, values, own - found[0].score) * len(found)
     return Pattern(chance, _sentence(problem, values, alike, more=1))
+
+
+def _freedom(problem: Problem, values: Array) -> int:
+    """Return the degrees of freedom that one parameter more leaves."""
+    return sum(problem.counts.values()) - len(values) - 1
+
+
+def _chance(problem: Problem, values: Array, gain: float) -> float:
+    """Return the chance that scatter alone makes one parameter more gain so much of the score."""
+    from scipy.special import fdtrc  # only a fit needs scipy
+
+    freedom = _freedom(problem, values)
+    ratio = math.expm1(gain / sum(problem.counts.values())) * freedom
+    return float(fdtrc(1, freedom, ratio))
 
 
 def _tilted(problem: Problem, given: Collection[str], values: Array) -> Wider:
@@ -339,7 +348,32 @@ def _restituted(problem: Problem, values: Array) -> Wider:
     return attrs.evolve(problem, model=model), np.append(values, SOME_LOSS), words
 
 
-def assumed(problem: Problem, values: Array, reaches: Array) -> list[str]:
+def assumed(problem: Problem, given: Collection[str], values: Array, reaches: Array) -> list[str]:
+    """Return sentences on what is assumed, where another value moves a parameter as much."""
+    return [*_zero(problem, given, values, reaches), *_elasticity(problem, values, reaches)]
+
+
+def _zero(problem: Problem, given: Collection[str], values: Array, reaches: Array) -> list[str]:
+    """Return a sentence on the zero of the angles if another one is likely, though not certain."""
+    if problem.model.setup.scene.sphere is None or _freedom(problem, values) < SPARE:
+        return []
+    wider, start, words = _tilted(problem, given, values)
+    if wider is None:
+        return []
+    best = solved(wider, start)
+    own = _score(problem, values, problem)
+    chance = _chance(problem, values, own - _score(wider, best, problem))
+    moved = np.any(np.abs(best[:-1] - values) > reaches)
+    if chance > WORTH_FITTING_MORE or not moved:
+        return []
+    estimates = in_words(problem.model.parameters, best[:-1])
+    return [
+        f"{words(float(best[-1]))}: read so, {estimates}; scatter alone looks so with a chance of "
+        f"{chance:.1g}"
+    ]
+
+
+def _elasticity(problem: Problem, values: Array, reaches: Array) -> list[str]:
     """Return a sentence on an assumed restitution if another one moves a parameter as much.
 
     The sentence tells the least restitution of a few that the data do not exclude, if a parameter

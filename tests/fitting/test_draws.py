@@ -7,6 +7,8 @@ intervals; 1.5 % and 81 %. Other seeds: 95.3 % of the intervals of 600 clean dra
 of 500 with outliers.
 """
 
+import re
+
 import pytest
 
 from tests.fitting.draws import CLEAN, draw, draws, figures, outcome
@@ -23,25 +25,14 @@ def test_intervals_hold_the_truth_and_sound_measurements_are_not_accused():
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("flaw", "told", "silent"),
-    [
-        ({"restitution": 0.85}, 0.65, 0.0),
-        pytest.param(
-            {"tilt": 3.0},
-            0.8,
-            0.1,
-            marks=pytest.mark.xfail(
-                strict=True,
-                reason="12 % are silent, 8 % while Tsuji's law doubted restitution 1 by chance",
-            ),
-        ),
-    ],
+    [({"restitution": 0.85}, 0.65, 0.0), ({"tilt": 3.0}, 0.8, 0.05)],
     ids=["lost energy", "a protractor 3 degrees off"],
 )
 def test_intervals_beside_the_truth_are_not_silent(flaw, told, silent):
     """Of 40 draws of each flaw: the share with a note, and of misses with neither note nor caution.
 
     Before: 60 % of the draws that lose energy were told, 35 % were silent and wrong; with the tilt
-    78 % and 18 %. After: 88 % and none; 85 % and 12 %. Of the same draws without a flaw one in 40
+    78 % and 18 %. After: 88 % and none; 85 % and 2 %. Of the same draws without a flaw one in 40
     is accused, before and after.
     """
     outcomes = [outcome(draw(seed, outliers=False, only=("friction_coefficient",), **flaw))
@@ -50,3 +41,17 @@ def test_intervals_beside_the_truth_are_not_silent(flaw, told, silent):
     wrong = [not (one.notes or one.cautions or all(one.covered.values())) for one in outcomes]
     assert sum(notes) >= told * len(notes)
     assert sum(wrong) <= silent * len(wrong)
+
+
+def test_a_zero_of_angles_that_is_likely_but_not_certain_is_a_caution():
+    """With the friction coefficient that follows, nearer to the truth; none of sound angles."""
+    one = draw(33, outliers=False, only=("friction_coefficient",), tilt=3.0)
+    found = outcome(one)
+    (told,) = found.cautions
+    assert not found.notes
+    assert not all(found.covered.values())
+    assert "angle_deg looks as if all numbers were 2.5 degrees too large" in told
+    friction = float(re.search(r"friction_coefficient ([\d.]+)", told)[1])
+    assert friction == pytest.approx(one.truth["friction_coefficient"], rel=0.04)
+    sound = outcome(draw(33, outliers=False, only=("friction_coefficient",)))
+    assert not any("looks as if" in text for text in sound.cautions)
