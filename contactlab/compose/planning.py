@@ -163,6 +163,8 @@ def _words(
         computed.append(Clause(_in_place(laws, used), masks.known))
     if some(masks.marched):
         text = f"tangential motion: {used.integrator!r} over {used.tangential!r}"
+        if coupled:
+            text += together.lasting(used, part, masks.marched)
         computed.append(Clause(text, masks.marched, code=TANGENTIAL_MOTION))
     slow = used.tangential.one_by_one()
     if slow and scene.shape and (some(masks.marched) or (coupled and used.tangential.together)):

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import attrs
 import numpy as np
 
 from contactlab.compose.composition import Laws
+from contactlab.compose.normal_motion import normal_or_failed
 from contactlab.contracts import faults
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.motion import NormalMotion
@@ -67,13 +67,23 @@ def columns_of(laws: Laws, scene: Scene, normal: NormalMotion) -> PlanColumns:
     shape, together = scene.shape, laws.tangential.together
     ended = np.asarray(np.asarray(normal.status, dtype=object) == Status.SUCCESS)
     code = np.where(np.broadcast_to(ended, shape), 0 if together else MARCHED, ENDLESS)
-    errors: tuple[Any, Any] = (math.nan, math.nan)
+    errors: tuple[Any, Any]
     if together:
         errors = laws.tangential.errors_together(scene, laws.integrator.accuracy)
+    else:
+        errors = laws.integrator.errors_together(normal, laws.tangential, scene)
     psi2, restitution = (
         np.array(np.broadcast_to(error, shape)) if shape else float(error) for error in errors
     )
     return PlanColumns(code, psi2, (WHOLE,) if together else (), restitution)
+
+
+def lasting(laws: Laws, scene: Scene, marched: Any) -> str:
+    """Return words on how long the march of some impacts takes, empty if nobody declares it."""
+    part = scene if np.all(marched) else scene.take(marched)
+    normal = normal_or_failed(laws.normal, part.central)
+    seconds = laws.integrator.seconds_together(normal, laws.tangential, part)
+    return f": about {seconds:.1g} s" if seconds > 0.0 else ""
 
 
 def books_bound(laws: Laws, central: Scene) -> Any:
@@ -126,12 +136,8 @@ def cautions(laws: Laws, scene: Scene) -> list[str]:
 
 def _near_singular(scene: Scene) -> list[str]:
     """Return a caution where steps lose accuracy: friction can jam, and W is nearly singular."""
-    W: Any = scene.inverse_mass
-    size = 2 if scene.planar else 3
-    minor = np.linalg.det(W[..., 1:size, 1:size])
-    left = np.linalg.det(W[..., :size, :size]) / (W[..., 0, 0] * minor)
     jams = scene.size_of(np.asarray(scene.lam)) > 1.0
-    least = float(np.min(left, where=jams, initial=1.0))
+    least = float(np.min(scene.free_share, where=jams, initial=1.0))
     if least > NEAR_SINGULAR[0][0]:
         return []
     sizes = [f"by up to {error:g}" for share, error in NEAR_SINGULAR if least > share / 10.0]

@@ -40,7 +40,8 @@ class Integrator(Law):
        tangential law; NaN, the default, means not declared.
     8. An integrator with the word ``together`` also has ``integrate_together``, which marches the
        normal law and a tangential law that needs no future at once, where friction changes the
-       approach.
+       approach; ``errors_together`` are the errors, and ``seconds_together`` is about the time
+       that this takes, from the declarations of the tangential law.
     9. ``resolution`` is the name of the option, steps or tolerance, that controls the error. If
        the integrator refines by itself, ``resolution_for`` returns the value used; errors are
        estimated by doubling that value, not the option.
@@ -105,6 +106,24 @@ class Integrator(Law):
 
         NaN, the default, means not declared.
         """
+        return math.nan
+
+    def errors_together(
+        self,
+        normal: NormalMotion,
+        tangential: TangentialLaw,
+        scene: Scene,
+    ) -> tuple[Real, Real]:
+        """Return declared bounds of the errors of psi2 and of the normal restitution (clause 8).
+
+        NaN, the default, means not declared.
+        """
+        return math.nan, math.nan
+
+    def seconds_together(
+        self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene
+    ) -> float:
+        """Return about how many seconds the march takes (clause 8); NaN, the default: not known."""
         return math.nan
 
     @abstractmethod

@@ -227,6 +227,36 @@ class TangentialLaw(Law):
         """
         return math.nan
 
+    def errors_in_steps(self, scene: Scene, normal: NormalMotion, steps: Any) -> tuple[Real, Real]:
+        """Return declared bounds of the numerical errors of psi2 and of the normal restitution.
+
+        They hold where friction changes the approach and an integrator marches both motions. NaN,
+        the default, means not declared. Of a psi2 with two components it is the length of the
+        error.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch, with its inverse mass.
+        normal : NormalMotion
+            The approach without friction.
+        steps : array of float
+            Steps of each impact in the duration of that approach.
+        """
+        return math.nan, math.nan
+
+    def seconds_in_steps(self, scene: Scene, normal: NormalMotion, steps: Any) -> float:
+        """Return about how many seconds a march of both motions takes on a computer of 2026.
+
+        NaN, the default, means not measured.
+
+        Parameters
+        ----------
+        scene, normal, steps
+            As in ``errors_in_steps``.
+        """
+        return math.nan
+
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return one sentence for each doubt about the model; by default on unlike bodies."""
         return coupling(scene)

@@ -169,6 +169,15 @@ class Motions:
         return sides
 
     @property
+    def free_share(self) -> Any:
+        """Share of W_nn left by a slip that does not change, 1 - W_nt²/(W_nn W_tt) in the plane."""
+        if self.inverse_mass is None:
+            return 1.0
+        W, size = self.inverse_mass, 2 if self.planar else 3
+        minor = np.linalg.det(W[..., 1:size, 1:size])
+        return np.linalg.det(W[..., :size, :size]) / (W[..., 0, 0] * minor)
+
+    @property
     def rho(self) -> Real:
         """Rho = mu²/kappa, on an ellipse that along t1."""
         mu: Any = self.friction_coefficient

@@ -1,5 +1,7 @@
 """One loss for pressure and shear (theory §15): against other programs, closed forms and rings."""
 
+import re
+
 import attrs
 import numpy as np
 import pytest
@@ -216,6 +218,25 @@ def test_the_plan_says_whose_restitution_it_is():
     assert told not in map(str, springs(viscoelastic(1.0)).plan(coupled).computed)
 
 
+def test_the_plan_says_how_long_a_march_of_bodies_takes():
+    """About: seconds of the computer on which it was measured; in proportion in large batches."""
+
+    def seconds(plan):
+        found = [re.search(r"^tangential motion: .*: about (\S+) s$", str(text))
+                 for text in plan.computed]  # fmt: skip
+        return [float(each[1]) for each in found if each]
+
+    (one,), (few,), (many,) = (
+        seconds(springs(viscoelastic(0.7)).plan(random_planar(count, 9)))
+        for count in (1, 4000, 40000)
+    )
+    assert 0.1 <= one <= 1.0
+    assert many / few == pytest.approx(10.0, rel=0.2)
+    (in_space,) = seconds(springs(viscoelastic(0.7)).plan(random_in_space(4000, 9)))
+    assert in_space > 3.0 * few
+    assert seconds(springs("hertz").plan(random_planar(3, 9))) == []
+
+
 @pytest.mark.slow
 def test_a_rod_in_space():
     """The rod of theory §14 with loss, whose slip turns: springs' own limit."""
@@ -353,6 +374,42 @@ def test_books_of_bodies_close(e):
     for scene, bound in ((random_planar(60, 8), 3e-4), (random_in_space(20, 8), 3e-5)):
         result = springs(viscoelastic(e)).run(scene).check()
         assert np.abs(result.energy.relative_imbalance).max() < bound
+
+
+@pytest.mark.parametrize(
+    ("law", "scene"),
+    [
+        (viscoelastic(0.97), random_planar(60, 61)),
+        (viscoelastic(0.6), random_in_space(8, 62)),
+        *longer(
+            (viscoelastic(0.1), random_planar(60, 63)), (viscoelastic(0.99), random_in_space(20, 65)),
+            (other("tsuji", 0.3), random_planar(60, 64)),
+        ),
+    ],
+)  # fmt: skip
+def test_errors_of_bodies_are_those_declared(law, scene):
+    """By the extrapolation of finer springs and steps; where W is nearly singular none is."""
+    middle, fine = (springs(law, parts, 4 * parts).run(scene).check() for parts in (60, 120))
+
+    def exact(name):
+        return (4.0 * np.asarray(getattr(fine, name)) - getattr(middle, name)) / 3.0
+
+    for parts, steps in ((12, 160), (25, 100)):
+        result = springs(law, parts, steps).run(scene).check()
+        errors = {
+            "psi2": result.plan.psi2_error,
+            "normal_restitution": result.plan.restitution_error,
+        }
+        for name, declared in errors.items():
+            off = np.abs(np.asarray(getattr(result, name)) - exact(name))
+            off = np.linalg.norm(off, axis=-1) if off.ndim > 1 else off
+            known = np.isfinite(declared)
+            assert known.mean() > 0.85
+            assert (off[known] <= declared[known]).all()
+            assert np.max(off[known] / declared[known]) > 1e-3
+    assert np.isnan(springs(law, shear_loss=0.5).plan(scene).psi2_error).all()
+    said = [text for text in map(str, middle.plan.computed) if "of the normal restitution" in text]
+    assert any("at most" in text for text in said)
 
 
 @pytest.mark.parametrize(

@@ -139,6 +139,25 @@ class FixedSteps(Integrator):
         steps: Any = self.resolution_for(normal, tangential, scene)
         return tangential.psi2_error(scene, normal, steps)
 
+    def errors_together(
+        self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene
+    ) -> tuple[Real, Real]:
+        """Return the errors that the tangential law declares for as many steps."""
+        taken = self._taken_together(together.needed_steps(scene, normal, tangential))
+        return tangential.errors_in_steps(scene, normal, taken)
+
+    def seconds_together(
+        self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene
+    ) -> float:
+        """Return the time that the tangential law declares for as many steps."""
+        taken = self._taken_together(together.needed_steps(scene, normal, tangential))
+        return tangential.seconds_in_steps(scene, normal, taken)
+
+    def _taken_together(self, needed: Any) -> Any:
+        """Return the steps of each impact in the approach without friction; infinite if refused."""
+        most = MOST_STEPS if self.refine else self.steps
+        return np.where(needed <= most, np.maximum(self.steps, needed), np.inf)
+
     def remarks(
         self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene
     ) -> tuple[str, ...]:
@@ -192,7 +211,6 @@ class FixedSteps(Integrator):
         """Return the motion, ``steps`` counted on the approach without friction."""
         assert isinstance(tangential, SteppedTangentialLaw)
         needed = together.needed_steps(scene, normal, tangential)
-        most = MOST_STEPS if self.refine else self.steps
-        taken = np.where(needed <= most, np.maximum(self.steps, needed), np.inf)
+        taken = self._taken_together(needed)
         refused = Status.TOO_FEW_STEPS, refusals(self.steps, needed)
         return together.march_together(scene, normal, tangential, taken, observer, refused)
