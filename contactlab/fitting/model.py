@@ -109,6 +109,11 @@ class Model:
             result = tabulated.rebounds(setup.scene, restitution)
         return {name: QUANTITIES[name].of(result).reshape(many, count) for name in quantities}
 
+    def at_once(self, quantities: Sequence[str]) -> bool:
+        """Return whether any points run in one batch: no option of a law differs in them."""
+        each = self._restituted(quantities)
+        return all(parameter.batched or parameter is each for parameter in self.parameters)
+
     def _restituted(self, quantities: Sequence[str]) -> Parameter | None:
         """Return the restitution if each impact of a batch may have its own; else None."""
         if not self.tabled or CONTACT_TIME in quantities:

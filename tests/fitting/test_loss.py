@@ -147,3 +147,45 @@ def test_laws_fit_what_they_have_over_the_same_numbers():
     rms = "rebound_tangential_velocity"
     gain = 8.0 * (np.log(off[1] / off[0]) + 2.0 * np.log(second.fit.rms[rms] / first.fit.rms[rms]))
     assert second.fit.aic - first.fit.aic == pytest.approx(gain - 2.0, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "scatter", "apart"),
+    [([MU, "tangential.shear_loss"], 0.01, 0.06), (["tangential.shear_loss"], 0.03, 2e-3)],
+    ids=["by polynomials", "which the laws contradict"],
+)
+def test_samples_of_the_bootstrap_are_fits_of_the_numbers_drawn(parameters, scatter, apart):
+    """Of a loss in shear: where its interval is narrow, and where one sample needs the laws."""
+
+    def laws(loss):
+        return Simulation(
+            normal=create("normal.tsuji", restitution=0.8),
+            tangential=create("tangential.springs", springs=20, shear_loss=loss),
+            integrator=create("integrator.symplectic", steps=80),
+        )
+
+    angles, count = np.array([5.0, 12.0, 20.0, 30.0, 40.0, 50.0, 60.0]), 7
+    bodies = attrs.evolve(BODIES, friction_coefficient=0.2)
+    scene = attrs.evolve(
+        bodies,
+        normal_speed=np.cos(np.radians(angles)),
+        tangential_velocity=np.sin(np.radians(angles)),
+    )
+    scattered = scatter * np.random.default_rng(5).standard_normal(count)
+    e_t = laws(1.5).run(scene).check().tangential_restitution + scattered
+    columns = {"angle_deg": angles, "speed (m/s)": np.ones(count)}
+
+    def fitted(e_t, **more):
+        whole = columns | {"tangential_restitution": e_t}
+        return fit(whole, bodies, parameters=parameters, simulation=laws(1.0), **more)
+
+    found = fitted(e_t, bootstrap=3)
+    residuals, generator = found.residuals["tangential_restitution"], np.random.default_rng(1976)
+    wider, samples = np.sqrt(count / (count - len(parameters))), []
+    for _ in range(3):
+        signs = wider * generator.choice([-1.0, 1.0], count)
+        again = fitted(e_t + (signs - 1.0) * residuals)
+        samples.append([again[name] for name in parameters])
+    ends = np.quantile(samples, [0.025, 0.975], axis=0)
+    told = np.transpose([found.parameters[name].bootstrap for name in parameters])
+    assert (np.abs(told - ends) <= 0.5 * apart * (ends[1] - ends[0])).all()

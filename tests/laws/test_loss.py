@@ -382,7 +382,8 @@ def test_books_of_bodies_close(e):
         (viscoelastic(0.97), random_planar(60, 61)),
         (viscoelastic(0.6), random_in_space(8, 62)),
         *longer(
-            (viscoelastic(0.1), random_planar(60, 63)), (viscoelastic(0.99), random_in_space(20, 65)),
+            (viscoelastic(0.1), random_planar(60, 63)),
+            (viscoelastic(0.99), random_in_space(20, 65)),
             (other("tsuji", 0.3), random_planar(60, 64)),
         ),
     ],
