@@ -218,6 +218,16 @@ def test_the_plan_says_whose_restitution_it_is():
     assert told not in map(str, springs(viscoelastic(1.0)).plan(coupled).computed)
 
 
+def test_a_dashpot_that_answers_a_rate_by_more_than_that_rate():
+    """Few steps at the least restitution: 60 are off by what they declare, not by twice that."""
+    scene, law = random_planar(120, 881), viscoelastic(0.01)
+    exact = springs(law, 60, 240).run(scene).check().normal_restitution
+    result = springs(law, 8, 60).run(scene).check()
+    known = np.isfinite(result.plan.restitution_error)
+    off = np.abs(result.normal_restitution - exact)
+    assert (off <= 0.1 * result.plan.restitution_error)[known].all()
+
+
 def test_the_plan_says_how_long_a_march_of_bodies_takes():
     """About: seconds of the computer on which it was measured; in proportion in large batches."""
 

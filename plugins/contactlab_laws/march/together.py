@@ -88,6 +88,22 @@ def march_together(
     return march.run(observer)
 
 
+def _nearer(tried: list[tuple[Any, Any]], answer: Any) -> Any:
+    """Return the rate of approach to try next, and note it; ``answer`` is what the last one gave.
+
+    The rate that reproduces itself is sought by secants: a dashpot answers a rate by so much less
+    of it that the plain iteration may run away.
+    """
+    rate = answer
+    if len(tried) > 1:
+        (before, _), (last, first) = tried[-2:]
+        change = last - before
+        slope = np.minimum((answer - first) / (change + (change == 0.0)), 0.0)
+        rate = last + (answer - last) / (1.0 - slope)
+    tried.append((rate, answer))
+    return rate
+
+
 class _March:
     """The impacts of a batch in progress."""
 
@@ -166,11 +182,13 @@ class _March:
             moved = self._joined([each * drift for each in velocity[1:]])
             start = self._joined(velocity[1:])
             # forces that depend on rates act on those in the middle of their kick
+            tried: list[tuple[Any, Any]] = []
             for _ in range(1 if self.elastic else TURNS):
                 at = velocity
                 if not self.elastic:
                     kick = self._kick(pressure, force, step)
                     at = [v - 0.5 * k for v, k in zip(velocity, kick, strict=True)]
+                    at[0] = _nearer(tried, at[0])
                 with faults.blaming(alone) as blamed:
                     blamed.step = self.steps
                     contact, new = alone.respond(memory, approach, at[0])
