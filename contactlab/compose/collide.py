@@ -48,7 +48,8 @@ def collide(
         answer is not used. Below 1 the law is ``normal.viscoelastic``, one loss for pressure and
         shear, by ``contactlab.rebound``: from a table for chi from 0.3 to 3 (all spheres but those
         with a dense core), at half a microsecond per encounter with any number of different e, and
-        by springs elsewhere, in milliseconds. ``Collision.plan`` states the error of psi2.
+        by springs elsewhere, in milliseconds; from 0.01 on where friction changes the approach.
+        ``Collision.plan`` states the error of psi2.
     separating : "refuse" or "pass"
         For bodies that do not approach each other: an error with the index of the first, or both
         bodies unchanged, with ``Collision.collided`` False.

@@ -10,12 +10,15 @@ from numpy.typing import NDArray
 
 from contactlab.compose.collision_plan import by_rebound
 from contactlab.compose.normal_spin_words import with_normal_spin
-from contactlab.compose.rebound import laws_of
+from contactlab.compose.rebound import laws_of, rebound
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.restitution import LEAST_RESTITUTION
+from contactlab.contracts.status import Status
+from contactlab.impact.inverse_mass import along
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real
-from contactlab.outcome.motion import Motion
+from contactlab.numeric.arrays import filled, spread
+from contactlab.numeric.checks import Real, refuse
+from contactlab.outcome.motion import ENDS, Motion
 from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult
 
@@ -34,11 +37,11 @@ def run_in_blocks(simulation: Simulation, scene: Scene) -> ImpactResult:
 def run_by_restitution(scene: Scene, restitution: Real) -> ImpactResult:
     """Return the result of impacts under a restitution, one number or one for each."""
     if isinstance(restitution, float):
-        return run_in_blocks(_simulation(restitution), scene)
+        return _run(scene, restitution)
     groups = _alike(restitution)
     if len(groups) == 1:
-        return run_in_blocks(_simulation(groups[0][1]), scene)
-    parts = [(mask, run_in_blocks(_simulation(e), scene.take(mask))) for mask, e in groups]
+        return _run(scene, groups[0][1])
+    parts = [(mask, _run(scene.take(mask), e)) for mask, e in groups]
     return ImpactResult(
         scene=scene,
         plan=Plan.merged([(mask, part.plan) for mask, part in parts], scene.shape),
@@ -46,6 +49,46 @@ def run_by_restitution(scene: Scene, restitution: Real) -> ImpactResult:
         laws=parts[0][1].laws,
         run_time=sum(part.run_time for _, part in parts),
     )
+
+
+def _run(scene: Scene, restitution: float) -> ImpactResult:
+    """Return the result of impacts of one restitution."""
+    if restitution >= LEAST_RESTITUTION:
+        return run_in_blocks(_simulation(restitution), scene)
+    return _hardly_rebounding(scene, restitution)
+
+
+def _hardly_rebounding(scene: Scene, restitution: float) -> ImpactResult:
+    """Return velocities of impacts of a restitution that no law has; the rest is NaN.
+
+    Raises
+    ------
+    ValueError
+        If friction changes the approach of any.
+    """
+    (_, part), *others = scene.parts()
+    if others or part.inverse_mass is not None:
+        rule = (
+            f"must be from {LEAST_RESTITUTION} where friction changes the approach: there is no "
+            "closed form, and steps lose a dashpot so strong"
+        )
+        remedy = f"take {LEAST_RESTITUTION}, from which psi2 is linear down to 0"
+        raise refuse("restitution", restitution, rule, remedy)
+    rate: Any = -restitution * np.asarray(part.normal_speed)
+    psi2: Any = rebound(part.psi1, part.chi, restitution=restitution)
+    change = (psi2 - part.psi1) / np.asarray(part.psi_scale)
+    _, _, lost = part.energies(rate, change)
+    entries: dict[str, Any] = dict.fromkeys(ENDS, np.nan) | {"normal_velocity": rate}
+    motion = Motion(
+        **{name: spread(entry, part.shape) for name, entry in entries.items()},
+        slip_velocity_change=spread(change, part.shape),
+        friction_work=spread(lost, part.shape),
+        status=filled(Status.SUCCESS, part.shape),
+    )
+    if scene.slip_axes:
+        motion = motion.turned(along(scene.slip_velocity))
+    plan = planned(part, restitution)
+    return ImpactResult(scene=scene, plan=plan, motion=motion, run_time=0.0, laws={})
 
 
 def planned(scene: Scene, restitution: Real) -> Plan:

@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import Simulation, collide
+from contactlab import Encounter, RigidBody, Simulation, Sphere, collide
 from contactlab.compose.rebound import RESTITUTED_ERROR
 from tests.compose.test_collision import BALL, meeting
-from tests.compose.test_eccentric import rod
+from tests.compose.test_eccentric import FLOOR, STEEL, rod
 
 
 def test_a_restitution_is_that_of_springs_that_lose_as_the_normal_contact():
@@ -173,3 +173,31 @@ def test_the_plan_of_bodies_says_once_whose_restitution_it_is():
         assert "of a frictionless impact on the mass 1/W_nn" in told[0]
     for none in (collide(met), collide(meeting(), restitution=0.8)):
         assert "1/W_nn" not in str(none.plan)
+
+
+@pytest.mark.parametrize("e", [0.0, 0.005, 0.3])
+def test_a_sphere_given_as_a_body_rebounds_as_little(e):
+    """Down to clay, whose contact point stops where it grips; across, and in batches."""
+    ball = Sphere(0.01, STEEL)
+    inertia = 0.4 * ball.mass * 0.01**2 * np.eye(3)
+    body = RigidBody(mass=ball.mass, inertia=inertia, material=STEEL, curvature_radius=0.01)
+    velocity = [(0.3, 0.2, -1.0), (5.0, 0.0, -1.0)]
+    about = {"normal": (0, 0, -1), "velocity": velocity, "spin": (0.0, 3.0, 0.0)}
+    as_ball = collide(Encounter(ball, FLOOR, 0.3, **about), restitution=e)
+    as_body = collide(Encounter(body, FLOOR, 0.3, contact=(0, 0, -0.01), **about), restitution=e)
+    for name in ("velocity", "spin", "friction_work"):
+        scale = np.abs(getattr(as_ball, name)).max()
+        found, expected = getattr(as_body, name), getattr(as_ball, name)
+        np.testing.assert_allclose(found, expected, atol=1e-9 * scale)
+    assert np.abs(as_body.energy.relative_imbalance).max() < 1e-12
+    if e == 0.0:
+        grips, slips = as_body.contact_velocity
+        assert np.abs(grips).max() < 1e-12
+        assert slips[0] == pytest.approx(5.0 - 0.01 * 3.0 - 0.3 * 3.5, rel=1e-9)
+
+
+@pytest.mark.parametrize("e", [0.0, 0.005, [0.5, 0.0]])
+def test_bodies_that_hardly_rebound_are_refused_where_friction_changes_the_approach(e):
+    met = attrs.evolve(rod(-35.0, slip=0.3), friction_coefficient=0.3 * np.ones(np.shape(e)))
+    with pytest.raises(ValueError, match=r"restitution = 0.0.*must be from 0.01 where friction"):
+        collide(met, restitution=e)
