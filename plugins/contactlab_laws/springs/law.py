@@ -158,6 +158,7 @@ class Springs(ProfileLaw):
         error: Any = own * np.sqrt(deepest(scene))
         jams = (lam > 1.0) & (scene.free_share < LEAST_FREE)
         known = (lam <= LARGEST_LAM) & (chi <= BODY_CHI) & np.isfinite(steps + eta) & ~jams
+        known &= np.equal(scene.pair.cross_stiffness_ratio, 1.0)
         restitution = np.where(known, error, math.nan)
         return 0.5 * (1.0 + chi + eta) * restitution, restitution
 
