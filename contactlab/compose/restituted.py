@@ -69,8 +69,8 @@ def _hardly_rebounding(scene: Scene, restitution: float) -> ImpactResult:
     (_, part), *others = scene.parts()
     if others or part.inverse_mass is not None:
         rule = (
-            f"must be from {LEAST_RESTITUTION} where friction changes the approach: there is no "
-            "closed form, and steps lose a dashpot so strong"
+            f"must be from {LEAST_RESTITUTION} where friction changes the approach: steps lose a "
+            "dashpot so strong"
         )
         remedy = f"take {LEAST_RESTITUTION}, from which psi2 is linear down to 0"
         raise refuse("restitution", restitution, rule, remedy)
