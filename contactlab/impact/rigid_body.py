@@ -238,7 +238,12 @@ class RigidBody:
 
     @staticmethod
     def alike(bodies: Sequence[RigidBody]) -> list[RigidBody]:
-        """Return bodies of which all have two radii of curvature if any has, to be stacked."""
+        """Return bodies of which all have two radii of curvature if any has, to be stacked.
+
+        Parameters
+        ----------
+        bodies : sequence of RigidBody
+        """
         if all(body.cross_radius is None for body in bodies):
             return list(bodies)
         any_axis = (1.0, 0.0, 0.0)  # says nothing where both radii are one
