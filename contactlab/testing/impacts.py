@@ -161,7 +161,9 @@ def impact_repeatable(law: Any) -> None:
         watched = course(way, 1.2, 1.44)[1]
         gap = abs(watched.slip_velocity_change - first.slip_velocity_change)
         gap /= abs(first.slip_velocity_change) or 1.0
-        room = 1e-9 if isinstance(way.law, AllStepsTangentialLaw) else 0.0
+        # a compiled solver shows no instants: what is watched is solved by another, to rounding
+        compiled = isinstance(way.law, TangentialLaw) and bool(way.law.solver())
+        room = 1e-9 if isinstance(way.law, AllStepsTangentialLaw) else 1e-12 * compiled
         within(gap, room, f"Watched, an impact ends differently, by {gap:.1e} ({way}).")
 
 
