@@ -120,6 +120,7 @@ def test_bad_input(run, sweep, arguments, words):
     assert words in ran.err
 
 
+@pytest.mark.slow
 def test_all_of_a_single_impact_have_a_row_each(run, ball):
     ran = run("compare", ball, "--all")
     assert ran.status == 0

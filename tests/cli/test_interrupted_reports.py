@@ -21,6 +21,7 @@ def rows(path):
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 
 
+@pytest.mark.slow
 def test_bench(run, monkeypatch, tmp_path):
     monkeypatch.setattr(bench, "methods", lambda _: STEPPED)
     monkeypatch.setattr(work_precision, "_row", interrupting(work_precision._row, 2))

@@ -73,6 +73,7 @@ def test_a_report_and_a_picture_of_a_ball(run, files, tmp_path, monkeypatch):
     assert CAUTION in ran.err
 
 
+@pytest.mark.slow
 def test_the_half_space_answers_and_nothing_is_cautioned(run, tmp_path):
     path = tmp_path / "one.toml"
     path.write_text(BODIES["sphere"] + IMPACT)

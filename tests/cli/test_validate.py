@@ -112,6 +112,7 @@ def test_curves_of_codes_are_those_of_the_capped_spring(gathered, name):
     assert 0.055 < rms(one, "fronts") < 0.1
 
 
+@pytest.mark.slow
 def test_scalars_of_hertz_are_the_codes(monkeypatch):
     monkeypatch.setattr(validation, "COMPOSITIONS", ())
     bounds = [validation.FORCE_READING, validation.OTHER_READING]

@@ -294,6 +294,7 @@ def test_shared_loss_takes_energy_and_its_books_close(restitution):
     assert np.abs(result.energy.relative_imbalance).max() < 2e-3
 
 
+@pytest.mark.slow
 def test_shared_loss_vanishes_with_the_loss_in_pressure():
     scene = random_scenes(12, 4)
     losses, distances = (1e-2, 1e-3, 1e-4), []
@@ -304,6 +305,7 @@ def test_shared_loss_vanishes_with_the_loss_in_pressure():
     assert np.polyfit(np.log(losses), np.log(distances), 1)[0] > 0.95
 
 
+@pytest.mark.slow
 def test_steps_are_of_second_order():
     scene = random_scenes(24, 5)
     fine, errors = springs(200, 1600).run(scene).psi2, []

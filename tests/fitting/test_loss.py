@@ -149,6 +149,7 @@ def test_laws_fit_what_they_have_over_the_same_numbers():
     assert second.fit.aic - first.fit.aic == pytest.approx(gain - 2.0, rel=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("parameters", "scatter", "apart"),
     [([MU, "tangential.shear_loss"], 0.01, 0.06), (["tangential.shear_loss"], 0.03, 2e-3)],

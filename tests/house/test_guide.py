@@ -34,7 +34,7 @@ LAWS = (
     "OneSpring",
 )  # fmt: skip
 #: Laws whose checks take longer than a second.
-HEAVY = ("Viscoelastic", "Brush", "Leapfrog")
+HEAVY = ("Viscoelastic", "Brush", "Bristle", "Leapfrog")
 WITH_CODE = [page for page in PAGES if BLOCKS.search(text(page))]
 #: Extras that the code of a page needs.
 EXTRAS = {"for-a-paper": ("pandas",), "getting-started": ("xarray",)}

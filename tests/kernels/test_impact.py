@@ -16,7 +16,7 @@ pytestmark = needs_c
 MOST, TOLERANCE = 20_000, 5e-13
 
 
-@pytest.fixture(scope="module", params=["c99", "c++"])
+@pytest.fixture(scope="module", params=["c99", pytest.param("c++", marks=pytest.mark.slow)])
 def followed(request, tmp_path_factory):
     """Return a function of psi1, chi, lam, eta (4, n) that gives statuses and answers (7, n)."""
     folder = tmp_path_factory.mktemp("impact")
