@@ -14,7 +14,7 @@ from contactlab.compose.simulation import Simulation
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.impact.encounter import Encounter
 from contactlab.numeric.arrays import every, some
-from contactlab.numeric.checks import Real, real, refuse
+from contactlab.numeric.checks import Real, check_place, real, refuse
 from contactlab.numeric.vectors import LEAST
 
 SEPARATING = ("refuse", "pass")
@@ -140,6 +140,8 @@ def _at_speeds(restitution: Callable[[Any], Any], encounter: Encounter) -> Any:
     shape, approach = encounter.shape, encounter.meeting().approach
     apart = np.broadcast_to(~(np.asarray(approach) >= LEAST), shape)
     speed = np.where(apart, 1.0, approach)
-    each = np.array(_spread(restitution(speed if shape else float(speed)), shape))
+    found = restitution(speed if shape else float(speed))
+    check_place("restitution", found)
+    each = np.array(_spread(found, shape))
     each[apart] = 1.0
     return each

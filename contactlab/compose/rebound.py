@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, overload
 
 import attrs
 import numpy as np
@@ -15,12 +15,15 @@ from numpy.typing import NDArray
 from contactlab.compose.names import BLOCK_VARIABLE
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.numeric.checks import POSITIVE, Real, Rule, paired, real, refuse
+from contactlab.numeric.labels import library_of
 
 if TYPE_CHECKING:
     from contactlab.compose.simulation import Simulation
     from contactlab.contracts.whole_impact import Tabulated
 
 Array = NDArray[np.float64]
+#: Numbers without labels; of arrays with labels the answer has their type.
+Numbers: TypeAlias = float | np.number[Any] | NDArray[Any] | Sequence[Any]
 
 #: Range of chi in the table of restitutions below 1. Largest errors of psi2: in the table up to chi
 #: ``NEARER``, and up to its end; and of springs beyond it over sqrt(chi/3):
@@ -55,8 +58,8 @@ FEW_NUMBERS = 40
 
 @overload
 def rebound(
-    psi1: object,
-    chi: object,
+    psi1: Numbers,
+    chi: Numbers,
     *,
     tolerance: float = USUAL,
     derivatives: Literal[False] = False,
@@ -64,25 +67,34 @@ def rebound(
 ) -> Real: ...
 @overload
 def rebound(
-    psi1: object, chi: object, *, tolerance: float = USUAL, derivatives: Literal[True]
+    psi1: Numbers, chi: Numbers, *, tolerance: float = USUAL, derivatives: Literal[True]
 ) -> tuple[Real, Real, Real]: ...
+@overload
+def rebound(
+    psi1: Numbers,
+    chi: Numbers,
+    *,
+    tolerance: float = USUAL,
+    derivatives: Literal[True],
+    restitution: Real,
+) -> tuple[Real, Real, Real, Real]: ...
 @overload
 def rebound(
     psi1: object,
     chi: object,
     *,
     tolerance: float = USUAL,
-    derivatives: Literal[True],
-    restitution: Real,
-) -> tuple[Real, Real, Real, Real]: ...
+    derivatives: bool = False,
+    restitution: object = ELASTIC,
+) -> Any: ...
 def rebound(
     psi1: object,
     chi: object,
     *,
     tolerance: float = USUAL,
     derivatives: bool = False,
-    restitution: Real = ELASTIC,
-) -> Real | tuple[Real, ...]:
+    restitution: Any = ELASTIC,
+) -> Any:
     """Return the dimensionless rebound psi2 of spheres, a float or an array of the inputs' shape.
 
     The model is the paper's in its continuum limit: Hertz contact, Coulomb friction. Elastic
@@ -125,11 +137,16 @@ def rebound(
         array change an answer by less than 1e-10. Arrays are float64 and new; inputs of other types
         are converted.
 
+        Labelled arrays are paired by label, and beside them stand numbers or arrays with labels:
+        of ``xarray.DataArray`` by the names of dimensions, with their coordinates; of
+        ``pandas.Series`` by index. The answer has the same type. Arrays of dask give arrays of
+        dask, not computed yet; their bad numbers are refused when they are computed.
+
     Raises
     ------
     ValueError
         For bad input, with the argument, its value, the index of the first bad number, the rule
-        and the remedy.
+        and the remedy; also if labels differ.
     ValueError, PluginError
         If ``tangential.fronts``, or ``normal.viscoelastic`` below a restitution of 1, is blocked or
         cannot be imported.
@@ -151,9 +168,11 @@ def rebound(
     if usual and not derivatives:
         if restitution is ELASTIC or (type(restitution) is float and restitution == 1.0):
             if _within(psi1, chi, *ELASTIC_CHI):
-                return _table("tangential")(psi1, chi)  # type: ignore[no-any-return]
+                return _table("tangential")(psi1, chi)
         elif _below_one(restitution, psi1) and _within(psi1, chi, *RESTITUTED_CHI):
-            return _by_table(psi1, chi, restitution)  # type: ignore[no-any-return]
+            return _by_table(psi1, chi, restitution)
+    if library_of(psi1) or library_of(chi) or library_of(restitution):
+        return _labelled(psi1, chi, tolerance, derivatives, restitution)
     incidence = real(
         "psi1",
         psi1,
@@ -194,6 +213,21 @@ def rebound(
     arrays = [each.reshape(velocity.shape) for each in (psi2, *slopes)]
     answers: tuple[Real, ...] = (*(arrays if velocity.ndim else map(float, arrays)),)
     return answers if derivatives else answers[0]
+
+
+def _labelled(psi1: Any, chi: Any, tolerance: Any, derivatives: bool, restitution: Any) -> Any:
+    """Return ``rebound`` of labelled or lazy arrays, with their labels."""
+    from contactlab.compose.labelled import by_labels  # only for arrays of other libraries
+
+    arguments, three = {"psi1": psi1, "chi": chi}, restitution is not ELASTIC
+    if three:
+        arguments["restitution"] = restitution
+
+    def answer(*columns: Any) -> Any:
+        e = columns[2] if three else ELASTIC
+        return rebound(*columns[:2], tolerance=tolerance, derivatives=derivatives, restitution=e)
+
+    return by_labels(answer, 1 + (2 + three) * derivatives, arguments)
 
 
 def _slopes(psi1: Array, chi: Array, restitution: Real | None) -> tuple[Array, ...]:

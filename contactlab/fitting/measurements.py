@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.fitting.csv_columns import ERROR, read_columns, read_heading, read_text
-from contactlab.numeric.checks import real, refuse
+from contactlab.numeric.checks import check_place, real, refuse
 from contactlab.scene_file import SceneFile
 from contactlab.scene_file.measured import Measured
 
@@ -149,6 +149,7 @@ def _from_columns(columns: dict[str, Any], names: Mapping[str, str], source: str
 
 def _column(text: str, content: Any, *, gaps: bool) -> Array:
     """Return the numbers of a column, shape (n,); NaN only if it may have gaps."""
+    check_place(text, content)
     values = np.atleast_1d(np.asarray(content))
     if values.ndim != 1 or values.dtype.kind not in "iuf" or not values.size:
         raise refuse(text, content, "must be a list of numbers", "one for each impact")

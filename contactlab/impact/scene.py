@@ -21,6 +21,7 @@ from contactlab.numeric.checks import (
     POSITIVE,
     Real,
     Rule,
+    check_place,
     instance,
     key,
     quantity,
@@ -41,6 +42,7 @@ OBLIQUE = Rule(
 
 def _tensors(value: Any) -> Array | None:
     """Return a read-only copy as float64; None as it is."""
+    check_place("inverse_mass", value)
     return None if value is None else np.asarray(batch.locked(np.array(value, dtype=np.float64)))
 
 
@@ -573,6 +575,7 @@ class Scene(Motions):
         ValueError
             If ``index`` has another shape, or its numbers are not integers.
         """
+        check_place("index", index)
         indices = np.array(index)
         if indices.shape != self.shape or indices.dtype.kind not in "iu":
             rule = f"must be whole numbers of the shape {self.shape}"

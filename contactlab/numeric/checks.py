@@ -13,6 +13,8 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.numeric.labels import misplaced
+
 #: A number or an array of numbers: laws accept both.
 Real: TypeAlias = float | NDArray[np.float64]
 #: A bool or an array of bool.
@@ -81,6 +83,8 @@ def real(
         raise refuse(argument, value, rule.sentence, remedy)
     if isinstance(value, str | bytes | bool) or value is None:
         raise refuse(argument, value, "must be a real number", remedy)
+    if type(value) is not np.ndarray:
+        check_place(argument, value)
     try:
         array = np.asarray(value)
     except ValueError:
@@ -103,6 +107,12 @@ def real(
     if kept:
         widened.flags.writeable = False
     return widened
+
+
+def check_place(argument: str, value: object) -> None:
+    """Refuse an array that has labels, or no numbers yet: it must not be read by position."""
+    if why := misplaced(value):
+        raise refuse(argument, value, *why)
 
 
 def first_of(where: Any) -> str:

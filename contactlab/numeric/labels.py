@@ -1,0 +1,56 @@
+"""Arrays with labels or without numbers yet: of xarray, pandas and dask, none of them imported."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+#: Packages of arrays that NumPy would pair by position, or compute at once.
+LIBRARIES = ("xarray", "pandas", "dask")
+
+
+def library_of(value: object) -> str:
+    """Return the package of an array with labels, or without numbers yet; else empty."""
+    kind: Any = type(value)
+    return _library(kind)
+
+
+@cache
+def _library(kind: type) -> str:
+    """Return the package of a class of such arrays; empty for all other classes."""
+    for base in kind.__mro__:
+        package = base.__module__.partition(".")[0]
+        if package in LIBRARIES and (package != "pandas" or hasattr(kind, "iloc")):
+            return package
+    return ""
+
+
+def numbered(index: Any) -> bool:
+    """Return whether an index of pandas counts 0, 1, 2, ...: then position and label are one."""
+    return bool(np.array_equal(np.asarray(index), np.arange(len(index))))
+
+
+def misplaced(value: Any) -> tuple[str, str] | None:
+    """Return why ``value`` must not be read by position, and the remedy; None for other values.
+
+    A ``DataArray`` without dimensions is a number, and so is an entry of one. A ``Series`` whose
+    index counts 0, 1, 2, ... has the same pairs by position and by label.
+    """
+    library = library_of(value)
+    if library == "xarray" and getattr(value, "dims", None) != ():
+        dimensions = ", ".join(map(str, getattr(value, "dims", ())))
+        rule = f"has dimensions with names ({dimensions}), but arrays are paired by position here"
+        return rule, "give numbers in the order that is meant: .values"
+    if library == "pandas":
+        if value.ndim > 1:
+            rule = "has columns with names, but arrays are paired by position here"
+            return rule, "give numbers in the order that is meant: .to_numpy()"
+        if not numbered(value.index):
+            rule = "has an index other than 0, 1, 2, ..., but arrays are paired by position here"
+            return rule, "give numbers in the order that is meant: .to_numpy()"
+    if library == "dask":
+        remedy = "give its numbers: .compute(); of dask arrays only rebound returns dask arrays"
+        return "is not computed yet", remedy
+    return None
