@@ -40,74 +40,18 @@ class Kept:
     """A folder with the finished pieces of one sweep, each written to a temporary file first."""
 
     def __init__(self, folder: str | Path, laws: Laws, scene: Any, block: int) -> None:
-        if not isinstance(folder, str | os.PathLike):
-            raise refuse("keep", folder, "must be the path of a folder")
-        if os.path.lexists(folder) and not os.path.isdir(folder):
-            what = "is a link to nothing" if os.path.islink(folder) else "is a file"
-            raise refuse("keep", str(folder), what, "name a folder")
-        self.folder, self.impacts = Path(folder), scene.shape[0]
-        by_kind = laws.by_kind()
-        modules = _modules(by_kind)
-        if nameless := sources.without_file(modules):
-            rule = f"cannot tell the code of {nameless[0]} from an earlier one: it is in no file"
-            raise refuse("keep", str(folder), rule, "write the classes of the laws into a file")
-        code = sources.code_of(modules)
-        if own := sources.own_code():
-            code[PROJECT] = own
-        about = {
-            **{f"code of {name}": checksum for name, checksum in code.items()},
-            **{kind: f"{REGISTRY.describe(law)}: {law!r}" for kind, law in by_kind.items()},
-            "impacts": self.impacts,
-            "scene": fingerprint(scene),
-            "options": fingerprint(by_kind),
-            "block": block,
-            **{name: metadata.version(name) for name in NUMBERS_FROM},
-        }
-        #: Written into every piece, so that a piece of another sweep is refused.
-        self.sweep = fingerprint(about)
-        self._check(about)
-
-    def _check(self, about: Mapping[str, Any]) -> None:
-        """Make the folder if there is none, or refuse a folder of another sweep."""
-        remedy = "delete the folder, or keep this sweep in another"
-        path = self.folder / ABOUT
-        if not path.exists():
-            if self.folder.exists() and any(self.folder.glob("[!.]*")):
-                rule = "is not empty, and holds no sweep"
-                raise refuse("keep", str(self.folder), rule, "name a new folder")
-            self.folder.mkdir(exist_ok=True)
-            with written(path) as stream:
-                stream.write(json.dumps(about, indent=2) + "\n")
-            return
-        try:
-            before = dict(json.loads(path.read_text(encoding="utf-8")))
-        except (ValueError, TypeError) as error:
-            rule = f"{ABOUT} in it cannot be read: {error}"
-            raise refuse("keep", str(self.folder), rule, remedy) from error
-        # What both have comes first: another law has other code.
-        for name in (*(name for name in about if name in before), *about, *before):
-            was, now = before.get(name, "none"), about.get(name, "none")
-            if was != now:
-                rule = f"holds another sweep: {name} was {was}, is {now}"
-                raise refuse("keep", str(self.folder), rule, remedy)
+        self.impacts = scene.shape[0]
+        more = {"impacts": self.impacts, "scene": fingerprint(scene), "block": block}
+        self.folder, self.sweep = opened("keep", folder, laws, more)
 
     def keep(self, piece: Piece) -> None:
         """Write a piece, unless it is there or has impacts that were not computed."""
-        path = self.folder / _name(piece.chunk)
+        path = self.folder / name_of(piece.chunk)
         if path.exists() or any(status in TRIED_AGAIN for status in piece.motion.status):
             return
         arrays = _arrays(piece) | {"sweep": np.array(self.sweep)}
-        try:
-            with written(path, binary=True) as stream:
-                np.savez(stream, **arrays, checksum=np.array(_checksum(arrays)))
-        except OSError as error:
-            first, stop = piece.chunk
-            words = (
-                f"keep = {str(self.folder)!r}: impacts {first} to {stop} are not written: "
-                f"{error.strerror or error}; {self.folder} holds {count(self.folder)} of "
-                f"{self.impacts} impacts; the same sweep goes on from them"
-            )
-            raise OSError(*filter(None, (error.errno, words))) from error
+        arrays["checksum"] = np.array(_checksum(arrays))
+        write_piece("keep", self.folder, piece.chunk, arrays, f"of {self.impacts} impacts")
 
     def pieces(self) -> list[Piece]:
         """Return the pieces in the folder, no impact in two of them; refuse other files."""
@@ -124,22 +68,96 @@ class Kept:
                     piece, sweep = _piece(arrays), str(arrays["sweep"])
             except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile) as error:
                 rule = f"is damaged: {error}"
-                raise _refuse(path, rule, "delete this file") from error
+                raise refuse_file("keep", path, rule, "delete this file") from error
             first, stop = piece.chunk
-            if path.name != _name(piece.chunk):
+            if path.name != name_of(piece.chunk):
                 rule = f"contains impacts {first} to {stop}, which are not those of its name"
-                remedy = f"rename it to {_name(piece.chunk)}, or delete this file"
-                raise _refuse(path, rule, remedy)
+                remedy = f"rename it to {name_of(piece.chunk)}, or delete this file"
+                raise refuse_file("keep", path, rule, remedy)
             if sweep != self.sweep:
                 rule = f"holds impacts {first} to {stop} of another sweep"
-                raise _refuse(path, rule, "delete this file")
+                raise refuse_file("keep", path, rule, "delete this file")
             pieces.append(piece)
         return pieces
 
 
-def _refuse(path: Path, rule: str, remedy: str) -> ValueError:
+def opened(
+    argument: str, folder: str | Path, laws: Laws, more: Mapping[str, Any]
+) -> tuple[Path, str]:
+    """Return the folder of a sweep, made if there is none, and the sweep's fingerprint.
+
+    The fingerprint is of the laws, their code and ``more``. It is written into every piece, so
+    that a piece of another sweep is refused. A folder of another sweep is refused here.
+    """
+    if not isinstance(folder, str | os.PathLike):
+        raise refuse(argument, folder, "must be the path of a folder")
+    if os.path.lexists(folder) and not os.path.isdir(folder):
+        what = "is a link to nothing" if os.path.islink(folder) else "is a file"
+        raise refuse(argument, str(folder), what, "name a folder")
+    by_kind = laws.by_kind()
+    modules = _modules(by_kind)
+    if nameless := sources.without_file(modules):
+        rule = f"cannot tell the code of {nameless[0]} from an earlier one: it is in no file"
+        raise refuse(argument, str(folder), rule, "write the classes of the laws into a file")
+    code = sources.code_of(modules)
+    if own := sources.own_code():
+        code[PROJECT] = own
+    about = {
+        **{f"code of {name}": checksum for name, checksum in code.items()},
+        **{kind: f"{REGISTRY.describe(law)}: {law!r}" for kind, law in by_kind.items()},
+        **more,
+        "options": fingerprint(by_kind),
+        **{name: metadata.version(name) for name in NUMBERS_FROM},
+    }
+    _check(argument, Path(folder), about)
+    return Path(folder), fingerprint(about)
+
+
+def _check(argument: str, folder: Path, about: Mapping[str, Any]) -> None:
+    """Make the folder if there is none, or refuse a folder of another sweep."""
+    remedy = "delete the folder, or name another for this sweep"
+    path = folder / ABOUT
+    if not path.exists():
+        if folder.exists() and any(folder.glob("[!.]*")):
+            rule = "is not empty, and holds no sweep"
+            raise refuse(argument, str(folder), rule, "name a new folder")
+        folder.mkdir(exist_ok=True)
+        with written(path) as stream:
+            stream.write(json.dumps(about, indent=2) + "\n")
+        return
+    try:
+        before = dict(json.loads(path.read_text(encoding="utf-8")))
+    except (ValueError, TypeError) as error:
+        rule = f"{ABOUT} in it cannot be read: {error}"
+        raise refuse(argument, str(folder), rule, remedy) from error
+    # What both have comes first: another law has other code.
+    for name in (*(name for name in about if name in before), *about, *before):
+        was, now = before.get(name, "none"), about.get(name, "none")
+        if was != now:
+            rule = f"holds another sweep: {name} was {was}, is {now}"
+            raise refuse(argument, str(folder), rule, remedy)
+
+
+def write_piece(
+    argument: str, folder: Path, chunk: Chunk, arrays: Mapping[str, Any], of: str
+) -> None:
+    """Write the arrays of a chunk; ``of`` ends "holds 80 of 150 impacts" in an error."""
+    try:
+        with written(folder / name_of(chunk), binary=True) as stream:
+            np.savez(stream, **arrays)
+    except OSError as error:
+        first, stop = chunk
+        words = (
+            f"{argument} = {str(folder)!r}: impacts {first} to {stop} are not written: "
+            f"{error.strerror or error}; {folder} holds {count(folder)} {of}; "
+            "the same sweep goes on from them"
+        )
+        raise OSError(*filter(None, (error.errno, words))) from error
+
+
+def refuse_file(argument: str, path: Path, rule: str, remedy: str) -> ValueError:
     """Return the refusal of a file, with its whole path."""
-    return ValueError(f"keep = {str(path)!r}: {rule}; {remedy}")
+    return ValueError(f"{argument} = {str(path)!r}: {rule}; {remedy}")
 
 
 def count(folder: Path) -> int:
@@ -227,7 +245,7 @@ def _first(path: Path) -> int:
     return int(first) if first.isdigit() else 0
 
 
-def _name(chunk: Chunk) -> str:
+def name_of(chunk: Chunk) -> str:
     """Return the name of a chunk's file."""
     return PIECES.replace("*", f"{chunk.first}-{chunk.stop}")
 

@@ -22,6 +22,14 @@ class Chunk(NamedTuple):
         return self.stop - self.first
 
 
+class Part(NamedTuple):
+    """A chunk before it is solved: its scene, and the impacts of one call."""
+
+    chunk: Chunk
+    scene: Scene
+    block: int
+
+
 class Piece(NamedTuple):
     """The columns of the plan and the motion of a chunk."""
 
@@ -30,8 +38,11 @@ class Piece(NamedTuple):
     motion: Motion
 
 
-def unsolved(chunk: Chunk, scene: Scene, status: Status, detail: str = "") -> Piece:
-    """Return the piece of a chunk of ``scene`` without answers: every impact has ``status``."""
+def unsolved(chunk: Chunk, axes: tuple[int, ...], status: Status, detail: str = "") -> Piece:
+    """Return the piece of a chunk without answers: every impact has ``status``.
+
+    ``axes`` are the scene's ``slip_axes``.
+    """
     shape = (chunk.size,)
-    nothing = Motion.nothing(shape, status, detail, axes=scene.slip_axes)
+    nothing = Motion.nothing(shape, status, detail, axes=axes)
     return Piece(chunk, PlanColumns.nothing(shape), nothing)

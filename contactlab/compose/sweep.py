@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from contactlab.compose.composition import Laws
-from contactlab.compose.pieces import Chunk, Piece, unsolved
+from contactlab.compose.pieces import Chunk, Part, Piece, unsolved
 from contactlab.compose.solve import solved
 from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.status import Status
@@ -37,6 +37,24 @@ def block_of(laws: Laws) -> int:
     return laws.integrator.chunk(laws.tangential)
 
 
+def block_for(laws: Laws, scene: Scene) -> int:
+    """Return how many impacts of a scene are solved in one call."""
+    if laws.tangential.needs_no_march(scene, laws.integrator.accuracy):
+        return WHOLE_IMPACTS
+    return block_of(laws)
+
+
+def solved_parts(
+    laws: Laws, parts: Iterable[Part], executor: Executor | None, *, ahead: int | None = None
+) -> Generator[Piece, None, None]:
+    """Yield the pieces of parts, solved here or by an executor; ``ahead`` as in ``pieces_of``."""
+    if executor is None:
+        return (solved(laws, scene, chunk, block) for chunk, scene, block in parts)
+    from contactlab.compose.workers import pieces_of  # needed with an executor only
+
+    return pieces_of(laws, parts, executor, ahead=ahead)
+
+
 def swept(
     laws: Laws,
     scene: Scene,
@@ -47,9 +65,7 @@ def swept(
     keep: str | Path | None,
 ) -> tuple[PlanColumns, Motion]:
     """Return columns of the plan and motion of a batch of one axis; see ``Simulation.sweep``."""
-    size, block = scene.shape[0], block_of(laws)
-    if laws.tangential.needs_no_march(scene, laws.integrator.accuracy):
-        block = WHOLE_IMPACTS
+    size, block = scene.shape[0], block_for(laws, scene)
     step = math.ceil(whole("chunk", block if chunk is None else chunk) / block) * block
     kept = None
     if keep is not None:
@@ -58,13 +74,9 @@ def swept(
         kept = Kept(keep, laws, scene, block)
     finished = [] if kept is None else kept.pieces()
     done = sum(piece.chunk.size for piece in finished)
-    missing = _cut(_gaps(finished, size), step)
-    if executor is None:
-        pieces = (solved(laws, scene.take(slice(*each)), each, block) for each in missing)
-    else:
-        from contactlab.compose.workers import pieces_of  # needed with an executor only
-
-        pieces = pieces_of(laws, scene, list(missing), block, executor)
+    missing = cut(_gaps(finished, size), step)
+    parts = (Part(each, scene.take(slice(*each)), block) for each in missing)
+    pieces = solved_parts(laws, parts, executor)
     try:
         for piece in pieces:
             finished.append(piece)
@@ -77,7 +89,7 @@ def swept(
         if kept is not None and finished:
             kept.keep(finished[-1])  # which may have been on its way to the disk
         gaps = _gaps(finished, size)
-        finished += [unsolved(gap, scene, Status.INTERRUPTED) for gap in gaps]
+        finished += [unsolved(gap, scene.slip_axes, Status.INTERRUPTED) for gap in gaps]
     finally:
         pieces.close()
     finished.sort(key=lambda piece: piece.chunk)
@@ -102,7 +114,7 @@ def _gaps(pieces: Iterable[Piece], size: int) -> list[Chunk]:
     ]
 
 
-def _cut(gaps: Iterable[Chunk], step: int) -> Iterator[Chunk]:
+def cut(gaps: Iterable[Chunk], step: int) -> Iterator[Chunk]:
     """Yield the gaps in chunks of at most ``step`` impacts."""
     for gap in gaps:
         for first in range(gap.first, gap.stop, step):

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import multiprocessing
 import os
 import pickle
 import signal
 import sys
 import threading
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from multiprocessing.context import SpawnContext, SpawnProcess
 from queue import SimpleQueue
@@ -20,7 +21,7 @@ import numpy as np
 
 from contactlab.compose.composition import Laws, versions
 from contactlab.compose.hooks import short
-from contactlab.compose.pieces import Chunk, Piece, unsolved
+from contactlab.compose.pieces import Chunk, Part, Piece, unsolved
 from contactlab.compose.solve import solved
 from contactlab.contracts.status import Status
 from contactlab.numeric.arrays import locked
@@ -33,9 +34,12 @@ MODULE_REMEDY = "define its class at the top of a module that can be imported"
 
 
 def pieces_of(
-    laws: Laws, scene: Any, chunks: Sequence[Chunk], block: int, executor: Executor
+    laws: Laws, parts: Iterable[Part], executor: Executor, *, ahead: int | None = None
 ) -> Generator[Piece, None, None]:
-    """Yield the pieces of ``chunks`` as an executor finishes them; ``scene`` is the whole sweep."""
+    """Yield the pieces of ``parts`` as an executor finishes them.
+
+    At most ``ahead`` parts are sent before they are answered; all of them if it is None.
+    """
     # A chunk that the executor loses gets the status WORKER_DIED. A ProcessPoolExecutor loses all
     # that are left when one of its processes dies; a sweep with ``keep`` resumes.
     if isinstance(executor, type) or not callable(getattr(executor, "submit", None)):
@@ -43,22 +47,24 @@ def pieces_of(
         raise refuse("executor", executor, "must have a method submit", remedy)
     sent, ours = _sent(laws), versions(*laws)
     finished: SimpleQueue[Future[Reply]] = SimpleQueue()
-    waiting: dict[Future[Reply], Chunk] = {}
-    answered = False
+    waiting: dict[Future[Reply], tuple[Chunk, tuple[int, ...]]] = {}
+    answered, unsent = False, iter(parts)
     try:
-        for chunk in chunks:
-            part = pickle.dumps(scene.take(slice(*chunk)))
-            future = _submitted(executor, sent, part, chunk, block)
-            waiting[future] = chunk
-            future.add_done_callback(finished.put)
-        while waiting:
+        while True:
+            room = None if ahead is None else ahead - len(waiting)
+            for chunk, scene, block in itertools.islice(unsent, room):
+                future = _submitted(executor, sent, pickle.dumps(scene), chunk, block)
+                waiting[future] = chunk, scene.slip_axes
+                future.add_done_callback(finished.put)
+            if not waiting:
+                return
             future = finished.get()
-            chunk = waiting.pop(future)
+            chunk, axes = waiting.pop(future)
             try:
                 answer = future.result()
             except Exception as error:  # the executor failed: ``reply`` returns errors of the laws
                 remedy = "" if answered else f"; {MAIN_REMEDY}"
-                yield unsolved(chunk, scene, Status.WORKER_DIED, short(error) + remedy)
+                yield unsolved(chunk, axes, Status.WORKER_DIED, short(error) + remedy)
                 continue
             answered = True
             if answer.raised is not None:
