@@ -59,6 +59,7 @@ if TYPE_CHECKING:
     from contactlab.outcome.answer import ImpactError
     from contactlab.outcome.energy import EnergyLedger
     from contactlab.outcome.result import ImpactResult
+    from contactlab.outcome.sweep_folder import SweepFolder
     from contactlab.scene_file import read_scene
 
 __version__ = "0.1.0"
@@ -77,6 +78,7 @@ __all__ = [
     "Simulation",
     "Sphere",
     "Status",
+    "SweepFolder",
     "collide",
     "create",
     "fit",
@@ -127,6 +129,7 @@ MODULES = {
     "Simulation": "compose.simulation",
     "Sphere": "impact.bodies",
     "Status": "contracts.status",
+    "SweepFolder": "outcome.sweep_folder",
     "collide": "compose.collide",
     "fit": "fitting",
     "hookimpl": "compose.hooks",

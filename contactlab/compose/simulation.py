@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import attrs
 import numpy as np
@@ -14,6 +14,7 @@ from contactlab.compose import composition, solve
 from contactlab.compose.composition import Laws
 from contactlab.compose.error_estimate import estimated
 from contactlab.compose.normal_motion import normal_or_failed
+from contactlab.compose.pieces import Piece
 from contactlab.compose.planning import plan_of
 from contactlab.compose.sweep import one_axis, swept
 from contactlab.contracts.integrator import Integrator
@@ -22,6 +23,7 @@ from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import succeeded
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.encounter import Encounter
+from contactlab.impact.grid import GridParts
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import taken
 from contactlab.numeric.checks import refuse
@@ -33,6 +35,8 @@ from contactlab.outcome.result import ImpactResult
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
+
+    from contactlab.outcome.sweep_folder import SweepFolder
 
 
 @arguments_told
@@ -155,6 +159,7 @@ class Simulation:
             result, psi2_error_estimate=psi2, restitution_error_estimate=restitution
         )
 
+    @overload
     def sweep(
         self,
         scenes: Scene | Sequence[Scene],
@@ -163,7 +168,29 @@ class Simulation:
         chunk: int | None = None,
         executor: Executor | None = None,
         keep: str | Path | None = None,
-    ) -> ImpactResult:
+        into: None = None,
+    ) -> ImpactResult: ...
+    @overload
+    def sweep(
+        self,
+        scenes: Scene | GridParts | Iterable[Scene],
+        *,
+        progress: Callable[[int, int], object] | None = None,
+        chunk: int | None = None,
+        executor: Executor | None = None,
+        keep: None = None,
+        into: str | Path,
+    ) -> SweepFolder: ...
+    def sweep(
+        self,
+        scenes: Any,
+        *,
+        progress: Callable[[int, int], object] | None = None,
+        chunk: int | None = None,
+        executor: Executor | None = None,
+        keep: str | Path | None = None,
+        into: str | Path | None = None,
+    ) -> ImpactResult | SweepFolder:
         """Run many impacts, vectorised, a block at a time.
 
         The laws choose the size of a block, counted from the first impact: 16384 if nothing is
@@ -175,13 +202,17 @@ class Simulation:
 
         Parameters
         ----------
-        scenes : sequence of Scene, or a batch scene
+        scenes : sequence of Scene, or a batch scene; with ``into`` any iterable
+            With ``into`` batches come one after another too, as from ``Scene.grid_in_parts`` or a
+            generator; blocks are then counted from the first impact of each.
         progress : callable, optional
-            Called as ``progress(done, total)`` after each chunk.
+            Called as ``progress(done, total)`` after each chunk; total is done where a generator
+            does not tell it.
         chunk : int, optional
-            Impacts of a chunk, rounded up to whole blocks; one block by default. A chunk is what
-            ``progress`` counts, ``executor`` gets and ``keep`` writes. An interruption loses
-            unfinished chunks.
+            Impacts of a chunk, rounded up to whole blocks; one block by default, with ``into``
+            131072 if nothing is marched, else 1000. A chunk is what ``progress`` counts,
+            ``executor`` gets, and ``keep`` and ``into`` write. An interruption loses unfinished
+            chunks.
         executor : concurrent.futures.Executor, optional
             Solves the chunks; this process by default. Any object with a method ``submit`` that
             returns futures serves: ``ProcessPoolExecutor(4)``, dask's ``client.get_executor()``,
@@ -192,31 +223,56 @@ class Simulation:
             same folder resumes where it stopped; another scene or law is refused, and so is
             other code: contactlab, numpy and scipy by version, and every Python file of yours
             that a law imports by its text. Files of data that a law reads are not compared.
+        into : str or Path, optional
+            A folder for more impacts than memory holds, instead of a result. The columns of each
+            chunk are written as soon as it is finished; memory is that of two chunks, with an
+            executor of 32. The same sweep resumes as with ``keep``.
 
         Returns
         -------
-        ImpactResult
-            A batch. An interruption (Ctrl-C) keeps finished chunks; the other impacts have the
-            status ``INTERRUPTED``, which ``.check()`` raises.
+        ImpactResult, or with ``into`` SweepFolder
+            A batch, or the folder, which reads its columns. An interruption (Ctrl-C) keeps finished
+            chunks; the other impacts have the status ``INTERRUPTED``, which ``.check()`` raises.
 
         Raises
         ------
         ValueError
             If there are no scenes, an entry is not a Scene, or scenes with bodies stand beside
-            scenes of psi1 and chi; if a law cannot be sent to ``executor``; if ``keep`` holds
-            another sweep, or a law's class is in no file, as in a notebook.
+            scenes of psi1 and chi; if a law cannot be sent to ``executor``; if ``keep`` or ``into``
+            holds another sweep, or a law's class is in no file, as in a notebook; if both are
+            given.
         OSError
-            If a chunk cannot be written into ``keep``. Those before stay there, and the same sweep
-            resumes from them.
+            If a chunk cannot be written into ``keep`` or ``into``. Those before stay there, and the
+            same sweep resumes from them.
         """
         started, laws = time.perf_counter(), self.laws
         options: dict[str, Any] = {"progress": progress, "chunk": chunk}
-        options |= {"executor": executor, "keep": keep}
+        options["executor"] = executor
+        if into is not None:
+            return self._into(into, keep, scenes, options)
+        if isinstance(scenes, GridParts):
+            rule = "is a grid in parts, which needs a folder"
+            raise refuse("scenes", scenes, rule, "give into=folder, or Scene.grid")
         batch = scenes if isinstance(scenes, Scene) else Scene.stack(scenes)
         one_axis(batch.shape)
         laws.accept(batch)
-        columns, motion = swept(laws, batch, **options)
+        columns, motion = swept(laws, batch, keep=keep, **options)
         return _result(laws, batch, plan_of(laws, batch, columns, motion), motion, started)
+
+    def _into(self, into: str | Path, keep: Any, scenes: Any, options: Any) -> SweepFolder:
+        """Return the folder of a sweep that is written as it goes."""
+        from contactlab.compose.into import swept_into  # needed with ``into`` only
+
+        if keep is not None:
+            remedy = "give one: into resumes too; keep returns the result"
+            raise refuse("keep, into", (str(keep), str(into)), "write the same impacts", remedy)
+        laws = self.laws
+
+        def result_of(scene: Scene, piece: Piece) -> ImpactResult:
+            plan = plan_of(laws, scene, piece.columns, piece.motion)
+            return _result(laws, scene, plan, piece.motion, time.perf_counter())
+
+        return swept_into(laws, scenes, into, result_of=result_of, **options)
 
     def normal_motion(self, scene: Scene) -> NormalMotion:
         """Return the approach without friction; all values are NaN if the normal law fails.

@@ -12,7 +12,7 @@ import numpy as np
 
 from contactlab.impact import groups, inverse_mass
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
-from contactlab.impact.grid import Array, axes_of, product
+from contactlab.impact.grid import Array, GridParts, axes_of, product
 from contactlab.impact.material import Material
 from contactlab.impact.motions import Motions
 from contactlab.numeric import arrays as batch
@@ -27,6 +27,7 @@ from contactlab.numeric.checks import (
     quantity,
     real,
     refuse,
+    whole,
 )
 from contactlab.numeric.names import arguments_told
 
@@ -35,6 +36,8 @@ from contactlab.numeric.names import arguments_told
 LEAST_ENERGY = LEAST_VELOCITY = 1e-290
 #: Least mu times momentum of the normal motion, in N s.
 LEAST_IMPULSE = 1e-285
+#: Impacts of a scene of a grid in parts: whole blocks of a sweep, some 20 MB of columns.
+IMPACTS_AT_A_TIME = 1 << 17
 OBLIQUE = Rule(
     lambda degrees: np.abs(degrees) < 90.0, "must lie between -90 and 90, measured from the normal"
 )
@@ -411,12 +414,42 @@ class Scene(Motions):
             If no entry varies, a list has more than one dimension, or the scene is refused.
         """
         axes = axes_of(entries)
-        make: Callable[..., Scene] = cls
+        return cls._maker(bodies, entries)(*bodies, **(entries | product(axes))).over(axes)
+
+    @classmethod
+    def grid_in_parts(
+        cls, *bodies: Any, at_a_time: int = IMPACTS_AT_A_TIME, **entries: Any
+    ) -> GridParts:
+        """Return the scenes of a grid one after another, for more impacts than memory holds.
+
+        ``simulation.sweep(Scene.grid_in_parts(...), into=folder)`` sweeps them into a folder.
+
+        Parameters
+        ----------
+        *bodies, **entries
+            As in ``grid``; of any number of impacts.
+        at_a_time : int
+            Impacts of a scene.
+
+        Raises
+        ------
+        ValueError
+            As ``grid``.
+        """
+        size = whole("at_a_time", at_a_time)
+        make = cls._maker(bodies, entries)
+
+        def part(values: Mapping[str, Array]) -> Scene:
+            return make(*bodies, **(entries | dict(values))).varying(values)
+
+        return GridParts(axes_of(entries), size, part)
+
+    @classmethod
+    def _maker(cls, bodies: Sequence[Any], entries: Mapping[str, Any]) -> Callable[..., Scene]:
+        """Return what makes a scene of bodies and entries."""
         if not bodies and {"psi1", "chi", "lam"} & set(entries):
-            make = cls.nondimensional
-        elif {"speed", "angle_deg"} & set(entries):
-            make = cls.at_angle
-        return make(*bodies, **(entries | product(axes))).over(axes)
+            return cls.nondimensional
+        return cls.at_angle if {"speed", "angle_deg"} & set(entries) else cls
 
     def over(self, axes: Mapping[str, Any]) -> Scene:
         """Return this batch as a grid of ``axes``, whose combinations it must have in order.
@@ -476,7 +509,8 @@ class Scene(Motions):
             if not isinstance(scene, cls):
                 raise refuse(f"scenes[{position}]", scene, "must be a Scene")
             if scene.shape:
-                raise refuse(f"scenes[{position}]", scene.shape, "must be a single impact")
+                remedy = "batches go one after another into a folder: sweep(scenes, into=...)"
+                raise refuse(f"scenes[{position}]", scene.shape, "must be a single impact", remedy)
             if (scene.sphere is None) != (scenes[0].sphere is None):
                 raise refuse(
                     f"scenes[{position}]",

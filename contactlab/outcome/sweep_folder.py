@@ -1,0 +1,308 @@
+"""A sweep in a folder: finished chunks, read by columns and chunks."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+import zipfile
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+
+from contactlab.contracts.status import Status
+from contactlab.numeric.checks import refuse
+from contactlab.numeric.names import attributes_told, nearest
+from contactlab.outcome.answer import ImpactError
+from contactlab.outcome.plan import Plan, of_some
+from contactlab.outcome.result import ImpactResult
+
+#: Files of a folder: what it is a sweep of, its chunks, and the number of impacts in the end.
+ABOUT, CHUNKS, FINISHED = "sweep.json", "impacts-*.npz", "finished.json"
+#: What ``sweep.json`` says of a folder of this kind, and of the codes of its statuses.
+FORM, STATUSES = "columns of results", "statuses"
+COLUMN_OF_STATUS = "status"
+
+
+class About(NamedTuple):
+    """What a chunk tells beside its columns.
+
+    Attributes
+    ----------
+    first, stop : int
+        Its impacts.
+    sweep, scene : str
+        Fingerprints of the laws and of the scene.
+    units : mapping of str to str
+        The unit of each column, empty for the status.
+    counts : mapping of str to int
+        Number of impacts of each status.
+    failures : mapping of str to str
+        A sentence for each impact that failed, by its index in the sweep.
+    cautions : sequence of [str, int, sequence of float or None]
+        Words of each caution, the number of its impacts, and the numbers to format into the words.
+    psi2_error : float or None
+        Largest declared bound of the numerical error of psi2; None where it is not declared.
+    """
+
+    first: int
+    stop: int
+    sweep: str
+    scene: str
+    units: Mapping[str, str]
+    counts: Mapping[str, int]
+    failures: Mapping[str, str]
+    cautions: Any
+    psi2_error: float | None
+
+
+def about_of(
+    result: ImpactResult, units: Mapping[str, str], counts: Mapping[str, int], **place: Any
+) -> About:
+    """Return what the chunk of a result tells; ``place`` has its impacts and fingerprints."""
+    first, error = place["first"], float(np.max(result.plan.psi2_error))
+    failures = result.failures if [*counts] != [Status.SUCCESS.name] else {}
+    return About(
+        **place,
+        units=units,
+        counts=counts,
+        failures={str(first + index): words for index, words in failures.items()},
+        cautions=_cautions(result.plan),
+        psi2_error=None if math.isnan(error) else error,
+    )
+
+
+def _cautions(plan: Plan) -> list[Any]:
+    """Return the cautions of a plan, each with its number of impacts."""
+    return [[each.text, int(np.sum(each.where)), each.largest] for each in plan.cautions]
+
+
+def read_about(path: Path) -> About:
+    """Return what a chunk tells, or refuse a damaged file."""
+    with _chunk(path) as content:
+        return About(**json.loads(str(content["about"])))
+
+
+class _chunk:  # noqa: N801
+    """The arrays of a file, each read when it is asked for; a damaged file is refused."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def __enter__(self) -> Any:
+        try:
+            self.content = np.load(self.path, allow_pickle=False)
+        except (OSError, EOFError, ValueError, zipfile.BadZipFile) as error:
+            raise self._damaged(error) from error
+        return self.content
+
+    def __exit__(self, kind: Any, error: Any, trace: Any) -> None:
+        self.content.close()
+        if isinstance(error, EOFError | KeyError | TypeError | ValueError | zipfile.BadZipFile):
+            raise self._damaged(error) from error
+
+    def _damaged(self, error: BaseException) -> ValueError:
+        return ValueError(f"{self.path}: is damaged: {error}; delete this file")
+
+
+@attributes_told
+class SweepFolder:
+    """The finished chunks of ``sweep(..., into=folder)``, read by columns and chunks.
+
+    ``folder["psi2"]`` is a column of all impacts. ``folder.chunks("psi1", "psi2")`` reads a chunk
+    after another, in the memory of one.
+
+    Parameters
+    ----------
+    path : str or Path
+        The folder.
+
+    Attributes
+    ----------
+    path : Path
+    laws : mapping of str to str
+        Names, versions and options of the three laws.
+
+    Raises
+    ------
+    ValueError
+        If the folder holds no such sweep, or a file in it is damaged.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.path = Path(path)
+        try:
+            about = dict(json.loads((self.path / ABOUT).read_text(encoding="utf-8")))
+        except (OSError, ValueError, TypeError) as error:
+            rule = f"holds no sweep: {ABOUT} in it cannot be read: {error}"
+            raise refuse("path", str(path), rule, "make one: sweep(scenes, into=folder)") from error
+        if about.get("form") != FORM:
+            remedy = "the same sweep with keep=folder returns the result"
+            raise refuse("path", str(path), "is a folder of keep=, without columns", remedy)
+        self.laws = {kind: about[kind] for kind in ("normal", "tangential", "integrator")}
+        self._names = about[STATUSES].split()
+
+    @cached_property
+    def _abouts(self) -> list[tuple[Path, About]]:
+        """The finished chunks in order."""
+        found = [(path, read_about(path)) for path in self.path.glob(CHUNKS)]
+        return sorted(found, key=lambda each: each[1].first)
+
+    @cached_property
+    def impacts(self) -> int | None:
+        """The number of impacts of the whole sweep; None until it is finished."""
+        path = self.path / FINISHED
+        return int(json.loads(path.read_text("utf-8"))["impacts"]) if path.exists() else None
+
+    @property
+    def missing(self) -> list[tuple[int, int]]:
+        """First and stop of impacts that are not computed; of an unfinished sweep up to the last.
+
+        The same sweep into the same folder computes them.
+        """
+        ends = [(about.first, about.stop) for _, about in self._abouts]
+        last = self.impacts if self.impacts is not None else max((b for _, b in ends), default=0)
+        pairs = itertools.pairwise([(0, 0), *ends, (last, last)])
+        return [(before, after) for (_, before), (after, _) in pairs if before < after]
+
+    @property
+    def complete(self) -> bool:
+        """True if every impact of the sweep is computed."""
+        return self.impacts is not None and not self.missing
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """The unit of each column, by name; empty for the status."""
+        return dict(self._abouts[0][1].units) if self._abouts else {}
+
+    def __len__(self) -> int:
+        """Return the number of impacts in finished chunks."""
+        return sum(about.stop - about.first for _, about in self._abouts)
+
+    def chunks(self, *names: str) -> Iterator[tuple[slice, dict[str, Any]]]:
+        """Yield the place of each finished chunk in the sweep, and its columns by name.
+
+        Parameters
+        ----------
+        *names : str
+            Columns, all of them by default; ``units`` lists them. The status is a name.
+
+        Raises
+        ------
+        ValueError
+            If there is no such column, or a file is damaged.
+        """
+        wanted = names or tuple(self.units)
+        for name in wanted:
+            if name not in self.units:
+                remedy = f"{nearest(name, self.units)}known: {', '.join(self.units)}"
+                raise refuse("column", name, "is not a column of the sweep", remedy)
+        for path, about in self._abouts:
+            with _chunk(path) as content:
+                columns = {name: content[name] for name in wanted}
+            if COLUMN_OF_STATUS in columns:
+                columns[COLUMN_OF_STATUS] = np.array(self._names)[columns[COLUMN_OF_STATUS]]
+            shape = (about.stop - about.first,)
+            columns = {name: np.broadcast_to(each, shape) for name, each in columns.items()}
+            yield slice(about.first, about.stop), columns
+
+    def __getitem__(self, name: str) -> Any:
+        """Return a column of the sweep up to its last chunk, shape (n,); no chunk may be missing.
+
+        An unfinished sweep has fewer impacts: ``check`` tells.
+        """
+        if self.missing:
+            first, stop = self.missing[0]
+            rule = f"impacts {first} to {stop} are missing"
+            remedy = "run the same sweep into the folder again, or read chunks()"
+            raise refuse("path", str(self.path), rule, remedy)
+        if not isinstance(name, str):
+            raise refuse("column", name, "must be the name of a column", "such as 'psi2'")
+        column = np.empty(0)
+        for place, columns in self.chunks(name):
+            if not column.size:
+                column = np.empty(len(self), dtype=columns[name].dtype)
+            column[place] = columns[name]
+        return column
+
+    @property
+    def statuses(self) -> Mapping[str, int]:
+        """The number of computed impacts of each status, by its name."""
+        return dict(sum((Counter(about.counts) for _, about in self._abouts), Counter()))
+
+    @property
+    def failures(self) -> dict[int, str]:
+        """A sentence for each computed impact that failed, by its index in the sweep."""
+        each = (about.failures.items() for _, about in self._abouts)
+        return {int(index): words for index, words in itertools.chain.from_iterable(each)}
+
+    @property
+    def psi2_error(self) -> float:
+        """Largest declared bound of the numerical error of psi2; NaN if one is not declared."""
+        errors = [about.psi2_error for _, about in self._abouts]
+        return max((math.nan if each is None else each for each in errors), default=math.nan)
+
+    @property
+    def cautions(self) -> list[str]:
+        """Doubts about the numbers, in sentences, each with its share of the computed impacts."""
+        counts: Counter[str] = Counter()
+        largest: dict[str, Any] = {}
+        for _, about in self._abouts:
+            for text, count, values in about.cautions:
+                counts[text] += count
+                before = largest.get(text)
+                largest[text] = values if before is None else np.fmax(before, values).tolist()
+        total, told = len(self), []
+        for text, count in counts.items():
+            words = text if largest[text] is None else text.format(*largest[text])
+            all_of_them = count == total
+            told.append(words if all_of_them else of_some(words, f"{count} of {total} impacts"))
+        return told
+
+    def check(self, *, cautions: bool = False) -> Self:
+        """Return this folder if all impacts are computed and none failed.
+
+        Parameters
+        ----------
+        cautions : bool
+            Raise the first caution too.
+
+        Raises
+        ------
+        ImpactError
+            With the sentence of the first impact that failed, is missing, or of the first caution.
+        """
+        for index, words in self.failures.items():
+            name = next(name for name in self._names if words.startswith(Status[name].value))
+            raise ImpactError(f"impact {index}: {words}", Status[name])
+        if not self.complete:
+            raise ImpactError(self._unfinished(), Status.INTERRUPTED)
+        for words in self.cautions if cautions else ():
+            raise ImpactError(f"caution: {words}", Status.SUCCESS)
+        return self
+
+    def _unfinished(self) -> str:
+        """Return what is missing, and how to go on."""
+        gaps = ", ".join(f"{first} to {stop}" for first, stop in self.missing)
+        what = f"impacts {gaps} are missing" if gaps else f"it stopped after impact {len(self) - 1}"
+        return f"{self.path}: is not complete: {what}; the same sweep into this folder goes on"
+
+    def __repr__(self) -> str:
+        """Return path, number of impacts and statuses on one line."""
+        counts = ", ".join(f"{count} {name}" for name, count in self.statuses.items())
+        state = "" if self.complete else "; not complete"
+        return f"SweepFolder({str(self.path)!r}; {len(self)} impacts; {counts or 'none'}{state})"
+
+    def __str__(self) -> str:
+        """Return ``repr``, the first failure, what is missing and every caution, in lines."""
+        lines = [repr(self)]
+        if failures := self.failures:
+            index = next(iter(failures))
+            lines.append(f"failed (impact {index}; {len(failures)} in all): {failures[index]}")
+        if not self.complete:
+            lines.append(self._unfinished())
+        return "\n".join([*lines, *(f"caution: {words}" for words in self.cautions)])
