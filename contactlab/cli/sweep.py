@@ -6,12 +6,14 @@ Examples
   contactlab sweep --psi1 1.2 --chi 0.5:8:76 --tangential coulomb --csv
   contactlab sweep examples/sweep.toml --out sweep.npz
   contactlab sweep --psi1 0:7:100000 --chi 1.4412 --workers 2 --out sweep.npz --resume
+  contactlab sweep --psi1 0:7:100000 --chi 0.5:2:1000 --out sweep/
 """
 
 from __future__ import annotations
 
 import argparse
 import contextlib
+import os
 import sys
 from collections.abc import Mapping
 from contextlib import AbstractContextManager
@@ -31,14 +33,16 @@ from contactlab.cli.scene import (
     read,
 )
 from contactlab.compose.hooks import Execute, hookimpl
+from contactlab.impact.grid import GridParts
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.columns import components, csv_heading
 from contactlab.outcome.export import WRITERS
+from contactlab.outcome.files import unwritable
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import evenly, sweep_section
 from contactlab.outcome.text_table import table
-from contactlab.scene_file import LawChoice
+from contactlab.scene_file import LawChoice, SceneFile
 from contactlab.study.interrupts import was_interrupted
 
 if TYPE_CHECKING:
@@ -46,6 +50,8 @@ if TYPE_CHECKING:
 
 #: Printed columns.
 SHOWN = ("psi1", "chi", "psi2")
+#: Most impacts in a folder, some 140 GB: a typing error must not fill the disk.
+MOST_IN_A_FOLDER = 1_000_000_000
 #: Most rows printed of a sweep that a file holds.
 MOST_ROWS = 25
 
@@ -59,7 +65,11 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     form = parser.add_mutually_exclusive_group()
     shared.add_json(form)
     form.add_argument("--csv", action="store_true", help="print psi1, chi, psi2 as CSV")
-    shared.add_file(parser, "--out", *WRITERS)
+    words = (
+        f"{', '.join(WRITERS)}; or a folder/ for more impacts than memory holds, which goes on "
+        "from a stopped sweep"
+    )
+    parser.add_argument("--out", type=_output, metavar="FILE or FOLDER/", help=words)
     words = "keep finished impacts in a folder beside --out, and continue a stopped sweep"
     parser.add_argument("--resume", action="store_true", help=words)
     parser.add_argument("--workers", type=int, metavar="N", help="share the work among N processes")
@@ -72,6 +82,8 @@ def execute(arguments: argparse.Namespace) -> int:
     """Run the sweep and report; the status is 1 if an impact failed."""
     file = read(arguments)
     check_alone(arguments)
+    if _is_folder(arguments.out):
+        return _into_folder(arguments, file)
     scene = file.scene if file else _ranges(arguments.psi1, arguments.chi)
     if not scene.shape:
         raise ValueError(f"{arguments.scene}: holds a single impact; use contactlab run")
@@ -118,6 +130,47 @@ def execute(arguments: argparse.Namespace) -> int:
         words = f"{_done(keep)} impacts are kept in {keep}; the same command goes on from them"
         print(f"contactlab sweep: {words}", file=sys.stderr)
     return max(saved, failed)
+
+
+def _output(text: str) -> Path:
+    """Return the path of a file to write, or of a folder, whose name ends with a slash."""
+    if not text.endswith(("/", os.sep)) and not os.path.isdir(text):
+        try:
+            return shared.file_of(*WRITERS)(text)
+        except argparse.ArgumentTypeError as error:
+            raise argparse.ArgumentTypeError(f"{error}, or name a folder, {text}/") from None
+    path = Path(text)
+    if path.suffix.lower() in WRITERS:
+        raise argparse.ArgumentTypeError(f"{text!r}: a folder must not end as a file does")
+    if why_not := unwritable(path.absolute().parent / "file"):
+        raise argparse.ArgumentTypeError(f"{text!r}: {why_not}")
+    return path
+
+
+def _is_folder(out: Path | None) -> bool:
+    """Return whether an output is a folder."""
+    return out is not None and out.suffix.lower() not in WRITERS
+
+
+def _into_folder(arguments: argparse.Namespace, file: SceneFile | None) -> int:
+    """Sweep into a folder, and report what is in it; the status is 1 if an impact failed."""
+    for name in ("json", "csv", "figure"):
+        if getattr(arguments, name):
+            rule = f"--{name}: needs all impacts in memory; leave it out, or name a file with --out"
+            raise ValueError(rule)
+    scenes = file.scene if file else _parts(arguments.psi1, arguments.chi)
+    simulation = composed(arguments, file.laws if file else LawChoice())
+    with (
+        shared.progress(arguments.progress, "impacts") as progress,
+        contextlib.redirect_stdout(sys.stderr),  # plug-ins may print
+        _executor(arguments.workers) as executor,
+    ):
+        folder = simulation.sweep(scenes, progress=progress, executor=executor, into=arguments.out)
+    shared.tell_normal_spin(file.encounter if file else None)
+    print(folder)
+    if folder.failures:
+        return shared.FAILED
+    return shared.OK if folder.complete else shared.INTERRUPTED
 
 
 def _print_table(result: ImpactResult, varied: Mapping[str, Any], out: Path | None = None) -> None:
@@ -174,14 +227,23 @@ def _finished(result: ImpactResult) -> int:
 
 def _ranges(psi1: Any, chi: Any) -> Scene:
     """Return the scene of every psi1 with every chi, psi1 varying fastest."""
+    remedy = "--out folder/ holds more"
+    return Scene.grid(**_grid(psi1, chi, most=MOST_IMPACTS, remedy=remedy))
+
+
+def _parts(psi1: Any, chi: Any) -> GridParts:
+    """Return the scenes of ``_ranges`` one after another."""
+    return Scene.grid_in_parts(**_grid(psi1, chi, most=MOST_IN_A_FOLDER, remedy="vary less"))
+
+
+def _grid(psi1: Any, chi: Any, *, most: int, remedy: str) -> dict[str, Any]:
+    """Return the entries of a grid, or refuse more impacts than ``most``."""
     if psi1 is None or chi is None:
         missing = " and ".join(n for n, v in (("--psi1", psi1), ("--chi", chi)) if v is None)
         raise ValueError(f"{missing}: must be given, or a sweep file")
-    if np.size(psi1) * np.size(chi) > MOST_IMPACTS:
-        raise refuse(
-            "--psi1, --chi", np.size(psi1) * np.size(chi), f"at most {MOST_IMPACTS} impacts"
-        )
-    return Scene.grid(chi=np.atleast_1d(chi), psi1=np.atleast_1d(psi1))
+    if (size := np.size(psi1) * np.size(chi)) > most:
+        raise refuse("--psi1, --chi", size, f"at most {most} impacts", remedy)
+    return {"chi": np.atleast_1d(chi), "psi1": np.atleast_1d(psi1)}
 
 
 def _rows(result: ImpactResult) -> tuple[list[str], list[tuple[Any, ...]]]:

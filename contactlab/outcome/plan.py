@@ -153,21 +153,16 @@ class Clause(NamedTuple):
     @property
     def words(self) -> str:
         """The statement without its share of a batch."""
-        largest = self.largest
-        return self.text if largest is None else self.text.format(*largest)
-
-    @property
-    def largest(self) -> tuple[float, ...] | None:
-        """The largest of each of the values among the impacts."""
         if self.values is None:
-            return None
-        return tuple(_largest(value, self.where) for value in self.values)
+            return self.text
+        return self.text.format(*(_largest(value, self.where) for value in self.values))
 
     def __str__(self) -> str:
         """Return the statement with its share of a batch."""
         if every(self.where):
             return self.words
-        return of_some(self.words, share(self.where))
+        head, colon, tail = self.words.partition(": ")
+        return f"{head} ({share(self.where)}){colon}{tail}"
 
     def take(self, part: Any) -> Clause:
         """Return the clause for some of the impacts."""
@@ -293,12 +288,6 @@ class Plan:
         said = ([(where, getattr(plan, kind)) for where, plan in parts] for kind in KINDS)
         words: Any = tuple(_merged(clauses, shape) for clauses in said)
         return cls(columns, words)
-
-
-def of_some(words: str, share: str) -> str:
-    """Return a statement with its share of a batch, such as "3 of 10 impacts"."""
-    head, colon, tail = words.partition(": ")
-    return f"{head} ({share}){colon}{tail}"
 
 
 def _merged(parts: Parts[Clauses], shape: tuple[int, ...]) -> Clauses:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import json
 import math
+import re
 import zipfile
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple, Self
@@ -18,7 +20,6 @@ from contactlab.contracts.status import Status
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import attributes_told, nearest
 from contactlab.outcome.answer import ImpactError
-from contactlab.outcome.plan import Plan, of_some
 from contactlab.outcome.result import ImpactResult
 
 #: Files of a folder: what it is a sweep of, its chunks, and the number of impacts in the end.
@@ -26,6 +27,8 @@ ABOUT, CHUNKS, FINISHED = "sweep.json", "impacts-*.npz", "finished.json"
 #: What ``sweep.json`` says of a folder of this kind, and of the codes of its statuses.
 FORM, STATUSES = "columns of results", "statuses"
 COLUMN_OF_STATUS = "status"
+#: A number in a sentence.
+NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 
 
 class About(NamedTuple):
@@ -43,8 +46,7 @@ class About(NamedTuple):
         Number of impacts of each status.
     failures : mapping of str to str
         A sentence for each impact that failed, by its index in the sweep.
-    cautions : sequence of [str, int, sequence of float or None]
-        Words of each caution, the number of its impacts, and the numbers to format into the words.
+    cautions : sequence of str
     psi2_error : float or None
         Largest declared bound of the numerical error of psi2; None where it is not declared.
     """
@@ -56,7 +58,7 @@ class About(NamedTuple):
     units: Mapping[str, str]
     counts: Mapping[str, int]
     failures: Mapping[str, str]
-    cautions: Any
+    cautions: Sequence[str]
     psi2_error: float | None
 
 
@@ -71,42 +73,34 @@ def about_of(
         units=units,
         counts=counts,
         failures={str(first + index): words for index, words in failures.items()},
-        cautions=_cautions(result.plan),
+        cautions=[str(caution) for caution in result.plan.cautions],
         psi2_error=None if math.isnan(error) else error,
     )
 
 
-def _cautions(plan: Plan) -> list[Any]:
-    """Return the cautions of a plan, each with its number of impacts."""
-    return [[each.text, int(np.sum(each.where)), each.largest] for each in plan.cautions]
-
-
 def read_about(path: Path) -> About:
     """Return what a chunk tells, or refuse a damaged file."""
-    with _chunk(path) as content:
+    with _arrays(path) as content:
         return About(**json.loads(str(content["about"])))
 
 
-class _chunk:  # noqa: N801
-    """The arrays of a file, each read when it is asked for; a damaged file is refused."""
+@contextlib.contextmanager
+def _arrays(path: Path) -> Iterator[Any]:
+    """Yield the arrays of a file, each read when it is asked for; a damaged file is refused."""
+    try:
+        with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as content:
+            yield content
+    except (OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile) as error:
+        raise ValueError(f"{path}: is damaged: {error}; delete this file") from error
 
-    def __init__(self, path: Path) -> None:
-        self.path = path
 
-    def __enter__(self) -> Any:
-        try:
-            self.content = np.load(self.path, allow_pickle=False)
-        except (OSError, EOFError, ValueError, zipfile.BadZipFile) as error:
-            raise self._damaged(error) from error
-        return self.content
-
-    def __exit__(self, kind: Any, error: Any, trace: Any) -> None:
-        self.content.close()
-        if isinstance(error, EOFError | KeyError | TypeError | ValueError | zipfile.BadZipFile):
-            raise self._damaged(error) from error
-
-    def _damaged(self, error: BaseException) -> ValueError:
-        return ValueError(f"{self.path}: is damaged: {error}; delete this file")
+def _told(same: list[tuple[list[float], str, About]], total: int) -> str:
+    """Return one sentence for those of several chunks, which differ in numbers only."""
+    _, sentence, about = max(same, key=lambda each: each[0])
+    if len(same) == total and all(other == sentence for _, other, _ in same):
+        return sentence
+    others = "" if len(same) == 1 else f" (so say {len(same)} of {total} chunks, here the largest)"
+    return f"impacts {about.first} to {about.stop}: {sentence}{others}"
 
 
 @attributes_told
@@ -202,7 +196,7 @@ class SweepFolder:
                 remedy = f"{nearest(name, self.units)}known: {', '.join(self.units)}"
                 raise refuse("column", name, "is not a column of the sweep", remedy)
         for path, about in self._abouts:
-            with _chunk(path) as content:
+            with _arrays(path) as content:
                 columns = {name: content[name] for name in wanted}
             if COLUMN_OF_STATUS in columns:
                 columns[COLUMN_OF_STATUS] = np.array(self._names)[columns[COLUMN_OF_STATUS]]
@@ -248,20 +242,19 @@ class SweepFolder:
 
     @property
     def cautions(self) -> list[str]:
-        """Doubts about the numbers, in sentences, each with its share of the computed impacts."""
-        counts: Counter[str] = Counter()
-        largest: dict[str, Any] = {}
+        """Doubts about the numbers, in sentences.
+
+        Chunks whose sentences differ in numbers only are told once, by the chunk with the largest
+        numbers, with its impacts.
+        """
+        said: dict[str, list[tuple[list[float], str, About]]] = {}
         for _, about in self._abouts:
-            for text, count, values in about.cautions:
-                counts[text] += count
-                before = largest.get(text)
-                largest[text] = values if before is None else np.fmax(before, values).tolist()
-        total, told = len(self), []
-        for text, count in counts.items():
-            words = text if largest[text] is None else text.format(*largest[text])
-            all_of_them = count == total
-            told.append(words if all_of_them else of_some(words, f"{count} of {total} impacts"))
-        return told
+            for sentence in about.cautions:
+                numbers = [float(each) for each in NUMBER.findall(sentence)]
+                same = said.setdefault(NUMBER.sub("#", sentence), [])
+                same.append((numbers, sentence, about))
+        total = len(self._abouts)
+        return [_told(same, total) for same in said.values()]
 
     def check(self, *, cautions: bool = False) -> Self:
         """Return this folder if all impacts are computed and none failed.

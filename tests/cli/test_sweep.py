@@ -1,10 +1,12 @@
 """`contactlab sweep`."""
 
+import contextlib
 import json
 
 import numpy as np
 import pytest
 
+from contactlab import SweepFolder
 from contactlab.impact.hertz import rigid_body_rebound
 
 LAWS = ("--tangential", "coulomb", "--integrator", "symplectic")
@@ -73,3 +75,79 @@ def test_the_table_of_a_file_has_what_it_varies(run, tmp_path):
         first, *_, along = map(float, row.split()[:5])  # angle, psi1, psi2, e_n, e_t
         assert first == angle
         assert along == pytest.approx(1.0 - 0.2 / np.tan(np.radians(angle)), rel=1e-5)
+
+
+def test_a_folder_holds_the_columns_and_goes_on(run, tmp_path, monkeypatch):
+    command = ("sweep", "--psi1", "0:8:40", "--chi", "1:2:10", *LAWS, "--out", f"{tmp_path}/swept/")
+    ran = run(*command)
+    assert (ran.status, ran.err) == (0, "")
+    assert ran.out.startswith(f"SweepFolder('{tmp_path}/swept'; 400 impacts; 400 SUCCESS)\n")
+    folder = SweepFolder(tmp_path / "swept").check()
+    psi2 = rigid_body_rebound(folder["psi1"], folder["chi"])
+    assert folder["psi2"] == pytest.approx(psi2, abs=1e-12)
+    assert folder["psi1"][:40].tolist() == np.linspace(0.0, 8.0, 40).tolist()
+    (path,) = (tmp_path / "swept").glob("impacts-*.npz")
+    before = path.stat().st_mtime_ns
+    assert run(*command[:-1], tmp_path / "swept", "--workers", "2").status == 0
+    assert path.stat().st_mtime_ns == before
+    ran = run("sweep", "--psi1", "0:8:41", *command[3:])
+    assert ran.status == 2
+    assert "another" in ran.err
+
+
+def test_a_file_may_be_swept_into_a_folder(run, tmp_path):
+    path = tmp_path / "drops.toml"
+    path.write_text(
+        "[nondimensional]\nchi = 1.4\npsi1 = 1.0\n[sweep]\npsi1 = [1.0, 2.0, 3.0]\n",
+        encoding="utf-8",
+    )
+    assert run("sweep", path, *LAWS, "--out", f"{tmp_path}/swept/").status == 0
+    assert SweepFolder(tmp_path / "swept").check()["psi1"].tolist() == [1.0, 2.0, 3.0]
+
+
+def test_failures_in_a_folder_are_status_1(run, tmp_path):
+    few = ("--set", "integrator.steps=5", "--set", "integrator.refine=false")
+    laws = ("--tangential", "springs", "--integrator", "symplectic", *few)
+    ran = run("sweep", "--psi1", "0:8:40", "--chi", "1.4", *laws, "--out", f"{tmp_path}/swept/")
+    assert ran.status == 1
+    assert "failed (impact" in ran.out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--json", "--out", "{}/swept/"), "--json: needs all impacts in memory"),
+        (("--csv", "--out", "{}/swept/"), "--csv: needs"),
+        (("--figure", "{}/a.png", "--out", "{}/swept/"), "--figure: needs"),
+        (("--out", "{}/swept.npz/"), "must not end as a file"),
+        (("--out", "{}/none/swept/"), "there is no folder"),
+        (("--out", "{}/swept"), "name a folder, {}/swept/"),
+    ],
+)
+def test_what_a_folder_cannot_be_is_one_line_and_status_2(run, tmp_path, arguments, words):
+    each = [str(part).replace("{}", str(tmp_path)) for part in arguments]
+    ran = run("sweep", "--psi1", "0:8:40", "--chi", "1.4", *LAWS, *each)
+    assert ran.status == 2
+    assert len(ran.err.splitlines()) == 1
+    assert words.replace("{}", str(tmp_path)) in ran.err
+    assert not (tmp_path / "swept").exists()
+
+
+def test_an_interrupted_folder_says_how_to_go_on(run, tmp_path, monkeypatch):
+    from contactlab.cli import arguments as shared  # the line of progress counts chunks
+
+    @contextlib.contextmanager
+    def interrupting(wanted, what):
+        def stop(done, total):
+            raise KeyboardInterrupt
+
+        yield stop
+
+    monkeypatch.setattr(shared, "progress", interrupting)
+    command = ("sweep", "--psi1", "0:8:1000", "--chi", "1:2:200", *LAWS, "--out", f"{tmp_path}/s/")
+    ran = run(*command)
+    assert ran.status == 130
+    assert "not complete: it stopped after impact 131071; the same sweep" in ran.out
+    monkeypatch.undo()
+    assert run(*command).status == 0
+    assert len(SweepFolder(tmp_path / "s").check()) == 200_000
