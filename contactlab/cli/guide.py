@@ -23,7 +23,13 @@ from contactlab.numeric.names import nearest
 GROUPS = {
     "Begin": ("getting-started", "units-and-signs", "choosing", "command-line"),
     "Answers": ("how-far-to-trust", "plans-and-statuses", "for-a-paper", "glossary"),
-    "Questions": ("fitting", "any-two-bodies", "load-paths", "beyond-the-paper"),
+    "Questions": (
+        "fitting",
+        "any-two-bodies",
+        "load-paths",
+        "beyond-the-paper",
+        "many-machines",
+    ),
     "Laws and codes": ("laws", "extending", "engines", "theory"),
 }
 TOPICS = tuple(topic for group in GROUPS.values() for topic in group)

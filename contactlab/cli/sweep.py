@@ -50,7 +50,7 @@ if TYPE_CHECKING:
 
 #: Printed columns.
 SHOWN = ("psi1", "chi", "psi2")
-#: Most impacts in a folder, some 140 GB: a typing error must not fill the disk.
+#: Most impacts in a folder, some 120 GB: a typing error must not fill the disk.
 MOST_IN_A_FOLDER = 1_000_000_000
 #: Most rows printed of a sweep that a file holds.
 MOST_ROWS = 25

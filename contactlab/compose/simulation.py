@@ -217,7 +217,8 @@ class Simulation:
             Solves the chunks; this process by default. Any object with a method ``submit`` that
             returns futures serves: ``ProcessPoolExecutor(4)``, dask's ``client.get_executor()``,
             an ``MPIPoolExecutor``. Workers import laws from the modules of their classes. A
-            chunk that the executor loses has the status ``WORKER_DIED``.
+            chunk that the executor loses has the status ``WORKER_DIED``. Laws that a table answers
+            gain nothing: to send and join takes this process 0.7 to 2.5 times as long as to solve.
         keep : str or Path, optional
             A folder where each chunk is written as soon as it is finished. The same sweep with the
             same folder resumes where it stopped; another scene or law is refused, and so is

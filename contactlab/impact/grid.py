@@ -78,6 +78,7 @@ def product(axes: Mapping[str, Any]) -> dict[str, Array]:
     """Return the values of each axis in all combinations, flat, the last varying fastest."""
     size = math.prod(np.size(values) for values in axes.values())
     if size > MOST_IMPACTS:
-        raise refuse("product", size, f"must be at most {MOST_IMPACTS} impacts", "vary less")
+        remedy = "vary less, or sweep Scene.grid_in_parts into a folder"
+        raise refuse("product", size, f"must be at most {MOST_IMPACTS} impacts", remedy)
     spread = np.meshgrid(*axes.values(), indexing="ij")
     return {name: values.ravel() for name, values in zip(axes, spread, strict=True)}

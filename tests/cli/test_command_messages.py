@@ -60,7 +60,7 @@ MISSING = "must be given too (chi is 1.4412 for a solid sphere)"
         (["sweep", "--chi", 1], "--psi1: must be given, or a sweep file"),
         (["sweep", "SWEEP", "--chi", 1], BOTH),
         (["sweep", "--psi1", "0:1:1001", "--chi", "1:2:1000"],
-         "--psi1, --chi = 1001000: at most 1000000 impacts"),
+         "--psi1, --chi = 1001000: at most 1000000 impacts; --out folder/ holds more"),
         (["sweep", "--psi1", "0:1:2", "--chi", 1, "--resume"],
          "--resume: needs --out FILE; finished impacts are kept beside this file"),
         (["sweep", "BALL"], "{ball}: holds a single impact; use contactlab run"),

@@ -7,13 +7,13 @@ import sys
 import numpy as np
 import pytest
 
-from contactlab import Scene, Simulation
+from contactlab import Scene, Simulation, rebound
 from tests.compose.test_sweep import CHI, assert_same, blocks_of, scene
 from tests.laws.ending_laws import Ending, Raising
 
 
 @pytest.fixture(scope="module")
-def executor():
+def client():
     pytest.importorskip("dask.distributed", reason="needs the extra dask")
     from dask.distributed import Client, LocalCluster
 
@@ -21,7 +21,40 @@ def executor():
         LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
         Client(cluster) as client,
     ):
-        yield client.get_executor()
+        yield client
+
+
+@pytest.fixture(scope="module")
+def executor(client):
+    return client.get_executor()
+
+
+@pytest.mark.slow
+def test_rebounds_of_dask_and_xarray_on_a_cluster(client):
+    """Blocks are computed by the workers, each way of the guide."""
+    dask_array, xarray = pytest.importorskip("dask.array"), pytest.importorskip("xarray")
+    psi1 = dask_array.linspace(-6.0, 6.0, 100_000, chunks=25_000)
+    expected = rebound(psi1.compute(scheduler="synchronous"), CHI)
+    by_name = xarray.apply_ufunc(
+        rebound, xarray.DataArray(psi1, dims="impact"), CHI,
+        dask="parallelized", output_dtypes=[float],
+    )  # fmt: skip
+    for lazy in (
+        rebound(psi1, CHI),
+        dask_array.map_blocks(rebound, psi1, CHI, dtype=float),
+        by_name.data,
+        rebound(xarray.DataArray(psi1, dims="impact"), CHI).data,
+    ):
+        future = client.compute(lazy)
+        assert np.array_equal(future.result(), expected)
+
+
+@pytest.mark.slow
+def test_a_folder_is_filled_by_a_cluster(executor, tmp_path):
+    scenes = Scene.nondimensional(psi1=np.linspace(0.0, 6.0, 9000), chi=CHI)
+    there = Simulation().sweep(scenes, executor=executor, into=tmp_path / "there", chunk=1).check()
+    here = Simulation().sweep(scenes)
+    assert there["psi2"].tobytes() == here.psi2.tobytes()
 
 
 @pytest.mark.slow

@@ -104,6 +104,31 @@ def test_series_are_paired_by_index():
             rebound(psi1, other)
 
 
+@extra("xarray")
+@extra("dask")
+def test_the_ways_of_dask_and_xarray_by_hand():
+    xarray, dask_array = arrays("xarray"), arrays("dask.array")
+    psi1 = dask_array.from_array(np.linspace(-6.0, 6.0, 1000), chunks=300)
+    chi = dask_array.from_array(np.linspace(0.3, 2.4, 1000), chunks=300)
+    expected = rebound(psi1.compute(), chi.compute())
+    by_blocks = dask_array.map_blocks(rebound, psi1, chi, dtype=float)
+    assert by_blocks.chunks == psi1.chunks
+    np.testing.assert_allclose(by_blocks.compute(), expected, atol=1e-10)
+    one = dask_array.map_blocks(rebound, psi1, 1.4, dtype=float, restitution=0.8)
+    np.testing.assert_allclose(
+        one.compute(), rebound(psi1.compute(), 1.4, restitution=0.8), atol=1e-9
+    )
+    angle = xarray.DataArray(psi1[:30].rechunk(10), dims="angle")
+    inertia = xarray.DataArray(chi[:20].rechunk(10), dims="chi")
+    by_name = xarray.apply_ufunc(
+        rebound, angle, inertia, dask="parallelized", output_dtypes=[float]
+    )
+    assert by_name.dims == ("angle", "chi")
+    plain = rebound(angle.values[:, None], inertia.values)
+    np.testing.assert_allclose(by_name.compute(), plain, atol=1e-10)
+    assert bool((rebound(angle, inertia) == by_name).all())
+
+
 @extra("dask")
 def test_dask_arrays_are_computed_when_they_are_asked():
     dask_array = arrays("dask.array")

@@ -37,7 +37,11 @@ LAWS = (
 HEAVY = ("Viscoelastic", "Brush", "Bristle", "Leapfrog")
 WITH_CODE = [page for page in PAGES if BLOCKS.search(text(page))]
 #: Extras that the code of a page needs.
-EXTRAS = {"for-a-paper": ("pandas",), "getting-started": ("xarray",)}
+EXTRAS = {
+    "for-a-paper": ("pandas",),
+    "getting-started": ("xarray",),
+    "many-machines": ("xarray", "dask"),
+}
 #: Where names in the tables of the guide are looked for.
 NAMESPACES = (
     contactlab, contracts, bodies, plan, history, motion, energy, normal_motion, result,
