@@ -166,9 +166,10 @@ def _into_folder(arguments: argparse.Namespace, file: SceneFile | None) -> int:
         _executor(arguments.workers) as executor,
     ):
         folder = simulation.sweep(scenes, progress=progress, executor=executor, into=arguments.out)
-    shared.tell_normal_spin(file.encounter if file else None)
     print(folder)
-    if folder.failures:
+    if failures := folder.failures:
+        which = f"{len(failures)} of {len(folder)} impacts: {next(iter(failures.values()))}"
+        print(f"contactlab: failed: {which}", file=sys.stderr)
         return shared.FAILED
     return shared.OK if folder.complete else shared.INTERRUPTED
 

@@ -111,6 +111,7 @@ def test_failures_in_a_folder_are_status_1(run, tmp_path):
     ran = run("sweep", "--psi1", "0:8:40", "--chi", "1.4", *laws, "--out", f"{tmp_path}/swept/")
     assert ran.status == 1
     assert "failed (impact" in ran.out
+    assert ran.err.startswith("contactlab: failed: ")
 
 
 @pytest.mark.parametrize(

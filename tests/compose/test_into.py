@@ -13,6 +13,7 @@ import pytest
 
 import contactlab
 from contactlab import (
+    Encounter,
     HalfSpace,
     ImpactError,
     Material,
@@ -42,6 +43,9 @@ SCENES = {
     "space": lambda: Scene.nondimensional(
         psi1=np.linspace(0.2, 4.0, 60)[:, None] * [0.6, 0.8], chi=[[2.0, 0.1], [0.1, 1.5]],
         lam=[0.1, 0.05], rho=1.0),
+    "encounters": lambda: Encounter(
+        *BODIES, 0.2, normal=(0, 0, -1), spin=(0, 9, 600),
+        velocity=np.linspace(1.0, 2.0, 60)[:, None] * [0.3, 0.0, -1.0]).scene,
 }  # fmt: skip
 
 
@@ -77,6 +81,7 @@ def test_a_folder_has_the_columns_of_the_result(tmp_path, name):
     assert len(list((tmp_path / "swept").glob("impacts-*.npz"))) >= 1
     assert_columns(folder, whole)
     assert_columns(SweepFolder(str(tmp_path / "swept")), whole)
+    assert bool(folder.cautions) == bool(whole.cautions)
     error = np.max(whole.plan.psi2_error)
     assert folder.psi2_error == error or np.isnan([folder.psi2_error, error]).all()
 
