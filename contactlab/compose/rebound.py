@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from contactlab.compose.names import BLOCK_VARIABLE
 from contactlab.contracts.restitution import RESTITUTIONS
-from contactlab.numeric.checks import POSITIVE, Real, Rule, paired, real, refuse
+from contactlab.numeric.checks import FINITE, POSITIVE, Real, Rule, paired, real, refuse
 from contactlab.numeric.labels import library_of
 
 if TYPE_CHECKING:
@@ -50,6 +50,8 @@ ELASTIC_CHI = (math.ulp(0.0), TABULATED_CHI)
 SLIPS_THROUGHOUT = 1e5
 
 
+#: Up to this restitution the table needs no other.
+NO_JOIN = 0.99
 #: Defaults of ``tolerance`` and ``restitution``, tested by identity: a comparison takes long.
 USUAL, ELASTIC = 1e-5, 1.0
 #: Arrays that are looked at number by number: NumPy takes longer to begin.
@@ -217,17 +219,42 @@ def rebound(
 
 def _labelled(psi1: Any, chi: Any, tolerance: Any, derivatives: bool, restitution: Any) -> Any:
     """Return ``rebound`` of labelled or lazy arrays, with their labels."""
-    from contactlab.compose.labelled import by_labels  # only for arrays of other libraries
-
     arguments, three = {"psi1": psi1, "chi": chi}, restitution is not ELASTIC
     if three:
         arguments["restitution"] = restitution
+    if "jax" in map(library_of, arguments.values()):
+        return _by_jax(arguments, derivatives)
+    from contactlab.compose.labelled import by_labels  # only for arrays of other libraries
 
     def answer(*columns: Any) -> Any:
         e = columns[2] if three else ELASTIC
         return rebound(*columns[:2], tolerance=tolerance, derivatives=derivatives, restitution=e)
 
     return by_labels(answer, 1 + (2 + three) * derivatives, arguments)
+
+
+def _by_jax(arguments: dict[str, Any], derivatives: bool) -> Any:
+    """Return ``rebound`` of arrays of JAX, traced or not."""
+    from contactlab.compose.traced import by_jax  # only for arrays of JAX
+
+    if derivatives:
+        remedy = "leave it out: jax.grad, jax.jvp and jax.hessian differentiate rebound"
+        raise refuse("derivatives", derivatives, "is for NumPy arrays", remedy)
+    e = arguments.get("restitution")
+    if isinstance(e, int | float) and e == 1.0:
+        e = arguments.pop("restitution")
+    lossy = "restitution" in arguments
+    low, high = RESTITUTED_CHI if lossy else (0.0, TABULATED_CHI)
+    rules = {
+        "psi1": FINITE,
+        "chi": Rule(
+            lambda value: POSITIVE.holds(value) & (value >= low) & (value <= high),
+            f"must be positive, from {low} to {high} with arrays of jax",
+        ),
+        "restitution": RESTITUTIONS,
+    }
+    joined = not (isinstance(e, float) and e <= NO_JOIN)
+    return by_jax(_law("normal" if lossy else "tangential"), arguments, rules, joined=joined)
 
 
 def _slopes(psi1: Array, chi: Array, restitution: Real | None) -> tuple[Array, ...]:
@@ -348,27 +375,28 @@ def _table(kind: str) -> Callable[..., Any]:
 @cache
 def _kept_table(kind: str, blocked: Any) -> Callable[..., Any]:
     """Return the function of a law while the blocking is the same."""
-    if kind == "tangential":
-        return _solver(blocked).rebound
-    from contactlab.compose import composition  # takes long to import
+    return _kept_law(kind, blocked).rebound
 
-    law: Tabulated = composition.law(kind, composition.RESTITUTION[kind])
-    return law.rebound
+
+def _law(kind: str) -> Tabulated:
+    """Return the exact tangential law, or the normal law of a restitution."""
+    return _kept_law(kind, os.environ.get(BLOCK_VARIABLE))
 
 
 @cache
-def _solver(_: Any) -> Tabulated:
-    """Return the exact tangential law while the blocking is the same."""
-    from contactlab.compose import composition
+def _kept_law(kind: str, _: Any) -> Tabulated:
+    """Return a law while the blocking is the same."""
+    from contactlab.compose import composition  # takes long to import
 
-    law: Tabulated = composition.law("tangential", composition.EXACT["tangential"])
+    names = composition.EXACT if kind == "tangential" else composition.RESTITUTION
+    law: Tabulated = composition.law(kind, names[kind])
     return law
 
 
 def _exact(psi1: Array, chi: Array) -> Array:
     """Return psi2, shape (impacts,), without a table: the exact solution for abs(psi1)."""
     speed = np.abs(psi1)
-    change = _solver(os.environ.get(BLOCK_VARIABLE)).solved(speed, chi)
+    change = _law("tangential").solved(speed, chi)
     if change is None:
         from contactlab.compose import composition  # a table needs none of this
         from contactlab.compose.simulation import Simulation

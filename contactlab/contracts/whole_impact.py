@@ -97,6 +97,29 @@ class Tabulated(ABC):
             them of a law that takes restitutions; arrays only.
         """
 
+    @staticmethod
+    def table_of_arrays() -> Mapping[str, Any]:
+        """Return the arrays of numbers and of integers that ``rebound_of_arrays`` needs."""
+        raise NotImplementedError("this law has no table for arrays of other libraries")
+
+    @staticmethod
+    def rebound_of_arrays(xp: Any, tables: Any, *impact: Any, **options: Any) -> Any:
+        """Return psi2 by functions of the array API standard, for libraries that trace.
+
+        Parameters
+        ----------
+        xp : module
+            Functions of the array API standard.
+        tables : mapping of str to array
+            Those of ``table_of_arrays``, as arrays of that library.
+        *impact : array
+            As in ``rebound``, of one shape and type. Out of the range of the law psi2 is NaN.
+        **options
+            ``joined``: False if no restitution is near 1, so that the law may leave out what joins
+            it to elastic impacts.
+        """
+        raise NotImplementedError("this law has no table for arrays of other libraries")
+
     def solved(self, psi1: Any, chi: Any) -> Any:
         """Return psi2 - psi1 beyond the table; None, the default, where impacts are marched.
 

@@ -1,18 +1,20 @@
-"""Arrays with labels or without numbers yet: of xarray, pandas and dask, none of them imported."""
+"""Arrays of other libraries, none of them imported: xarray, pandas, dask and JAX."""
 
 from __future__ import annotations
 
+import sys
 from functools import cache
 from typing import Any
 
 import numpy as np
 
-#: Packages of arrays that NumPy would pair by position, or compute at once.
-LIBRARIES = ("xarray", "pandas", "dask")
+#: Packages of arrays that NumPy would pair by position, compute at once or lose the trace of, by
+#: the package of their classes.
+LIBRARIES = {"xarray": "xarray", "pandas": "pandas", "dask": "dask", "jax": "jax", "jaxlib": "jax"}
 
 
 def library_of(value: object) -> str:
-    """Return the package of an array with labels, or without numbers yet; else empty."""
+    """Return the package of an array of another library; empty for all other values."""
     kind: Any = type(value)
     return _library(kind)
 
@@ -23,8 +25,13 @@ def _library(kind: type) -> str:
     for base in kind.__mro__:
         package = base.__module__.partition(".")[0]
         if package in LIBRARIES and (package != "pandas" or hasattr(kind, "iloc")):
-            return package
+            return LIBRARIES[package]
     return ""
+
+
+def is_traced(value: object) -> bool:
+    """Return whether an array of JAX has no numbers: it is traced by jit, grad or vmap."""
+    return library_of(value) == "jax" and isinstance(value, sys.modules["jax"].core.Tracer)
 
 
 def numbered(index: Any) -> bool:
@@ -50,6 +57,8 @@ def misplaced(value: Any) -> tuple[str, str] | None:
         if not numbered(value.index):
             rule = "has an index other than 0, 1, 2, ..., but arrays are paired by position here"
             return rule, "give numbers in the order that is meant: .to_numpy()"
+    if library == "jax" and is_traced(value):
+        return "is traced by jax", "of scenes and laws only rebound takes traced arrays"
     if library == "dask":
         remedy = "give its numbers: .compute(); of dask arrays only rebound returns dask arrays"
         return "is not computed yet", remedy

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar
 
 import attrs
@@ -69,6 +69,20 @@ class Fronts(PathTangentialLaw, Tabulated):
     together: ClassVar[bool] = True
     linear_below: ClassVar[float] = compiled.LINEAR_BELOW
     rebound = staticmethod(rebound)
+
+    @staticmethod
+    def table_of_arrays() -> Mapping[str, Any]:
+        """Return the elastic table."""
+        from contactlab_laws.tables import traced  # only for arrays of other libraries
+
+        return traced.elastic_constants()
+
+    @staticmethod
+    def rebound_of_arrays(xp: Any, tables: Any, *impact: Any, **_: Any) -> Any:
+        """Return psi2 of psi1 and chi; there is nothing to join."""
+        from contactlab_laws.tables import traced
+
+        return traced.rebound(xp, tables, *impact)
 
     table: bool = flag(default=True)
 

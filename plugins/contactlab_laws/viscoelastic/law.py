@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import attrs
@@ -58,3 +59,17 @@ class Viscoelastic(Relaxing, Tabulated):
         from contactlab_laws.viscoelastic.rebound import rebound  # not for a normal motion
 
         return rebound(*impact, **options)
+
+    @staticmethod
+    def table_of_arrays() -> Mapping[str, Any]:
+        """Return the table of restitutions, and the elastic one under names of its own."""
+        from contactlab_laws.tables import traced  # only for arrays of other libraries
+
+        return traced.restituted_constants()
+
+    @staticmethod
+    def rebound_of_arrays(xp: Any, tables: Any, *impact: Any, **options: Any) -> Any:
+        """Return psi2 of psi1, chi and restitutions."""
+        from contactlab_laws.tables import traced
+
+        return traced.rebound_with_loss(xp, tables, *impact, **options)

@@ -1,0 +1,275 @@
+"""psi2 from both tables by functions of the array API standard, for libraries that trace: JAX.
+
+The formulas are those of ``elastic`` and ``restituted``, without branches: each impact is computed
+in a region, and conditions choose. Where a condition excludes a formula its argument is a harmless
+number, so that derivatives of what is not chosen are finite.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from contactlab.compose.rebound import RESTITUTED_CHI
+from contactlab_laws.tables import elastic, restituted
+from contactlab_laws.tables import regions as of
+from contactlab_laws.tables.file import read
+from contactlab_laws.tables.restituted_regions import LOW, NODES, PER_WIDTH, SLIPPING, border
+
+#: A harmless number in place of the argument of a root.
+HARMLESS = 0.5
+#: Regions in which the first coordinate is a root, and those in which the second is.
+ROOTS = (of.SMALL_NEAR, of.SLIP_BACK, of.SLIP_ON), (of.STUCK_ON, of.SLIP_ON)
+#: Before the names of the elastic table among those of the table of restitutions.
+ELASTIC = "elastic "
+
+
+@cache
+def elastic_constants() -> dict[str, Any]:
+    """Return the elastic table, by powers of local coordinates from the middle of each patch.
+
+    float32 keeps more digits so than by powers from an end. Where a coordinate is a root, patches
+    that begin at 0 keep that origin: there low powers are missing, exactly, and with them slopes
+    that are infinite.
+    """
+    stored = read(elastic.SHIPPED).arrays
+    cells, terms = stored["cells"], stored["terms"].astype(np.float64)
+    begins = cells[:, 3:].T.astype(np.float64)
+    middles = np.where((begins == 0.0) & [np.isin(cells[:, 0], each) for each in ROOTS], 0.0, 0.5)
+    shifts = [_shifting(each, elastic.NODES) for each in middles]
+    return {
+        "grid": elastic._grid(cells).ravel().astype(np.int32),
+        "terms": (shifts[0].swapaxes(1, 2) @ terms @ shifts[1]).reshape(-1),
+        "scales": np.exp2(cells[:, 1:3].T.astype(np.float64)),
+        "starts": begins + middles,
+        "stuck": stored["stuck"],
+        "slip": stored["slip"],
+    }
+
+
+def _shifting(origins: Any, count: int) -> Any:
+    """Return matrices of u^n by powers of u less each origin, shape (origins, count, count)."""
+    powers = np.array([[math.comb(n, k) for k in range(count)] for n in range(count)], dtype=float)
+    exponents = np.subtract.outer(np.arange(count), np.arange(count))
+    return powers * np.asarray(origins)[:, None, None] ** np.maximum(exponents, 0)
+
+
+@cache
+def restituted_constants() -> dict[str, Any]:
+    """Return the table of restitutions, and the elastic one."""
+    table = restituted.shipped()
+    return {
+        "grid": table.grid.astype(np.int32),
+        "starts": table.starts,
+        "sizes": table.sizes,
+        "terms": table.patches.terms.reshape(-1),
+        "origins": table.patches.origins,
+        "low": LOW,
+        "per_width": PER_WIDTH,
+        **{f"{ELASTIC}{name}": each for name, each in elastic_constants().items()},
+    }
+
+
+def rebound(xp: Any, constants: Any, psi1: Any, chi: Any) -> Any:
+    """Return psi2 of elastic impacts, NaN where the table ends.
+
+    Parameters
+    ----------
+    xp : module
+        Functions of the array API standard.
+    constants : mapping of str to array
+        ``elastic_constants``, as arrays of that library.
+    psi1, chi : array
+        Of one shape and type.
+    """
+    inside = xp.isfinite(psi1) & (chi > 0.0) & (chi <= of.LARGEST_CHI)
+    sign = xp.where(psi1 < 0.0, -xp.ones_like(psi1), xp.ones_like(psi1))  # 1 at 0: odd and smooth
+    speed = xp.where(inside, sign * psi1, HARMLESS)
+    psi2 = _elastic(xp, constants, speed, xp.where(inside, chi, 1.0))
+    return xp.where(inside, sign * psi2, xp.nan)
+
+
+def rebound_with_loss(xp: Any, constants: Any, psi1: Any, chi: Any, e: Any, *, joined: bool) -> Any:
+    """Return psi2 of impacts with a restitution, NaN where the table ends.
+
+    Parameters
+    ----------
+    xp : module
+        Functions of the array API standard.
+    constants : mapping of str to array
+        ``restituted_constants``, as arrays of that library.
+    psi1, chi, e : array
+        Of one shape and type.
+    joined : bool
+        False if no e is above ``restituted.JOINED``, where the elastic table is needed too.
+    """
+    inside = xp.isfinite(psi1) & (e >= 0.0) & (e <= 1.0)
+    inside = inside & (chi >= RESTITUTED_CHI[0]) & (chi <= RESTITUTED_CHI[1])
+    inside = inside & ((e < 1.0) | (chi <= of.LARGEST_CHI))
+    sign = xp.where(psi1 < 0.0, -xp.ones_like(psi1), xp.ones_like(psi1))
+    p = xp.where(inside, sign * psi1, HARMLESS)
+    x, e = xp.where(inside, chi, 1.0), xp.where(inside, e, HARMLESS)
+    full = p - 2.0 * x * (1.0 + e)
+    psi2 = _partial(xp, constants, p, x, e)
+    if joined:
+        lossless = {
+            name.removeprefix(ELASTIC): each
+            for name, each in constants.items()
+            if name.startswith(ELASTIC)
+        }
+        near = (e > restituted.JOINED) & (x <= of.LARGEST_CHI)
+        y = xp.where(near, x, 1.0)
+        step = _elastic(xp, lossless, p, y) - _partial(xp, constants, p, y, xp.ones_like(e))
+        psi2 = psi2 + xp.where(near, restituted._share(e) * step, 0.0)
+    rest = xp.where(x < 0.5, 1.0 - 2.0 * x, 1.0)
+    slow = xp.where((p > 0.0) & (p < 1.0), p, 1.0)
+    dead = xp.where(x < 0.5, rest * slow ** (1.0 / rest), 0.0)
+    psi2 = xp.where(e == 0.0, xp.where(p > 0.0, dead, 0.0), psi2)
+    psi2 = xp.where(psi2 < full, full, psi2)
+    psi2 = xp.where(psi2 > p, p, xp.where(psi2 < -p, -p, psi2))
+    end = border(x, e)
+    psi2 = xp.where(p < xp.where(end > 1.0, end, 1.0), psi2, full)
+    return xp.where(inside, sign * psi2, xp.nan)
+
+
+def _elastic(xp: Any, constants: Any, p: Any, x: Any) -> Any:
+    """Return psi2 of psi1 = p >= 0 and 0 < chi <= LARGEST_CHI."""
+    full = p - 4.0 * x
+    slips, big = p > 1.0, x >= 0.5
+    through = slips & (p >= 4.0 * x - 1.0)
+    epsilon, delta = abs(2.0 * x - 1.0), abs(p - 1.0)
+    narrow = xp.where(epsilon > 0.0, epsilon, 1.0)
+    ratio, height = delta / narrow, (x - 0.5) * (1.0 / (of.LARGEST_CHI - 0.5))
+    early = slips & ~through & (ratio > 0.0) & (ratio <= 1.0)
+    t = xp.where(early, ratio, HARMLESS) ** 0.2
+    late, long = ratio > 1.0, t > of.CUT_END
+    above_slip, b_slip = _across(xp, x, _polynomial(constants["slip"], t), of.CUT_TOP)
+    stuck = xp.where(slips, 1.0, p)
+    above_stuck, b_stuck = _across(xp, x, _polynomial(constants["stuck"], stuck), of.LARGEST_CHI)
+    near = delta < epsilon
+    tiny = xp.where(near & (delta > 0.0) & ~big, ratio, HARMLESS) ** 0.2
+    wide = xp.where(delta > 0.0, delta, 1.0)
+
+    def chosen(*cases: Any) -> Any:
+        """Return the case of each impact: late, long, above or below a cut; then those p <= 1."""
+        slip_late, slip_long, slip_on, slip_back, stuck_on, stuck_back, small_near, small_far = (
+            cases
+        )
+        slipping = xp.where(above_slip, slip_on, slip_back)
+        slipping = xp.where(late, slip_late, xp.where(long, slip_long, slipping))
+        sticking = xp.where(above_stuck, stuck_on, stuck_back)
+        small = xp.where(near, small_near, small_far)
+        return xp.where(slips, slipping, xp.where(big, sticking, small))
+
+    region = chosen(
+        *(
+            xp.full(p.shape, number, dtype=xp.int32)
+            for number in (
+                of.SLIP_LATE, of.SLIP_LONG, of.SLIP_ON, of.SLIP_BACK,
+                of.STUCK_ON, of.STUCK_BACK, of.SMALL_NEAR, of.SMALL_FAR,
+            )
+        )
+    )  # fmt: skip
+    short, far = t * (1.0 / of.CUT_END), (t - of.CUT_END) * (1.0 / (1.0 - of.CUT_END))
+    at_one = xp.where(delta > 0.0, tiny, 0.0)
+    a = chosen(ratio - 1.0, far, short, short, p, p, at_one, epsilon / wide)
+    b = chosen(height, height, b_slip, b_slip, b_stuck, b_stuck, epsilon, delta)
+    measure = xp.where(slips | big | near, epsilon, delta)
+    a, b = xp.where(through, HARMLESS, a), xp.where(through, HARMLESS, b)
+    size = elastic.SIZE
+    i, j = (_index(xp, each, size) for each in (a, b))
+    patch = xp.take(constants["grid"], _flat((region * size + i) * size + j), axis=0)
+    local = [
+        each * _taken(xp, constants["scales"][k, ...], patch, p.shape)
+        - _taken(xp, constants["starts"][k, ...], patch, p.shape)
+        for k, each in enumerate((a, b))
+    ]
+    count = elastic.NODES
+    g = _sum(xp, constants["terms"], patch * count**2, (count, count), local, p.shape)
+    psi2 = p * (measure * g - 1.0)
+    psi2 = xp.where(psi2 < full, full, psi2)
+    psi2 = xp.where(psi2 > p, p, xp.where(psi2 < -p, -p, psi2))
+    return xp.where(through, full, psi2)
+
+
+def _partial(xp: Any, constants: Any, p: Any, x: Any, e: Any) -> Any:
+    """Return psi2 by the table of restitutions, of impacts that stick at some time."""
+    end, slips = border(x, e), p > 1.0
+    inner = slips & (p < end)
+    root = xp.where(inner, (end - p) / xp.where(inner, end - 1.0, 1.0), HARMLESS)
+    u = xp.where(slips, 1.0 - root**0.5, p)
+    region = xp.astype(x >= 0.5, xp.int32) + xp.astype(slips, xp.int32)
+    for bound in SLIPPING:
+        region = region + xp.astype(slips & (x >= bound), xp.int32)
+    region = xp.where(slips & ~(x >= 0.5), xp.ones_like(region), region)
+    flat, shape = _flat(region), p.shape
+    share = (x - _taken(xp, constants["low"], flat, shape)) * _taken(
+        xp, constants["per_width"], flat, shape
+    )
+    where = xp.zeros_like(region)
+    for k, each in enumerate((u, share, e)):
+        size = _taken(xp, constants["sizes"][k, ...], flat, shape)
+        place = xp.astype(each * xp.astype(size, p.dtype), xp.int32)
+        where = where * size + xp.where(place < 0, 0, xp.where(place < size, place, size - 1))
+    where = where + _taken(xp, constants["starts"], flat, shape)
+    patch = xp.take(constants["grid"], _flat(where), axis=0)
+    local = [
+        each - _taken(xp, constants["origins"][k, ...], patch, shape)
+        for k, each in enumerate((u, x, e))
+    ]
+    size = NODES[0] * NODES[1] * NODES[2]
+    value = _sum(xp, constants["terms"], patch * size, NODES, local, shape)
+    return xp.where(slips, value, p * value)
+
+
+def _sum(xp: Any, terms: Any, first: Any, counts: Any, local: Any, shape: Any) -> Any:
+    """Return polynomials of local coordinates by Horner's rule; terms begin at ``first``."""
+    count, *others = counts
+    width = 1
+    for other in others:
+        width *= other
+    total = None
+    for power in range(count - 1, -1, -1):
+        start = first + power * width
+        term = (
+            _sum(xp, terms, start, others, local[1:], shape)
+            if others
+            else _taken(xp, terms, start, shape)
+        )
+        total = term if total is None else total * local[0] + term
+    return total
+
+
+def _across(xp: Any, x: Any, cut: Any, top: float) -> tuple[Any, Any]:
+    """Return whether chi is above a cut, and the second coordinate on its side."""
+    above, beyond = x >= cut, x > cut
+    root = xp.where(beyond & (cut < top), (x - cut) / xp.where(cut < top, top - cut, 1.0), HARMLESS)
+    below = (x - 0.5) / xp.where(cut > 0.5, cut - 0.5, 1.0)
+    return above, xp.where(beyond, root**0.5, xp.where(above, 0.0, below))
+
+
+def _polynomial(terms: Any, argument: Any) -> Any:
+    """Return the polynomial with ``terms``, lowest first."""
+    total = terms[-1, ...]
+    for power in range(terms.shape[0] - 2, -1, -1):
+        total = total * argument + terms[power, ...]
+    return total
+
+
+def _index(xp: Any, share: Any, size: int) -> Any:
+    """Return the places of coordinates in [0, 1] in a grid."""
+    place = xp.astype(share * size, xp.int32)
+    return xp.where(place < 0, 0, xp.where(place < size, place, size - 1))
+
+
+def _flat(index: Any) -> Any:
+    """Return an index as one axis: ``take`` of the standard needs one."""
+    return index.reshape(-1)
+
+
+def _taken(xp: Any, values: Any, index: Any, shape: Any) -> Any:
+    """Return ``values`` at an index of one axis, in the shape of the impacts."""
+    return xp.take(values, index, axis=0).reshape(shape)
