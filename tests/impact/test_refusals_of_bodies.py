@@ -133,7 +133,8 @@ REFUSED = [
     (lambda: Scene.stack([BARE, 3]), "scenes[1] = 3: must be a Scene"),
     (
         lambda: Scene.stack([BARE, Scene.nondimensional(psi1=[1.0, 2.0], chi=1.0)]),
-        "scenes[1] = (2,): must be a single impact",
+        "scenes[1] = (2,): must be a single impact; batches go one after another into a folder: "
+        "sweep(scenes, into=...)",
     ),
     (
         lambda: Scene.grid(psi1=1.0, chi=1.0),
@@ -217,7 +218,7 @@ def test_scenes_of_two_sorts_are_not_stacked(scenes, words):
 def test_a_grid_has_at_most_so_many_impacts(monkeypatch):
     monkeypatch.setattr(grid, "MOST_IMPACTS", 6)
     assert Scene.grid(psi1=[1.0, 2.0, 3.0], chi=[1.0, 2.0]).shape == (6,)
-    with pytest.raises(ValueError, match=r"^product = 8: must be at most 6 impacts; vary less$"):
+    with pytest.raises(ValueError, match=r"^product = 8: must be at most 6 impacts; vary less,"):
         Scene.grid(psi1=[1.0, 2.0, 3.0, 4.0], chi=[1.0, 2.0])
 
 
