@@ -50,7 +50,7 @@ ELASTIC_CHI = (math.ulp(0.0), TABULATED_CHI)
 SLIPS_THROUGHOUT = 1e5
 
 
-#: Up to this restitution the table needs no other.
+#: Up to this restitution the table of restitutions is not joined to the elastic one.
 NO_JOIN = 0.99
 #: Defaults of ``tolerance`` and ``restitution``, tested by identity: a comparison takes long.
 USUAL, ELASTIC = 1e-5, 1.0
@@ -194,9 +194,7 @@ def rebound(
         kept=False,
         empty=True,
     )
-    aim = real("tolerance", tolerance, rule=TOLERANCE, remedy="leave it out for 1e-5")
-    if not isinstance(aim, float):
-        raise refuse("tolerance", tolerance, "must be one number", "leave it out for 1e-5")
+    aim = _tolerance(tolerance)
     e = real("restitution", restitution, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
     three = derivatives and restitution is not ELASTIC
     velocity, ratio = paired("psi1", "chi", (incidence, inertia))
@@ -221,11 +219,20 @@ def rebound(
     return answers if derivatives else answers[0]
 
 
+def _tolerance(value: Any) -> float:
+    """Return a checked tolerance."""
+    aim = real("tolerance", value, rule=TOLERANCE, remedy="leave it out for 1e-5")
+    if not isinstance(aim, float):
+        raise refuse("tolerance", value, "must be one number", "leave it out for 1e-5")
+    return aim
+
+
 def _labelled(psi1: Any, chi: Any, tolerance: Any, derivatives: bool, restitution: Any) -> Any:
     """Return ``rebound`` of labelled or lazy arrays, with their labels."""
     arguments, three = {"psi1": psi1, "chi": chi}, restitution is not ELASTIC
     if three:
         arguments["restitution"] = restitution
+    _tolerance(tolerance)
     if "jax" in map(library_of, arguments.values()):
         return _by_jax(arguments, derivatives)
     from contactlab.compose.labelled import by_labels  # only for arrays of other libraries
@@ -245,15 +252,16 @@ def _by_jax(arguments: dict[str, Any], derivatives: bool) -> Any:
         remedy = "leave it out: jax.grad, jax.jvp and jax.hessian differentiate rebound"
         raise refuse("derivatives", derivatives, "is for NumPy arrays", remedy)
     e = arguments.get("restitution")
-    if isinstance(e, int | float) and e == 1.0:
+    if type(e) in (int, float) and e == 1.0:
         e = arguments.pop("restitution")
     lossy = "restitution" in arguments
     low, high = RESTITUTED_CHI if lossy else (0.0, TABULATED_CHI)
+    span = f"lie from {low} to" if lossy else "be positive and at most"
     rules = {
         "psi1": FINITE,
         "chi": Rule(
             lambda value: POSITIVE.holds(value) & (value >= low) & (value <= high),
-            f"must be positive, from {low} to {high} with arrays of jax",
+            f"must {span} {high} with arrays of jax",
         ),
         "restitution": RESTITUTIONS,
     }

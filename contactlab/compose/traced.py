@@ -49,7 +49,8 @@ def by_jax(
             raise refuse(name, value, rule, "give arrays of one package")
         if not is_traced(value):
             remedy = "the table ends there: give such impacts to rebound as NumPy arrays"
-            real(name, np.asarray(value), rule=rules[name], remedy=remedy, empty=True)
+            known = np.asarray(value) if library_of(value) else value
+            real(name, known, rule=rules[name], remedy=remedy, empty=True)
     # the type of arrays, not of numbers beside them, as everywhere in JAX
     kind = numpy.result_type(*arguments.values())
     if not numpy.issubdtype(kind, numpy.floating):

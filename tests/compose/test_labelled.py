@@ -182,6 +182,12 @@ def test_what_has_no_common_labels_is_refused(case):
     assert "must" in str(refusal.value) or "no labels" in str(refusal.value)
 
 
+@extra("dask")
+def test_a_bad_tolerance_is_refused_before_anything_is_computed():
+    with pytest.raises(ValueError, match="tolerance = 2"):
+        rebound(arrays("dask.array").ones(3), 1.4, tolerance=2.0)
+
+
 LENGTHS = [0.5, 1.25, 3.0]
 #: Every other door, by the argument that a refusal names; each takes an array of shape (3,).
 DOORS = {

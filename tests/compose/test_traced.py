@@ -155,7 +155,7 @@ def test_float32_keeps_its_digits(jax):
 def test_known_numbers_are_refused_and_traced_ones_are_nan(jax):
     one = jax.numpy.asarray([1.0, 2.0])
     for arguments, words in (
-        ((one, 2.6), r"chi = 2.6: must be positive, from 0.0 to 2.5 with arrays of jax"),
+        ((one, 2.6), r"chi = 2.6: must be positive and at most 2.5 with arrays of jax; the table"),
         ((one * np.nan, 1.0), "psi1"),
         ((one, -1.0), "chi"),
         ((one, jax.numpy.ones(3)), "must fit"),
@@ -165,6 +165,12 @@ def test_known_numbers_are_refused_and_traced_ones_are_nan(jax):
             rebound(*arguments)
     with pytest.raises(ValueError, match="restitution"):
         rebound(one, 1.0, restitution=1.5)
+    with pytest.raises(ValueError, match=r"chi = 0.2: must lie from 0.3 to 3.0 with arrays of jax"):
+        rebound(one, 0.2, restitution=0.5)
+    with pytest.raises(ValueError, match="restitution = True"):
+        rebound(one, 1.0, restitution=True)
+    with pytest.raises(ValueError, match="tolerance"):
+        rebound(one, 1.0, tolerance=2.0)
     with pytest.raises(ValueError, match=r"derivatives.*jax\.grad"):
         rebound(one, 1.0, derivatives=True)
     assert np.isnan(jax.jit(rebound)(one, 2.6)).all()
