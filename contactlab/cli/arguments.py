@@ -7,6 +7,7 @@ import contextlib
 import json
 import math
 import re
+import shlex
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
@@ -26,6 +27,7 @@ from contactlab.outcome.files import distinct, unwritable, write_table
 if TYPE_CHECKING:
     from contactlab.compose.simulation import Simulation
     from contactlab.impact.scene import Scene
+    from contactlab.fitting.measurements import Measurements
     from contactlab.scene_file import SceneFile
 
 
@@ -290,6 +292,33 @@ def add_columns(parser: argparse.ArgumentParser) -> None:
         help="name a column of the CSV: 'impact angle [deg]=incidence_angle'; a name with - before "
         "turns the sign, 'remark=#' leaves the column unread; may be repeated",
     )
+    parser.add_argument(
+        "--columns",
+        type=_columns,
+        metavar="A,B,...",
+        help="names of all columns of the CSV in their order, with headings or without: "
+        "'angle_deg,speed (mph),#'; # for a column that is not read",
+    )
+
+
+def _columns(text: str) -> list[str]:
+    """Return the names of all columns."""
+    return [name.strip() for name in text.split(",")]
+
+
+def read_impacts(data: Any, arguments: argparse.Namespace) -> Measurements:
+    """Return measured impacts, with the names of columns; a refusal has the command to paste."""
+    from contactlab.fitting import measurements  # only for measured impacts
+    from contactlab.fitting.foreign_headings import ForeignHeadingsError
+
+    if arguments.columns and arguments.column:
+        raise ValueError("--column: cannot stand beside --columns, which names all columns")
+    names = arguments.columns or dict(arguments.column)
+    try:
+        return measurements.read_measurements(data, columns=names)
+    except ForeignHeadingsError as error:
+        command = f"paste: contactlab {shlex.join(arguments.words)}"
+        raise ForeignHeadingsError(error.said, error.columns, command) from None
 
 
 def _column(text: str) -> tuple[str, str]:
@@ -314,13 +343,14 @@ def add_measured(parser: argparse.ArgumentParser) -> None:
 def measured(arguments: argparse.Namespace, file: SceneFile) -> SceneFile:
     """Return the scene file with the values of ``--measured`` in place of its own."""
     if arguments.measured is None:
-        if arguments.column:
+        if arguments.column or arguments.columns:
             raise ValueError("--column: names headings of --measured DATA.csv, which is missing")
         return file
     from contactlab.fitting import measurements  # only for --measured
 
-    columns = dict(arguments.column)
-    table = measurements.read_measurements(arguments.measured, columns=columns)
+    table = read_impacts(arguments.measured, arguments)
+    for note in table.notes:
+        print(f"contactlab: note: {note}", file=sys.stderr)
     return measurements.with_measurements(file, table)
 
 

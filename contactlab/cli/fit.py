@@ -23,7 +23,7 @@ from contactlab.cli.scene import add_allow_code
 from contactlab.compose.composition import DEFAULT_NORMAL
 from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.compose.simulation import Simulation
-from contactlab.fitting import Fit, Ranked, fit, in_order, rank, read_measurements
+from contactlab.fitting import Fit, Ranked, fit, in_order, rank
 from contactlab.fitting.estimation import default_laws, parameters_of
 from contactlab.fitting.model import SOME_FRICTION
 from contactlab.fitting.parameters import RESTITUTION
@@ -82,7 +82,7 @@ def execute(arguments: argparse.Namespace) -> int:
     for number, name in enumerate(arguments.files, start=1):
         distinct({f"FILE {number}": name, "--csv": arguments.csv, "--figure": arguments.figure})
     data, path = _files(arguments.files)
-    impacts = read_measurements(data, columns=dict(arguments.column))
+    impacts = shared.read_impacts(data, arguments)
     defaults = {"friction_coefficient": SOME_FRICTION}
     allow = arguments.allow_code
     file = read_scene(path, entries=impacts.given, defaults=defaults, allow_code=allow)

@@ -61,7 +61,7 @@ class Parser(argparse.ArgumentParser):
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status."""
     words = sys.argv[1:] if arguments is None else list(arguments)
-    parsed = argparse.Namespace(command="", traceback=False)
+    parsed = argparse.Namespace(command="", traceback=False, words=words)
     with fitted(), _warned():
         try:
             status = _execute(_join_negative_numbers(words), parsed)

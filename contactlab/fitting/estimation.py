@@ -154,7 +154,7 @@ def fit(
         *(() if notes else assumed(every, table.given, values, reaches)),
     )
     aic = every.criterion(values)  # over all numbers, so that laws that leave some out compare
-    outcome = attrs.evolve(outcome, notes=notes, cautions=warned, aic=aic)
+    outcome = attrs.evolve(outcome, notes=(*table.notes, *notes), cautions=warned, aic=aic)
     if counted is not None:
         counted(1, 1)
     if not samples:

@@ -10,7 +10,15 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.fitting.csv_columns import ERROR, read_columns, read_heading, read_text
+from contactlab.fitting.csv_columns import (
+    ERROR,
+    UnknownHeadingError,
+    known_names,
+    read_columns,
+    read_heading,
+    read_text,
+)
+from contactlab.fitting.foreign_headings import ForeignHeadingsError, foreign
 from contactlab.numeric.checks import check_place, real, refuse
 from contactlab.scene_file import SceneFile
 from contactlab.scene_file.measured import Measured
@@ -39,6 +47,8 @@ class Measurements:
         Columns that a fit does not need.
     source : str
         Path of the file; empty for a mapping.
+    notes : tuple of str
+        Sentences on impacts and columns that were left out.
     """
 
     given: Mapping[str, Array]
@@ -46,6 +56,7 @@ class Measurements:
     errors: Mapping[str, Array]
     unused: tuple[str, ...] = ()
     source: str = ""
+    notes: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         """Return the number of impacts."""
@@ -76,7 +87,9 @@ class Measurements:
         )
 
 
-def read_measurements(content: object, *, columns: Mapping[str, str] | None = None) -> Measurements:
+def read_measurements(
+    content: object, *, columns: Mapping[str, str] | Sequence[str] | None = None
+) -> Measurements:
     """Return measurements from a CSV file, a mapping of columns, or the series of a scene file.
 
     Parameters
@@ -85,22 +98,33 @@ def read_measurements(content: object, *, columns: Mapping[str, str] | None = No
         Each heading is a name and its unit, ``rebound_spin (rad/s)`` or ``rebound_spin_rad_s``:
         an entry of a scene before the impact, or a quantity of a result after the impact. The
         unit ``(1)`` may be left out. ``<quantity>_error`` holds standard errors. A column whose
-        heading begins with ``#`` is not read.
-    columns : mapping of str to str, optional
+        heading begins with ``#`` is not read. A column of unknown meaning is left out with a
+        note; one whose heading looks like other words for a quantity is refused with its name
+        here, to be confirmed by ``columns``.
+    columns : mapping of str to str, or sequence of str, optional
         Names for headings of another kind: ``{"impact angle [deg]": "incidence_angle"}``. The
         unit is that of the name, else that of the heading. ``"-rebound_spin"`` turns the sign,
-        ``"#"`` leaves the column unread.
+        ``"#"`` leaves the column unread. A sequence names all columns of a CSV file in their
+        order, with headings or without.
 
     Raises
     ------
     ValueError
         If the file cannot be read, or for a bad heading or number, with its place.
     """
-    names = {text.strip(): name for text, name in (columns or {}).items()}
-    if isinstance(content, Mapping):
-        return _from_columns(dict(content), names, "")
+    if isinstance(columns, str):
+        raise refuse("columns", columns, "must be a list of names, or a mapping of headings")
+    names: Mapping[str, str] | Sequence[str] = {}
+    if isinstance(columns, Mapping):
+        names = {text.strip(): name for text, name in columns.items()}
+    elif columns is not None:
+        names = list(columns)
     if isinstance(content, str | Path):
         return _from_csv(Path(content), names)
+    if not isinstance(names, Mapping):
+        raise refuse("columns", columns, "as a list are for a CSV file", "give a mapping")
+    if isinstance(content, Mapping):
+        return _from_columns(dict(content), names, "")
     if names:
         raise refuse("columns", names, "need a CSV file, or a mapping of columns")
     if isinstance(content, Measurements):
@@ -110,11 +134,15 @@ def read_measurements(content: object, *, columns: Mapping[str, str] | None = No
     raise refuse("measurements", content, "must be a CSV file, or a mapping of columns")
 
 
-def _from_csv(path: Path, names: Mapping[str, str]) -> Measurements:
+def _from_csv(path: Path, names: Mapping[str, str] | Sequence[str]) -> Measurements:
     """Return the measurements of a CSV file; every refusal begins with its path."""
     text = read_text(path)
     try:
-        return _from_columns(read_columns(text, names), names, str(path))
+        columns, renamed, left_out = read_columns(text, names)
+        table = _from_columns(columns, renamed, str(path))
+        return attrs.evolve(table, notes=(*left_out, *table.notes))
+    except ForeignHeadingsError as error:
+        raise ForeignHeadingsError(f"{path}: {error.said}", error.columns) from None
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
 
@@ -128,22 +156,40 @@ def _from_columns(columns: dict[str, Any], names: Mapping[str, str], source: str
             raise refuse("columns", text, "is not a heading", f"had: {', '.join(stripped)}")
     parts: dict[str, dict[str, Array]] = {"given": {}, "measured": {}, "error": {}}
     unused: list[str] = []
+    unknown: dict[str, Any] = {}
+    refused: list[str] = []
     for text, content in zip(headings, columns.values(), strict=True):
-        role, name, factor = read_heading(text, names)
+        try:
+            role, name, factor = read_heading(text, names)
+        except UnknownHeadingError as error:
+            if text.strip() in names:  # a wrong name is no foreign heading
+                refused.append(str(error))
+            else:
+                unknown[text] = content
+            continue
+        except ValueError as error:
+            refused.append(str(error))
+            continue
         if role == "unused":
             unused.append(text)
             continue
         if name in parts[role]:
             raise ValueError(f"heading {text!r}: {name} is there twice")
         parts[role][name] = _column(text, content, gaps=role != "given") * factor
+    notes = foreign(unknown, parts["given"].keys() | parts["measured"].keys(), refused)
     given, measured, errors = parts.values()
     _leave_out_duplicates(given, measured, unused)
-    _check_columns(given, measured, errors)
+    _check_columns(given, measured, errors, notes)
     if "angle_deg" in given and "normal_speed" in given:
         slope = np.tan(np.radians(given.pop("angle_deg")))
         given["tangential_velocity"] = given["normal_speed"] * slope
     return Measurements(
-        given=given, measured=measured, errors=errors, unused=tuple(unused), source=source
+        given=given,
+        measured=measured,
+        errors=errors,
+        unused=tuple(unused),
+        source=source,
+        notes=notes,
     )
 
 
@@ -176,11 +222,15 @@ def _leave_out_duplicates(
 
 
 def _check_columns(
-    given: dict[str, Array], measured: dict[str, Array], errors: dict[str, Array]
+    given: dict[str, Array],
+    measured: dict[str, Array],
+    errors: dict[str, Array],
+    notes: tuple[str, ...],
 ) -> None:
     """Refuse columns that do not belong together."""
     if not measured:
-        raise ValueError("nothing was measured: no column is a quantity of a rebound")
+        remedy = "; ".join([*notes, f"{known_names()}name one by --column 'heading=...'"])
+        raise ValueError(f"nothing was measured: no column is a quantity of a rebound; {remedy}")
     lengths = {name: len(values) for name, values in (given | measured).items()}
     lengths |= {f"{name}{ERROR}": len(values) for name, values in errors.items()}
     if len(set(lengths.values())) > 1:

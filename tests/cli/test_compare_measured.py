@@ -71,7 +71,7 @@ def test_a_picture_shows_laws_over_the_measured_range(files, tmp_path, capsys):
 def test_a_heading_of_ones_own_without_a_name_is_told_how_to_name_it(files, capsys):
     ball, data = map(str, files)
     assert main(["compare", ball, "--measured", data]) == 2
-    assert "--column 'impact angle [deg]=...'" in capsys.readouterr().err
+    assert "--column 'impact angle [deg]=angle_deg'" in capsys.readouterr().err
 
 
 def test_what_is_missing_is_named(files, capsys):

@@ -1,5 +1,7 @@
 """Mistakes that many make on the command line, each told what to write."""
 
+import shlex
+
 import pytest
 
 from contactlab.cli.main import main
@@ -48,16 +50,26 @@ def test_words_are_no_range(capsys):
     )
 
 
-def test_all_headings_that_cannot_be_read_are_told_at_once(tmp_path, capsys):
+def test_headings_in_other_words_are_told_with_a_command_that_runs(tmp_path, capsys):
     table, bodies = tmp_path / "mine.csv", tmp_path / "bodies.toml"
-    table.write_text("angle,v_in,angle_out\n10,2.0,7.1\n20,2.0,13.4\n", encoding="utf-8")
-    bodies.write_text("[sphere]\nradius = 0.01\n", encoding="utf-8")
-    assert main(["fit", str(table), str(bodies)]) == 2
-    told = capsys.readouterr().err
-    assert "'angle (deg)'" in told
-    assert "--column 'v_in=...'" in told
-    assert "--column 'angle_out=...'" in told
-    assert told.count("before the impact: ") == 1
+    rows = "10,3.9,6.7,a\n20,3.9,12.2,b\n30,3.9,21.8,c\n39,3.9,32.6,d\n50,3.9,45,e\n"
+    table.write_text(f"angle (deg),v_in,angle_out,note\n{rows}", encoding="utf-8")
+    bodies.write_text(
+        "[sphere]\nradius = 0.01\nmaterial = 'steel'\n[target]\nmaterial = 'steel'\n"
+        "kind = 'half-space'\n", encoding="utf-8"
+    )  # fmt: skip
+    told_so = told(capsys, "fit", table, bodies, "--bootstrap", 0)
+    assert told_so.count("\n") == 1
+    command = shlex.split(told_so.partition("paste: contactlab ")[2])
+    assert command[:5] == ["fit", str(table), str(bodies), "--bootstrap", "0"]
+    assert command[5:] == [
+        "--column",
+        "v_in=speed (m/s)",
+        "--column",
+        "angle_out=rebound_angle_deg",
+    ]
+    assert main(command) == 0
+    assert "note: left out, for nothing here has such names: note" in capsys.readouterr().out
 
 
 def test_a_missing_friction_is_told_where_to_find(tmp_path, capsys):
