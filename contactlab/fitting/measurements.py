@@ -19,6 +19,7 @@ from contactlab.fitting.csv_columns import (
     read_text,
 )
 from contactlab.fitting.foreign_headings import ForeignHeadingsError, foreign
+from contactlab.fitting.struck import STRUCK, to_the_struck_body
 from contactlab.numeric.checks import check_place, real, refuse
 from contactlab.scene_file import SceneFile
 from contactlab.scene_file.measured import Measured
@@ -180,6 +181,8 @@ def _from_columns(columns: dict[str, Any], names: Mapping[str, str], source: str
     given, measured, errors = parts.values()
     _leave_out_duplicates(given, measured, unused)
     _check_columns(given, measured, errors, notes)
+    if given.keys() & set(STRUCK):
+        to_the_struck_body(given, measured, errors)
     if "angle_deg" in given and "normal_speed" in given:
         slope = np.tan(np.radians(given.pop("angle_deg")))
         given["tangential_velocity"] = given["normal_speed"] * slope

@@ -1,0 +1,118 @@
+"""Impacts on bodies that move: columns of the laboratory, against collisions in space."""
+
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import Encounter, HalfSpace, Material, Scene, Simulation, Sphere
+from contactlab.cli.main import main
+from contactlab.fitting import fit, read_measurements
+
+STEEL = Material.named("steel")
+BALL, OTHER = Sphere(0.01, STEEL), Sphere(0.025, STEEL, mass=0.04)
+FRICTION = 0.15
+SPIN, TARGET_SPIN = 30.0, 40.0
+ANGLES = np.array([5.0, 12.0, 20.0, 30.0, 45.0, 60.0])
+SPEED, SURFACE = 2.0, np.array([-1.5, -0.4])
+
+
+def columns(target):
+    """Return what a camera at rest sees of a ball that meets a moving body: normal is -z."""
+    angle, n = np.radians(ANGLES), len(ANGLES)
+    velocity = SPEED * np.stack([np.sin(angle), 0 * angle, -np.cos(angle)], axis=-1)
+    turning = isinstance(target, Sphere)
+    spin2 = np.array([0.0, -TARGET_SPIN if turning else 0.0, 0.0])
+    frame = np.array([SURFACE[1], 0.0, -SURFACE[0]])
+    met = Encounter(
+        BALL, target, friction_coefficient=FRICTION, normal=[0, 0, -1], velocity=velocity,
+        spin=[0.0, -SPIN, 0.0], target_velocity=frame, target_spin=spin2,
+    )  # fmt: skip
+    after = contactlab.collide(met)
+    # the surface of a sphere of radius R2 above which the normal points: centre + omega x R2 z
+    rim = np.cross(spin2, [0, 0, target.radius])[0] if turning else 0.0
+    return {
+        "normal_speed (m/s)": -velocity[:, 2],
+        "tangential_velocity (m/s)": velocity[:, 0],
+        "spin (rad/s)": np.full(n, SPIN),
+        "target_normal_velocity (m/s)": np.full(n, SURFACE[0]),
+        "target_tangential_velocity (m/s)": np.full(n, SURFACE[1] + rim),
+        "rebound_normal_velocity (m/s)": -after.velocity[:, 2],
+        "rebound_tangential_velocity (m/s)": after.velocity[:, 0],
+        "rebound_spin (rad/s)": -after.spin[:, 1],
+    }
+
+
+@pytest.mark.parametrize("target", [HalfSpace(STEEL), OTHER], ids=["plate", "ball"])
+def test_friction_of_a_struck_body_that_moves(target):
+    data = columns(target)
+    bodies = Scene(BALL, target, friction_coefficient=0.5, normal_speed=1.0)
+    found = fit(data, bodies)
+    assert found["friction_coefficient"] == pytest.approx(FRICTION, rel=2e-3)
+    polar = {k: v for k, v in data.items() if "normal_v" not in k or k.startswith("target")}
+    out_n, out_t = data["rebound_normal_velocity (m/s)"], data["rebound_tangential_velocity (m/s)"]
+    del polar["rebound_tangential_velocity (m/s)"]
+    del polar["normal_speed (m/s)"], polar["tangential_velocity (m/s)"]
+    polar |= {"speed (m/s)": np.full(len(ANGLES), SPEED), "angle_deg": ANGLES,
+              "rebound_speed (m/s)": np.hypot(out_n, out_t),
+              "rebound_angle_deg": np.degrees(np.arctan2(out_t, -out_n))}  # fmt: skip
+    again = fit(polar, bodies)
+    assert again["friction_coefficient"] == pytest.approx(found["friction_coefficient"], rel=1e-6)
+
+
+def test_a_ball_at_rest_struck_by_a_plate_is_a_ball_that_strikes_it():
+    """Galileo: the same spin, velocities less by that of the plate."""
+    v, angle = 3.0, np.radians([10.0, 25.0, 40.0])
+    plate = HalfSpace(STEEL)
+    scene = Scene(BALL, plate, 0.2, v * np.cos(angle), v * np.sin(angle))
+    result = Simulation().sweep(scene)
+    zero = np.zeros(3)
+    read = read_measurements({
+        "normal_speed (m/s)": zero, "tangential_velocity (m/s)": zero,
+        "target_normal_velocity (m/s)": -v * np.cos(angle),
+        "target_tangential_velocity (m/s)": -v * np.sin(angle),
+        "rebound_tangential_velocity (m/s)": result.rebound_tangential_velocity - v * np.sin(angle),
+    })  # fmt: skip
+    np.testing.assert_allclose(read.given["speed"], v)
+    np.testing.assert_allclose(read.given["angle_deg"], np.degrees(angle))
+    np.testing.assert_allclose(
+        read.measured["rebound_tangential_velocity"], result.rebound_tangential_velocity
+    )
+
+
+MOVING = {"speed (m/s)": [2.0], "angle_deg": [20.0], "target_normal_velocity (m/s)": [-1.0]}
+
+
+@pytest.mark.parametrize(
+    ("columns", "words"),
+    [
+        ({"target_normal_velocity (m/s)": [-1.0], "rebound_spin (rad/s)": [1.0]},
+         "needs the velocity of the sphere"),
+        (MOVING | {"rebound_angle_deg": [9.0]}, "are needed together"),
+        (MOVING | {"local_rebound_angle_deg": [9.0]}, "is not the same to a struck body"),
+        (MOVING | {"tangential_restitution": [0.9], "tangential_restitution_error": [0.1]},
+         "cannot be taken to a moving body"),
+        (MOVING | {"target_normal_velocity (m/s)": [9.0], "rebound_spin (rad/s)": [1.0]},
+         "in impact 1 the bodies part"),
+        (MOVING | {"target_normal_velocity": [9.0], "rebound_spin (rad/s)": [1.0]}, "has no unit"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_taken_to_a_moving_body(columns, words):
+    with pytest.raises(ValueError, match=words):
+        read_measurements(columns)
+
+
+def test_a_moving_body_beside_laws(tmp_path, capsys):
+    """The scene has the relative speed; the angles are relative too."""
+    data, scene = tmp_path / "club.csv", tmp_path / "club.toml"
+    rows = "".join(f"0,0,{-3 * np.cos(a)},{-3 * np.sin(a)},{-40 * a}\n" for a in (0.2, 0.4, 0.6))
+    heads = "normal_speed (m/s),tangential_velocity (m/s),target_normal_velocity (m/s)"
+    data.write_text(
+        f"{heads},target_tangential_velocity (m/s),rebound_spin (rad/s)\n{rows}", "utf-8"
+    )
+    scene.write_text(
+        "[sphere]\nradius = 0.01\nmaterial = 'steel'\n[target]\nkind = 'sphere'\nmass = 0.2\n"
+        "radius = 1.0\nmaterial = 'steel'\n[impact]\nspeed = 3.0\nangle_deg = 10.0\n"
+        "friction_coefficient = 0.2\n", "utf-8",
+    )  # fmt: skip
+    assert main(["compare", str(scene), "--measured", str(data), "--tangential", "springs"]) == 0
+    assert "rebound_spin" in capsys.readouterr().out
