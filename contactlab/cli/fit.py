@@ -6,6 +6,7 @@ Examples
   contactlab fit impacts.csv bodies.toml --fit friction_coefficient,stiffness_ratio
   contactlab fit impacts.csv bodies.toml --fit friction_coefficient,restitution,shear_loss
   contactlab fit impacts.csv bodies.toml --laws exact,coulomb,mindlin_cap --figure fit.png
+  contactlab fit --flight film.csv bodies.toml --fit friction_coefficient,restitution
   contactlab fit impacts.csv bodies.toml --normal viscoelastic,tsuji --fit restitution
 """
 
@@ -23,7 +24,7 @@ from contactlab.cli.scene import add_allow_code
 from contactlab.compose.composition import DEFAULT_NORMAL
 from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.compose.simulation import Simulation
-from contactlab.fitting import Fit, Ranked, fit, in_order, rank
+from contactlab.fitting import Fit, Ranked, fit, in_order, rank, read_flight
 from contactlab.fitting.estimation import default_laws, parameters_of
 from contactlab.fitting.model import SOME_FRICTION
 from contactlab.fitting.parameters import RESTITUTION
@@ -68,6 +69,12 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         metavar="SAMPLES",
         help=f"samples of the bootstrap of the first law (default {SAMPLES}; 0 for none)",
     )
+    parser.add_argument(
+        "--flight",
+        type=Path,
+        metavar="FILM.csv",
+        help="in place of DATA.csv: positions t, x, y (optional z, angle) of a ball that bounces",
+    )
     shared.add_columns(parser)
     shared.add_figure(parser, "draw measured values, laws and residuals")
     shared.add_file(parser, "--csv", ".csv", words="write the residuals")
@@ -81,8 +88,11 @@ def execute(arguments: argparse.Namespace) -> int:
     whole("--bootstrap", arguments.bootstrap, least=0, most=100_000)
     for number, name in enumerate(arguments.files, start=1):
         distinct({f"FILE {number}": name, "--csv": arguments.csv, "--figure": arguments.figure})
-    data, path = _files(arguments.files)
-    impacts = shared.read_impacts(data, arguments)
+    data, path = _files(arguments.files, arguments.flight)
+    if arguments.flight is None:
+        impacts = shared.read_impacts(data, arguments)
+    else:
+        impacts = read_flight(data, columns=dict(arguments.column))
     defaults = {"friction_coefficient": SOME_FRICTION}
     allow = arguments.allow_code
     file = read_scene(path, entries=impacts.given, defaults=defaults, allow_code=allow)
@@ -151,7 +161,7 @@ def _failures(ranked: list[Ranked]) -> int:
     return shared.FAILED if failed else shared.OK
 
 
-def _files(names: list[str]) -> tuple[Any, Path]:
+def _files(names: list[str], film: Path | None) -> tuple[Any, Path]:
     """Return the measured impacts, and the path of the scene file with the bodies."""
     scenes = [name for name in names if name.lower().endswith(".toml")]
     tables = [name for name in names if name not in scenes]
@@ -161,6 +171,10 @@ def _files(names: list[str]) -> tuple[Any, Path]:
             "SCENE.toml; or a SCENE.toml that holds measured values"
         )
     path = Path(scenes[0])
+    if film is not None:
+        if tables:
+            raise ValueError(f"FILE = {tables[0]}: --flight has the impacts; leave one of them out")
+        return film, path
     return (Path(tables[0]) if tables else read_scene(path)), path
 
 

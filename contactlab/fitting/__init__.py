@@ -2,6 +2,7 @@
 
 from contactlab.fitting.estimation import Ranked, fit, in_order, rank
 from contactlab.fitting.fit_result import Estimate, Fit
+from contactlab.fitting.flight import read_flight
 from contactlab.fitting.measurements import (
     Measurements,
     read_measurements,
@@ -16,6 +17,7 @@ __all__ = [
     "fit",
     "in_order",
     "rank",
+    "read_flight",
     "read_measurements",
     "with_measurements",
 ]

@@ -236,6 +236,25 @@ def read_columns(
     return columns, renamed, left_out
 
 
+def read_numbers(text: str, source: str) -> dict[str, list[float]]:
+    """Return the columns of a CSV by their headings; NaN for a cell that is no number."""
+    try:
+        headings, lines, decimal_comma = _cells(text)
+        if headings is None:
+            raise ValueError("needs a line of headings")
+        for line, row in lines:
+            if len(row) != len(headings):
+                raise ValueError(
+                    f"line {line}: has {len(row)} columns, the headings are {len(headings)}"
+                )
+    except ValueError as error:
+        raise ValueError(f"{source}: {error}") from None
+    return {
+        heading: [_number(row[place], "unknown", decimal_comma) for _, row in lines]
+        for place, heading in enumerate(headings)
+    }
+
+
 def _role(heading: str, names: Mapping[str, str]) -> str:
     """Return the role of a column; "unknown" for a heading that is refused later."""
     try:

@@ -1,0 +1,173 @@
+"""Impacts from films, made up by parabolas and by collisions that a fit does not compute with."""
+
+import json
+
+import numpy as np
+import pytest
+
+import contactlab
+from contactlab import Encounter, HalfSpace, Material, Scene, Sphere
+from contactlab.cli.main import main
+from contactlab.fitting import fit, read_flight
+
+G, RATE, NOISE = 9.80665, 240.0, 1e-3
+FRICTION = 0.12
+BALL, PLATE = Sphere(0.02, Material.named("steel")), HalfSpace(Material.named("steel"))
+BODIES = Scene(BALL, PLATE, friction_coefficient=0.5, normal_speed=1.0)
+HEADINGS = ("t (s)", "x (m)", "y (m)", "angle (deg)")
+
+
+def legs(speeds, restitution):
+    """Return (start, velocity x, y upwards, spin) of each flight of a ball that bounces five times.
+
+    It touches first at time 0.
+    """
+    found = [(-0.12, *speeds, 0.0)]
+    time, (vx, vy), spin = 0.0, speeds, 0.0
+    for _ in range(5):
+        met = Encounter(BALL, PLATE, friction_coefficient=FRICTION, normal=[0, -1, 0],
+                        velocity=[vx, -abs(vy), 0], spin=[0, 0, spin])  # fmt: skip
+        after = contactlab.collide(met, restitution=restitution)
+        (vx, vy, _), spin = after.velocity, after.spin[2]
+        found.append((time, vx, vy, spin))
+        time += 2.0 * vy / G
+    return found
+
+
+def film(seed, noise=NOISE, restitution=1.0):
+    """Return two throws of five bounces each: frames, and numbers before and after each impact."""
+    generator = np.random.default_rng(seed)
+    parts, impacts = [], []
+    for throw, speeds in enumerate(((1.5, -1.6), (-0.9, -1.8))):
+        flights = legs(speeds, restitution)
+        t = np.arange(-0.12 + generator.uniform(0.0, 1.0 / RATE), flights[-1][0] + 0.2, 1.0 / RATE)
+        x, y, angle = np.zeros((3, len(t)))
+        place = turned = 0.0
+        for k, (start, vx, vy, spin) in enumerate(flights):
+            end = flights[k + 1][0] if k < 5 else np.inf
+            now = (t >= start) & (t < end)
+            dt = t[now] - (start if k else 0.0)  # the first flight ends at 0
+            x[now], angle[now] = place + vx * dt, turned + spin * dt
+            y[now] = BALL.radius + vy * dt - 0.5 * G * dt**2
+            if 0 < k < 5:
+                place, turned = place + vx * (end - start), turned + spin * (end - start)
+                impacts.append(((vx, vy, spin), flights[k + 1][1:]))
+            elif k == 0:
+                impacts.append(((vx, -vy, spin), flights[1][1:]))
+        x, y = (c + generator.normal(0.0, noise, len(t)) for c in (x, y))
+        angle = angle + generator.normal(0.0, noise / BALL.radius, len(t))
+        parts.append(np.stack([t + 100.0 * throw, x, y, np.degrees(angle) % 360.0]))
+    return dict(zip(HEADINGS, np.concatenate(parts, axis=1), strict=True)), np.array(impacts)
+
+
+def test_a_film_without_noise_gives_the_velocities_to_the_last_digits():
+    frames, impacts = film(1, noise=0.0)
+    found = read_flight(frames)
+    columns = found.given | found.measured
+    before, after = impacts[:, 0].T, impacts[:, 1].T
+    assert len(found) == 10
+    for name, expected in {
+        "tangential_velocity": before[0], "normal_speed": before[1], "spin": before[2],
+        "rebound_tangential_velocity": after[0], "rebound_normal_velocity": -after[1],
+        "rebound_spin": after[2],
+    }.items():  # fmt: skip
+        np.testing.assert_allclose(columns[name], expected, rtol=1e-9, atol=1e-9)
+    assert not found.notes
+
+
+@pytest.mark.parametrize("restitution", [1.0, 0.85])
+def test_friction_lies_within_its_interval_from_ten_bounces_at_240_frames(restitution):
+    """With noise of 1 mm; of twelve such films 95 % should hold it."""
+    names = ["friction_coefficient", "restitution"][: 1 + (restitution < 1.0)]
+    inside = []
+    for seed in range(12):
+        found = fit(read_flight(film(seed, restitution=restitution)[0]), BODIES, parameters=names)
+        low, high = found.parameters["friction_coefficient"].interval
+        assert high - low < 0.15 * FRICTION
+        inside.append(low < FRICTION < high)
+    assert sum(inside) >= 9
+
+
+def test_the_errors_are_those_of_many_films():
+    """Of what is measured less what would follow from the flight before: no impact changes it."""
+    found = [read_flight(film(seed)[0]) for seed in range(60)]
+    pairs = {"rebound_tangential_velocity": "tangential_velocity", "rebound_spin": "spin",
+             "rebound_normal_velocity": "normal_speed"}  # fmt: skip
+    for name, before in pairs.items():
+        change = np.array([each.measured[name] - each.given[before] for each in found])
+        told = np.mean([each.errors[name] for each in found], axis=0)
+        ratio = np.std(change, axis=0) / told
+        assert np.all((ratio > 0.7) & (ratio < 1.35)), (name, ratio)
+
+
+def test_a_third_coordinate_and_other_headings(tmp_path):
+    """The way over the floor is turned by 30 degrees from x; a flight has no more friction."""
+    frames, _ = film(3, noise=0.0)
+    t, x, y, _ = frames.values()
+    plain = read_flight({"t (s)": t, "x (m)": x, "y (m)": y})
+    path = tmp_path / "film.csv"
+    turned = np.stack([1e3 * t, 1e3 * x * np.cos(0.5), -1e3 * y, 1e3 * x * np.sin(0.5)], axis=-1)
+    np.savetxt(path, turned, header="frame time [ms],cx [mm],cy [mm],z (mm)", comments="",
+               delimiter=",")  # fmt: skip
+    names = {"frame time [ms]": "t", "cx [mm]": "x", "cy [mm]": "-y"}
+    found = read_flight(path, columns=names)
+    for name, values in (plain.given | plain.measured).items():
+        np.testing.assert_allclose((found.given | found.measured)[name], values, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"y (m)": None}, "y: is missing; a film has the columns"),
+        ({"x (m)": None, "x": 1.0}, "heading 'x': has no unit; write 'x .m.', or .mm."),
+        ({"y (m)": None, "y (px)": 1.0}, "is in px, which is not known here"),
+        ({"y (m)": -1.0}, "y: lies off the parabolas between touches by .*grows upwards"),
+        ({"y (m)": 1e-2}, "y: the flights fall with 0.0981 m/s².*its unit, the frame rate"),
+        ({"t (s)": 0.0}, "t: does not grow"),
+    ],
+)
+def test_films_that_cannot_be_read(change, words):
+    frames, _ = film(3)
+    made = {}
+    for name, values in frames.items():
+        if (factor := change.get(name, 1.0)) is not None:
+            made[name] = factor * values
+    made |= {name: frames["y (m)"] for name in change if name not in frames}
+    with pytest.raises(ValueError, match=words):
+        read_flight(made)
+
+
+def test_a_scale_off_by_five_percent_and_short_flights_are_told():
+    frames, _ = film(3)
+    (note,) = read_flight(frames | {"y (m)": 1.05 * frames["y (m)"]}).notes
+    assert note.startswith("the flights fall with 10.3 m/s² in place of 9.81")
+    few = {
+        name: values[: np.flatnonzero(frames["t (s)"] > 0.01)[0]] for name, values in frames.items()
+    }
+    with pytest.raises(ValueError, match="no bounce has 5 frames before and after it"):
+        read_flight(few)
+
+
+def test_the_command(tmp_path, capsys):
+    path, bodies = tmp_path / "film.csv", tmp_path / "bodies.toml"
+    frames, _ = film(5, restitution=0.85)
+    np.savetxt(path, np.stack([*frames.values()], axis=-1), delimiter=",", comments="",
+               header=",".join(HEADINGS))  # fmt: skip
+    bodies.write_text("[sphere]\nradius = 0.02\nmaterial = 'steel'\n[target]\n"
+                      "kind = 'half-space'\nmaterial = 'steel'\n", encoding="utf-8")  # fmt: skip
+    command = [
+        "fit",
+        "--flight",
+        str(path),
+        str(bodies),
+        "--fit",
+        "friction_coefficient,restitution",
+    ]
+    assert main([*command, "--bootstrap", "0", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["parameters"]
+    low, high = found["friction_coefficient"]["interval_95"]
+    assert low < FRICTION < high
+    low, high = found["normal.restitution"]["interval_95"]
+    assert low < 0.85 < high
+    assert main([*command[:3], str(path), str(bodies)]) == 2
+    assert "--flight has the impacts; leave one of them out" in capsys.readouterr().err
