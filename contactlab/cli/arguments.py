@@ -266,9 +266,10 @@ def add_laws(
     if kinds == KINDS and not many:
         parser.add_argument(
             "--restitution",
-            type=finite,
+            type=_number_or_words,
             metavar="E",
-            help="in place of a normal law: one loss for pressure and shear that gives this e",
+            help="in place of a normal law: one loss for pressure and shear that gives this e; or "
+            "e of the speed, '1 - 0.02 v^(1/5)', or a table in m/s, 0.5:0.95,2:0.9",
         )
     parser.add_argument(
         "--set",
@@ -279,6 +280,11 @@ def add_laws(
         metavar="KIND.OPTION=VALUE",
         help="option of a law: tangential.annuli=50, integrator.steps=500; may be repeated",
     )
+
+
+def _number_or_words(text: str) -> Any:
+    """Return a text as a number if it is one."""
+    return text if re.search("[v:]", text) else finite(text)
 
 
 def add_columns(parser: argparse.ArgumentParser) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import re
 from collections.abc import Mapping
 from inspect import signature
 from pathlib import Path
@@ -26,6 +28,8 @@ from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
 from contactlab.scene_file.table import Table, flattened, nearest_of
 
+#: e = 1 - c v^(1/5) in words without blanks.
+FIFTH_ROOT = re.compile(r"1-(\d*\.?\d+(?:e[+-]?\d+)?)v\^\(?(?:1/5|0?\.2)\)?")
 OPTION_REMEDY = "write tangential.annuli = 50, or tangential.annulus.annuli = 50 for one law only"
 
 
@@ -78,8 +82,14 @@ class LawChoice:
         kept = {key: value for key, value in self.options.items() if key != kind}
         return attrs.evolve(self, **{kind: None}, options=kept)
 
-    def restituted(self, restitution: float) -> LawChoice:
+    def restituted(self, restitution: object) -> LawChoice:
         """Return the choice with the law of a restitution, one loss for pressure and shear.
+
+        Parameters
+        ----------
+        restitution : float, str or list
+            e; or in words as a function of the speed of approach, ``"1 - 0.02 v^(1/5)"``; or a
+            table ``[[speed, e], ...]``, speeds in m/s.
 
         Raises
         ------
@@ -91,10 +101,11 @@ class LawChoice:
             rule = f"stands in place of a normal law, and normal = {self.normal!r} is named"
             remedy = "name one of the two; an option of a law is normal.restitution"
             raise refuse("restitution", restitution, rule, remedy)
-        composition.law("normal", law, restitution=restitution)  # refuses what is out of range
+        option, value = _of_speed(restitution)
+        composition.law("normal", law, **{option: value})  # refuses what is out of range
         if restitution == 1.0:
             return self
-        return self.choose(normal=law).set({"normal.restitution": restitution})
+        return self.choose(normal=law).set({f"normal.{option}": value})
 
     def simulation(self) -> Simulation:
         """Return the simulation of the three laws with their options.
@@ -166,6 +177,25 @@ class LawChoice:
         return composition.law(kind, name, **options)
 
 
+def _of_speed(restitution: object) -> tuple[str, Any]:
+    """Return the option of the law of a restitution, and its value."""
+    if isinstance(restitution, list):
+        return "restitutions", restitution
+    if not isinstance(restitution, str):
+        return "restitution", restitution
+    words = restitution.replace(" ", "").replace("*", "")
+    if found := FIFTH_ROOT.fullmatch(words.lower()):
+        return "speed_loss", float(found[1])
+    if ":" in words:  # as on the command line
+        with contextlib.suppress(ValueError):
+            return "restitutions", [
+                [float(n) for n in pair.split(":")] for pair in words.split(",")
+            ]
+    rule = "is neither a number, nor a function or a table of the speed"
+    remedy = "write 0.9, 1 - 0.02 v^(1/5), or 0.5:0.95,2:0.9 (speed in m/s and e)"
+    raise refuse("restitution", restitution, rule, f"{remedy}; in TOML [[0.5, 0.95], [2, 0.9]]")
+
+
 def same_law(one: str, other: str) -> bool:
     """Return whether two full names, with or without a distribution, mean the same law."""
     if one == other or parted(one)[1] != parted(other)[1]:
@@ -194,7 +224,12 @@ def read_laws(content: object, folder: Path, *, allow_code: bool) -> LawChoice:
     }
     choice = LawChoice().choose(**names)
     if table.has("restitution"):
-        choice = choice.restituted(table.number("restitution", remedy="leave it out for 1"))
+        value = table.content["restitution"]
+        if isinstance(value, str | list):
+            choice = table.make(choice.restituted, restitution=value)
+        else:
+            number = table.number("restitution", remedy="leave it out for 1")
+            choice = choice.restituted(number)
     if not table.has("options"):
         return choice
     raw = table.content["options"]

@@ -52,10 +52,14 @@ class Relaxing(NormalLaw):
         """True for a restitution: then motions of all impacts are one but for their scale."""
         return self.restitution is not None
 
+    def restitution_in(self, scene: Scene) -> Any:
+        """Return e of each impact, where no relaxation time is given."""
+        return self.restitution
+
     def start(self, scene: Scene) -> Parts:
         """Return stiffness and relaxation time of the pair; the law has no memory."""
         time: Any = self.relaxation_time
-        if self.restitution is not None:
+        if time is None:
             unit = hertz_scales(scene).approach / scene.normal_speed
-            time = self.number_of(self.restitution) * unit
+            time = self.number_of(self.restitution_in(scene)) * unit
         return Parts(hertz_stiffness(scene), time, scene.pair.radius)

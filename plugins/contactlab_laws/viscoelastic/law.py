@@ -6,11 +6,42 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import attrs
+import numpy as np
 
 from contactlab.contracts import NormalContact, Tabulated, without_tension
-from contactlab.numeric.checks import Real
+from contactlab.contracts.restitution import LEAST_RESTITUTION
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Real, Rule, quantity, refuse
 from contactlab_laws.relaxing import Parts, Relaxing
 from contactlab_laws.viscoelastic.relaxation import number_of
+
+#: c above this leaves nothing to rebound with at 30 m/s.
+LOSS = Rule(
+    lambda value: np.ndim(value) == 0 and 0.0 <= value <= 0.5, "must be one number from 0 to 0.5"
+)
+#: Options by which e depends on the speed.
+BY_SPEED = ("speed_loss", "restitutions")
+#: Options by which it does not, or by which it follows from the material.
+ONE_FOR_ALL = ("restitution", "relaxation_time")
+PAIRS = "must be two or more pairs of speed and e"
+
+
+def measured(table: Any) -> tuple[tuple[float, float], ...]:
+    """Return a table of speeds and restitutions as pairs, or refuse it."""
+    remedy = "write [[speed, e], [speed, e]], speeds in m/s"
+    try:
+        pairs = np.array(table, dtype=float)
+    except (TypeError, ValueError):
+        pairs = np.empty(0)
+    if pairs.ndim != 2 or pairs.shape[0] < 2 or pairs.shape[1] != 2:
+        raise refuse("restitutions", table, PAIRS, remedy)
+    speeds, e = pairs.T
+    if not (np.all(np.diff(speeds) > 0.0) and speeds[0] >= 0.0 and np.isfinite(speeds[-1])):
+        raise refuse("restitutions", table, "must have speeds that increase, from 0 on", remedy)
+    if not np.all((e >= LEAST_RESTITUTION) & (e <= 1.0)):
+        rule = f"must have e from {LEAST_RESTITUTION} to 1"
+        raise refuse("restitutions", table, rule, remedy)
+    return tuple((float(speed), float(each)) for speed, each in pairs)
 
 
 @attrs.frozen(kw_only=True)
@@ -30,6 +61,10 @@ class Viscoelastic(Relaxing, Tabulated):
         spheres, A follows from e by the mass 1/W_nn, and the rebound of the body is its own.
     relaxation_time : float, optional
         A in s, a constant of the materials: 1 - e grows as v1^(1/5).
+    speed_loss : float, optional
+        c in (s/m)^(1/5), of e = 1 - c v1^(1/5).
+    restitutions : list of (speed, e), optional
+        Measured e at speeds of approach in m/s, which increase; e is linear between them.
 
     References
     ----------
@@ -42,7 +77,63 @@ class Viscoelastic(Relaxing, Tabulated):
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius", "kelvin_voigt"})
 
+    speed_loss: float | None = quantity("(s/m)^(1/5)", rule=LOSS, default=None)
+    restitutions: tuple[tuple[float, float], ...] | None = attrs.field(
+        default=None,
+        converter=attrs.converters.optional(measured),
+        metadata={"unit": "m/s, 1", "range": PAIRS},
+    )
+
     number_of = staticmethod(number_of)
+
+    def __attrs_post_init__(self) -> None:
+        by_speed = [name for name in BY_SPEED if getattr(self, name) is not None]
+        rivals = [name for name in ONE_FOR_ALL if getattr(self, name) is not None]
+        if not by_speed:
+            super().__attrs_post_init__()
+        elif len(by_speed + rivals) > 1:
+            raise ValueError(
+                f"{', '.join(by_speed + rivals)}: only one of them may be given; each is the loss"
+            )
+
+    def __repr__(self) -> str:
+        names = (*ONE_FOR_ALL, *(name for name in BY_SPEED if getattr(self, name) is not None))
+        return f"Viscoelastic({', '.join(f'{name}={getattr(self, name)!r}' for name in names)})"
+
+    @property
+    def viscous(self) -> bool:
+        """True if there is any loss."""
+        return super().viscous or bool(self.speed_loss) or self.restitutions is not None
+
+    def accept(self, scene: Scene) -> None:
+        """Refuse a speed at which e is not known."""
+        if self.restitution is None and self.relaxation_time is None:
+            self.restitution_in(scene)
+
+    def restitution_in(self, scene: Scene) -> Any:
+        """Return e of each impact at its speed of approach."""
+        if self.restitution is not None:
+            return self.restitution
+        if scene.sphere is None and scene.encounter is None:
+            rule = "has no speed in m/s, of which e is a function"
+            raise refuse("psi1", scene.psi1, rule, "give bodies and speeds, or one restitution")
+        speed = np.asarray(scene.normal_speed)
+        e: Any
+        if self.restitutions is None:
+            e = 1.0 - (self.speed_loss or 0.0) * speed**0.2
+            if np.min(e, initial=1.0) < LEAST_RESTITUTION:
+                rule = f"makes e {np.min(e):.3g} at {np.max(speed):.4g} m/s"
+                remedy = f"e must be at least {LEAST_RESTITUTION}; give less, or slower impacts"
+                raise refuse("speed_loss", self.speed_loss, rule, remedy)
+        else:
+            known, values = np.transpose(self.restitutions)
+            wrong = (speed < known[0]) | (speed > known[-1])
+            if np.any(wrong):
+                rule = f"has speeds from {known[0]:g} to {known[-1]:g} m/s, and an impact has "
+                rule += f"{speed[wrong].flat[0]:.4g} m/s"
+                raise refuse("restitutions", [*self.restitutions], rule, "add its e to the table")
+            e = np.interp(speed, known, values)
+        return float(e) if e.ndim == 0 else e
 
     def respond(self, state: Parts, approach: Real, rate: Real) -> tuple[NormalContact, Parts]:
         """Return force and radius; where the contact was left behind, it is Hertz's (2) anew."""
