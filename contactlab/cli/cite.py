@@ -15,6 +15,7 @@ from contactlab.cli.compare import own_law, simulations
 from contactlab.cli.scene import add_file, read
 from contactlab.compose.citations import bibtex, references, software
 from contactlab.compose.hooks import Execute, hookimpl
+from contactlab.impact.material import works
 from contactlab.scene_file import LawChoice
 
 
@@ -27,7 +28,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Print the entries: data first, then laws, contactlab last."""
+    """Print the entries: data and materials first, then laws, contactlab last."""
     file = read(arguments)
     laws = file.laws if file else LawChoice()
     arguments.tangential = arguments.tangential or [
@@ -37,6 +38,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if file is not None:
         texts += [file.citation] if file.citation else []
         texts += [measured.source for measured in file.measured]
+        texts += [work for name in file.materials for work in works(name).values()]
     for simulation in simulations(arguments, laws).values():
         for law in (simulation.normal, simulation.tangential, simulation.integrator):
             texts += references(law)

@@ -10,7 +10,6 @@ Examples
 from __future__ import annotations
 
 import argparse
-import re
 
 import attrs
 
@@ -56,10 +55,5 @@ def _sources(entry: materials.Entry) -> str:
     if entry.yield_stress is not None:
         lines.append(f"yield stress: {entry.yield_stress / 1e6:.4g} MPa, {entry.yield_source}")
     lines += [f"note: {entry.note}"] if entry.note else []
-    cited = " ".join(lines)
-    works = [
-        f"{key}: {text}"
-        for key, text in materials.references().items()
-        if re.search(rf"\b{key}\b", cited)
-    ]
+    works = [f"{key}: {text}" for key, text in materials.works(entry.name).items()]
     return "\n".join([*lines, "", *works])

@@ -20,12 +20,17 @@ def references(law: Any) -> list[str]:
     return [" ".join(entry.split()) for entry in re.split(r"\n\n+", text) if entry]
 
 
+#: Year of this version.
+YEAR_OF_VERSION = 2026
+
+
 def software() -> str:
-    """Return the BibTeX entry of contactlab itself, with its version."""
+    """Return the BibTeX entry of contactlab itself, with its version and year."""
     version = metadata.version("contactlab")
     return (
         "@misc{contactlab,\n  author = {{The contactlab developers}},\n"
-        f"  title = {{contactlab}},\n  note = {{Version {version}, software}}\n}}"
+        f"  title = {{contactlab}},\n  year = {{{YEAR_OF_VERSION}}},\n"
+        f"  note = {{Version {version}, software}}\n}}"
     )
 
 

@@ -5,6 +5,7 @@ The numbers and their sources are in ``materials.toml`` beside this file.
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from typing import Any
 
@@ -193,6 +194,14 @@ def entries() -> tuple[Entry, ...]:
 def references() -> dict[str, str]:
     """Return the works that the sources name, as {key: citation}."""
     return dict(_collection()[1])
+
+
+def works(name: str) -> dict[str, str]:
+    """Return the works from which the numbers of a material are taken, in full, by key."""
+    one = entry(name)
+    said = " ".join((one.elastic_source, one.density_source, one.yield_source, one.note))
+    keys = re.findall(r"\w+", said)
+    return {key: text for key, text in references().items() if key in keys}
 
 
 def _key(name: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from html import escape
 from importlib import metadata, resources
 from string import Template
@@ -18,7 +18,14 @@ from contactlab.figures.comparison import differences, forces_over_contact, laws
 from contactlab.figures.files import as_svg
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.outcome.result import ImpactResult
-from contactlab.outcome.tables import closing, largest_imbalance, scene_section, sweep_section, time
+from contactlab.outcome.tables import (
+    closing,
+    heading,
+    largest_imbalance,
+    scene_section,
+    sweep_section,
+    time,
+)
 from contactlab.pages import html
 from contactlab.pages.drawing import scene_drawing
 from contactlab.scene_file import SceneFile
@@ -26,6 +33,8 @@ from contactlab.study.comparison import Agreement, Comparison
 
 #: Rows of a sweep on the page; ``contactlab sweep --out`` writes all of them.
 ROWS = 25
+#: Quantities drawn over the angle of incidence.
+OVER_ANGLE = ("tangential_restitution", "rebound_angle_deg")
 
 
 def report_page(
@@ -46,7 +55,7 @@ def report_page(
     parts = [
         html.paragraph(" ".join(file.notes.split())) if file.notes else "",
         html.titled("The scene", scene_drawing(result), *_scene(file, result.scene)),
-        html.titled("The answer", *_answer(result, file.varied)),
+        html.titled("The answer", *_answer(result, file.varied, comparison.agreements)),
         html.titled("The laws compared", *_comparison(comparison)),
         html.titled("The plan", html.plan(result.plan)),
         html.titled("Sources", *map(html.paragraph, _sources(file, simulations))),
@@ -65,10 +74,14 @@ def _scene(file: SceneFile, scene: Scene) -> list[str]:
     return parts
 
 
-def _answer(result: ImpactResult, varied: Mapping[str, Any]) -> list[str]:
-    """Return one impact in full, or the table of a sweep."""
+def _answer(
+    result: ImpactResult, varied: Mapping[str, Any], agreements: Sequence[Agreement]
+) -> list[str]:
+    """Return one impact in full, or the table of a sweep, at the measured points if there are."""
     if not result.scene.shape:
         return [html.one_impact(result)]
+    if agreements:
+        return [*_at_measured_points(agreements), html.pairs(closing(result))]
     shown = {name: (entry_unit(name), values) for name, values in varied.items()}
     headings, rows = sweep_section(result, shown, most=ROWS)
     parts = [f"<div class='wide'>{html.table(headings, rows)}</div>"]
@@ -76,6 +89,36 @@ def _answer(result: ImpactResult, varied: Mapping[str, Any]) -> list[str]:
         parts.append(html.paragraph(f"{len(rows)} of {len(result)} impacts are shown."))
     parts.append(html.paragraph(largest_imbalance(result)))
     return [*parts, html.pairs(closing(result))]
+
+
+def _at_measured_points(agreements: Sequence[Agreement]) -> list[str]:
+    """Return the table of the first law at the points of the longest series, measured beside."""
+    longest = max(agreements, key=lambda each: len(each.measured.x))
+    x, against = longest.measured.x, longest.measured.against
+    result = next(iter(longest.results.values()))
+    headings, rows = sweep_section(result, {against: (entry_unit(against), x)})
+    for each in agreements:
+        if np.array_equal(each.measured.x, x):
+            headings = [*headings, f"{heading(each.measured.quantity, each.unit)}, measured"]
+            rows = [
+                [*row, float(value)] for row, value in zip(rows, each.measured.values, strict=True)
+            ]
+    rows = [rows[place] for place in np.argsort(x, kind="stable")]
+    words = f"At the measured values of {against}, by the first law; the curves below are a sweep."
+    return [f"<div class='wide'>{html.table(headings, rows)}</div>", html.paragraph(words)]
+
+
+def _over_angle(comparison: Comparison) -> list[str]:
+    """Return pictures of e_t and of the rebound angle over the angle, if they are not measured."""
+    shown = {agreement.measured.quantity for agreement in comparison.agreements}
+    names = [name for name in OVER_ANGLE if name not in shown]
+    if list(comparison.varied) != ["angle_deg"]:
+        return []
+
+    def drawing(name: str) -> Callable[[Any], Any]:
+        return lambda axes: laws_over_sweep(axes, comparison, name)
+
+    return [html.figure(as_svg(drawing(name)), f"{name} over angle_deg.") for name in names]
 
 
 def _comparison(comparison: Comparison) -> list[str]:
@@ -88,9 +131,13 @@ def _comparison(comparison: Comparison) -> list[str]:
             parts.append(html.figure(picture, words))
     elif comparison.agreements:
         parts += [_measured(comparison, agreement) for agreement in comparison.agreements]
+        opposite = dict.fromkeys(agreement.opposite for agreement in comparison.agreements)
+        parts += [html.paragraph(f"Note: {sentence}.") for sentence in opposite if sentence]
+        parts += _over_angle(comparison)
     else:
         picture = as_svg(lambda axes: laws_over_sweep(axes, comparison, "psi2"))
         parts.append(html.figure(picture, "psi2 over the sweep."))
+        parts += _over_angle(comparison)
     first = comparison.names[0]
     rows = []
     for run in comparison.runs:

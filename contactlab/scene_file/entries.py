@@ -110,6 +110,13 @@ def with_materials(tables: Mapping[str, Any]) -> dict[str, Any]:
     return completed
 
 
+def named_materials(tables: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the names of materials in the tables of bodies, each once."""
+    bodies = [tables[name] for name in BODY_SECTIONS if isinstance(tables.get(name), Mapping)]
+    names = [body["material"] for body in bodies if isinstance(body.get("material"), str)]
+    return tuple(dict.fromkeys(names))
+
+
 def without_rivals(tables: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
     """Return the tables without the velocities, polar or by components, that ``names`` replace."""
     forms = (("speed", "angle_deg"), ("normal_speed", "tangential_velocity"))

@@ -18,6 +18,7 @@ from contactlab.outcome.files import content
 from contactlab.scene_file.build import build_scene
 from contactlab.scene_file.entries import (
     entry_path,
+    named_materials,
     replaced,
     with_materials,
     without_rivals,
@@ -54,6 +55,8 @@ class SceneFile:
     encounter : Encounter or None
         Encounter in space if the file gives vectors; ``scene`` lies in its plane of friction.
     measured : tuple of Measured
+    materials : tuple of str
+        Names of the materials that the file takes from the collection.
     """
 
     path: Path
@@ -65,6 +68,7 @@ class SceneFile:
     laws: LawChoice = attrs.field(factory=LawChoice)
     encounter: Encounter | None = None
     measured: tuple[Measured, ...] = ()
+    materials: tuple[str, ...] = ()
     tables: Mapping[str, Any] = attrs.field(factory=dict, repr=False)
 
     @property
@@ -144,6 +148,7 @@ def read_scene(
             varied=sweep.varied,
             laws=read_laws(document.get("simulation", {}), file.parent, allow_code=allow_code),
             measured=read_measured(document.get("measured", [])),
+            materials=named_materials(document),
             tables=tables,
         )
     except ValueError as error:

@@ -29,6 +29,8 @@ REPEATS = 3
 EXACT = 1e-6
 #: A run longer than this, in s, is not repeated: warming up takes little of its time.
 LONG_RUN = 2.0
+#: Factor between mean squares that tells a sign.
+MUCH_NEARER = 4.0
 
 
 @attrs.frozen(kw_only=True, eq=False)
@@ -82,6 +84,20 @@ class Agreement:
     def difference(self, law: str) -> Array:
         """Return predicted less measured values, shape (n,)."""
         return self.predicted[law] - self.measured.values
+
+    @property
+    def opposite(self) -> str:
+        """Sentence on measured values that are opposite in sign to every law's; else empty."""
+        measured = self.measured.values
+        for values in self.predicted.values():
+            wrong, right = values + measured, values - measured
+            if not np.mean(wrong**2) * MUCH_NEARER < np.mean(right**2):
+                return ""
+        name = self.measured.quantity
+        return (
+            f"{name} looks as if of the opposite sign: its numbers turned are nearer to every law "
+            f"(--column HEADING=-{name} turns it)"
+        )
 
     def rms(self, law: str) -> float:
         """Return the root mean square difference."""

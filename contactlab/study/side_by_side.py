@@ -55,6 +55,8 @@ def describe(comparison: Any, quantities: Sequence[str], file: SceneFile | None 
         parts += [_one_impact(comparison, quantities), *map(_points, comparison.agreements)]
     if comparison.agreements:
         parts.append(_agreement(comparison))
+        opposite = dict.fromkeys(agreement.opposite for agreement in comparison.agreements)
+        parts += [f"note: {sentence}" for sentence in opposite if sentence]
     parts += [_cautions(comparison), _cost(comparison)]
     return "\n\n".join(part for part in parts if part)
 

@@ -275,3 +275,50 @@ def test_a_law_that_is_asked_for_and_does_not_fit_is_refused(run, damped, tmp_pa
     assert (ran.status, ran.out) == (2, "")
     assert "Fronts: needs 'elastic_hertz'" in ran.err
     assert not (tmp_path / "report.html").exists()
+
+
+MEASURED = """angle_deg,rebound_spin (rad/s),tangential_restitution
+6,135,0.65
+10,239,0.60
+20,536,0.60
+50,461,0.845
+"""
+ALUMINA = """[sphere]
+radius = 2.5e-3
+material = "alumina"
+[target]
+kind = "half-space"
+material = "soda-lime glass"
+[impact]
+speed = 3.9
+angle_deg = 10.0
+friction_coefficient = 0.09
+"""
+
+
+def test_the_table_has_the_measured_angles_and_a_wrong_sign_is_told_once(run, reported, tmp_path):
+    data, scene = tmp_path / "drops.csv", tmp_path / "drops.toml"
+    data.write_text(MEASURED, encoding="utf-8")
+    scene.write_text(ALUMINA, encoding="utf-8")
+    text = reported(scene, "--measured", data)
+    answer = " ".join(re.sub(r"<[^>]+>", " ", text.partition("The answer")[2]).split())
+    rows = answer.partition("The laws compared")[0]
+    for line in MEASURED.splitlines()[1:]:
+        angle, spin, e_t = line.split(",")
+        found = re.search(rf" {angle} [^A-Z]*SUCCESS {spin} {float(e_t):g} ", rows)
+        assert found, line
+    assert text.count("looks as if of the opposite sign") == 1
+    assert "rebound_angle_deg over angle_deg." in text
+    told = "note: rebound_spin looks as if of the opposite sign"
+    assert run("compare", scene, "--measured", data).out.count(told) == 1
+    turned = ("--column", "rebound_spin (rad/s)=-rebound_spin")
+    assert "opposite sign" not in run("compare", scene, "--measured", data, *turned).out
+
+
+def test_the_sources_of_named_materials_are_cited(run, tmp_path):
+    scene = tmp_path / "drops.toml"
+    scene.write_text(ALUMINA, encoding="utf-8")
+    ran = run("cite", scene)
+    for key in ("direnzo2004", "dowling2013", "maw1976", "contactlab"):
+        assert ran.out.count(f"{{{key},") == 1
+    assert "year = {2026}" in ran.out.partition("{contactlab,")[2]
