@@ -26,6 +26,9 @@ FLUSH = 1e-9
 RIM_POINTS = 32
 #: Square of the first root of cos x cosh x = 1: bending of a rod with free ends.
 FREE_ENDS = 4.730040744862704**2
+#: The same of a needle, an ellipsoid far longer than wide, over its half-length: the root of the
+#: least eigenvalue of ((1 - s²)² w'')'' = q² (1 - s²) w that is no rigid motion.
+NEEDLE = 8.206954742
 
 
 def rod(
@@ -61,7 +64,7 @@ def rod(
         Radius of the sphere that rounds both ends, in m, at least ``radius``, the default: half
         a sphere. A cylinder with a domed end has a larger one.
     mass : float, optional
-        In kg.
+        In kg; one below that of the solid rod, as of a tube, lowers the bending period.
 
     Raises
     ------
@@ -87,14 +90,18 @@ def rod(
     mass = _mass(mass, material, volume)
     moments = np.full((3, 3), 0.0)
     moments += mass * (across * np.eye(3) + (lengthwise - across) * np.outer(along, along))
-    young: Any = 2.0 * material.shear_modulus * (1.0 + material.poisson_ratio)
-    speed = np.sqrt(young * volume / mass) * 0.5 * radius
+    density: Any = mass / volume
+    inner: Any = 0.0
+    if material.density is not None and density < material.density:  # a tube, of radius² inner
+        inner = radius * radius * (1.0 - density / material.density)
+        density = material.density
+    gyration = 0.5 * math.sqrt(radius * radius + float(inner))
     body = RigidBody(
         mass=mass,
         inertia=0.5 * (moments + moments.T),
         material=material,
         **(_two(math.inf, radius, along) if side else {"curvature_radius": end}),
-        bending_period=2.0 * math.pi * length * length / (FREE_ENDS * speed),
+        bending_period=_bending(length, gyration, material, density),
     )
     return body, contact
 
@@ -184,7 +191,8 @@ def box(
     """Return a solid box and its contact vector in m.
 
     It touches with a rounded corner, or with an edge that bulges a little, as a barrel does. Mass
-    and inertia are those of the box with sharp edges.
+    and inertia are those of a box whose corners and edges are all rounded, without bulges: with
+    half the side of a cube as ``corner_radius`` those of a ball.
 
     Parameters
     ----------
@@ -233,13 +241,15 @@ def box(
         contact = np.sign(across) * (0.5 * edges - corner) + corner * across
         contact = contact + crown * (outward - across)
         curvature = _two(crown, corner, turn @ direction)
-    mass = _mass(mass, material, float(edges.prod()))
-    squares = edges * edges
+    volume, squares = _rounded(0.5 * edges - corner, corner)
+    mass = _mass(mass, material, volume)
+    gyration = float(edges.min()) / math.sqrt(12.0)
     body = RigidBody(
         mass=mass,
-        principal=mass / 12.0 * (squares.sum() - squares),
+        principal=mass * (squares.sum() - squares),
         axes=turn,
         material=material,
+        bending_period=_bending(float(edges.max()), gyration, material, mass / volume),
         **curvature,
     )
     return body, turn @ contact
@@ -285,7 +295,9 @@ def ellipsoid(
     contact = squares * outward / height
     second = (np.diag(squares) - np.outer(contact, contact)) / height
     radii, directions = np.linalg.eigh(second)
-    mass = _mass(mass, material, 4.0 / 3.0 * math.pi * float(lengths.prod()))
+    volume = 4.0 / 3.0 * math.pi * float(lengths.prod())
+    mass = _mass(mass, material, volume)
+    longest, gyration = float(lengths.max()), 0.5 * float(lengths.min())
     body = RigidBody(
         mass=mass,
         principal=mass / 5.0 * (squares.sum() - squares),
@@ -294,8 +306,39 @@ def ellipsoid(
         curvature_radius=float(radii[2]),
         cross_radius=float(radii[1]),
         curvature_axis=turn @ directions[:, 2],
+        bending_period=_bending(longest, gyration, material, mass / volume, number=NEEDLE),
     )
     return body, turn @ contact
+
+
+def _bending(
+    length: float, gyration: float, material: Material, density: Any, *, number: float = FREE_ENDS
+) -> Any:
+    """Return the period in s of the first bending of a slender body with free ends.
+
+    ``gyration`` is that of the section in the middle, in m, and ``density`` mass over volume.
+    """
+    young: Any = 2.0 * material.shear_modulus * (1.0 + material.poisson_ratio)
+    speed = np.sqrt(young / density) * gyration
+    return 2.0 * math.pi * length * length / (number * speed)
+
+
+def _rounded(half: Array, r: float) -> tuple[float, Array]:
+    """Return volume, and mean squares of x, y, z, of all points within r of a box.
+
+    ``half`` are the half-lengths of that inner box. The parts are the box itself, slabs on its
+    faces, quarters of a cylinder along its edges and eighths of a ball at its corners.
+    """
+    a = half
+    b, c = np.roll(a, -1), np.roll(a, -2)
+    ball, ring = 4.0 / 3.0 * math.pi * r**3, math.pi * r * r
+    volume = float(8.0 * a.prod() + 8.0 * r * (a * b).sum() + 2.0 * ring * a.sum() + ball)
+    inside = 8.0 / 3.0 * a**3 * b * c + 8.0 / 3.0 * a**3 * r * (b + c)
+    faces = 8.0 / 3.0 * b * c * ((a + r) ** 3 - a**3)
+    along = 2.0 / 3.0 * ring * a**3
+    around = 2.0 * (b + c) * (ring * a * a + 8.0 / 3.0 * a * r**3 + 0.25 * ring * r * r)
+    corners = ball * a * a + math.pi * r**4 * a + 0.2 * ball * r * r
+    return volume, (inside + faces + along + around + corners) / volume
 
 
 def _revolved(length: float, radius: float, end: float, dome: float) -> tuple[float, float, float]:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 from scipy.spatial.transform import Rotation
 
 from contactlab import Encounter, HalfSpace, Material, Simulation, shapes
@@ -48,11 +48,66 @@ def test_a_rod_has_the_first_bending_period_of_free_ends():
     assert body.bending_period == pytest.approx(1 / frequency, rel=1e-5)
 
 
-def test_a_box_has_the_closed_form_in_its_axes():
-    body, contact = shapes.box(**BOX | {"axes": TURN, "normal": TURN @ [1, -1, 1], "mass": 12.0})
-    assert np.allclose(TURN.T @ body.inertia @ TURN, np.diag([13.0, 10.0, 5.0]), atol=1e-12)
+def test_a_box_with_small_corners_has_the_closed_form_in_its_axes():
+    small = BOX | {"axes": TURN, "normal": TURN @ [1, -1, 1], "mass": 12.0, "corner_radius": 1e-6}
+    body, _ = shapes.box(**small)
+    assert np.allclose(TURN.T @ body.inertia @ TURN, np.diag([13.0, 10.0, 5.0]), atol=1e-5)
+    _, contact = shapes.box(**small | {"corner_radius": 0.1})
     corner = [0.4, -0.9, 1.4] + 0.1 * np.array([1, -1, 1]) / math.sqrt(3)
     assert TURN.T @ contact == pytest.approx(corner, rel=1e-12)
+
+
+def test_a_box_of_corners_alone_is_a_ball_and_of_edges_alone_a_capsule():
+    ball, _ = shapes.box(**BOX | {"sides": [2.0, 2.0, 2.0], "corner_radius": 1.0})
+    mass = 4 / 3 * math.pi * STEEL.density
+    assert ball.mass == pytest.approx(mass, rel=1e-13)
+    assert np.allclose(ball.inertia, 0.4 * mass * np.eye(3), rtol=1e-13)
+    capsule, _ = shapes.box(**BOX | {"sides": [0.2, 0.2, 0.5], "corner_radius": 0.1})
+    rod, _ = shapes.rod(**ROD | {"length": 0.5, "radius": 0.1, "axis": [0, 0, 1]})
+    assert capsule.mass == pytest.approx(rod.mass, rel=1e-13)
+    assert np.allclose(capsule.inertia, rod.inertia, rtol=1e-12, atol=1e-12)
+
+
+def test_a_rounded_box_has_the_moments_of_its_points():
+    """By points at random within the corner radius of the inner box."""
+    sides, r = np.array([1.0, 2.0, 3.0]), 0.4
+    points = np.random.default_rng(3).uniform(-0.5, 0.5, (1_000_000, 3)) * sides
+    beyond = np.maximum(np.abs(points) - (0.5 * sides - r), 0.0)
+    inside = points[np.sum(beyond**2, axis=1) < r * r]
+    body, _ = shapes.box(**BOX | {"corner_radius": r})
+    assert body.mass == pytest.approx(6 * len(inside) / 1e6 * STEEL.density, rel=2e-3)
+    squares = np.mean(inside**2, axis=0)
+    assert np.diag(body.inertia) / body.mass == pytest.approx(squares.sum() - squares, rel=3e-3)
+
+
+def test_bars_needles_and_tubes_ring_as_slender_bodies_do():
+    """A bar of the same length as a rod and a square section; a thin tube; a needle by shooting."""
+    rod, _ = shapes.rod(**ROD)
+    bar, _ = shapes.box(**BOX | {"sides": [1.0, 0.02, 0.02], "corner_radius": 1e-3})
+    assert bar.bending_period == pytest.approx(
+        rod.bending_period * 0.5 * 0.01 / (0.02 / math.sqrt(12)), rel=1e-12
+    )
+    tube, _ = shapes.rod(**ROD | {"mass": 0.02 * rod.mass})
+    assert tube.bending_period == pytest.approx(rod.bending_period / math.sqrt(1.98), rel=1e-12)
+    heavy, _ = shapes.rod(**ROD | {"mass": 4.0 * rod.mass})
+    assert heavy.bending_period == pytest.approx(2.0 * rod.bending_period, rel=1e-12)
+    needle, _ = shapes.ellipsoid(**EGG | {"semi_axes": [0.5, 0.01, 0.01]})
+    young = 2 * STEEL.shear_modulus * (1 + STEEL.poisson_ratio)
+    scale = 0.5**2 / (math.sqrt(young / STEEL.density) * 0.005)
+    q = 2.0 * math.pi * scale / needle.bending_period
+
+    def ends(q):
+        """Return moment times shear, crosswise, at the tip of two symmetric vibrations."""
+
+        def slope(s, y):
+            w, dw, moment, shear = y
+            return [dw, moment / (1 - s * s) ** 2, shear, q * q * (1 - s * s) * w]
+
+        starts = ([1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0])
+        tips = [solve_ivp(slope, (0.0, 0.999), y, rtol=1e-9, atol=1e-12).y[2:, -1] for y in starts]
+        return np.linalg.det(tips)
+
+    assert ends(0.999 * q) * ends(1.001 * q) < 0.0  # free at both ends
 
 
 @pytest.mark.parametrize("normal", [[1.0, 0.2, -0.5], [0.0, 0.0, 1.0], [0.3, 1.0, 0.0]])
