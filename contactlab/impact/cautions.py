@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.impact.bodies import Sphere
+from contactlab.impact.body_cautions import shells, units_of_bodies
 from contactlab.impact.body_contact import arms, gap_of
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.hertz import elongation_of, hertz_scales, peak_pressure, semi_axes
@@ -28,6 +29,11 @@ RANGE = 3e-10
 LARGE_RADIUS = 1.0
 #: Density in kg/m³ and shear modulus in Pa of the lightest and softest solids, aerogels and gels.
 LEAST_DENSITY, LEAST_MODULUS = 25.0, 1e4
+#: Above this density in kg/m³ solids are metals, stones and glasses, whose shear modulus in Pa is
+#: above this; a number below MEGA was probably meant in GPa, one above it in MPa.
+HEAVY, LEAST_HARD, MEGA = 2000.0, 1e7, 1e3
+#: Several angles are suspect whose largest in degrees lies between this and 90 degrees in radians.
+SEVERAL, LEAST_RADIANS = 3, 0.4
 #: A spin in turns a minute read as rad/s is 9.5 times too fast. Suspect are spins of at least
 #: LEAST_SPIN rad/s that move the surface at more than MOST_RIM times the speed of the centre; a
 #: rolling sphere has once that speed.
@@ -225,11 +231,13 @@ def unit_slips(scene: Scene) -> list[str]:
             number = f"{name}.material.density = {_least(density):.4g} kg/m³"
             slips.append(f"unit: {number}: is it in g/cm³?")
         if modulus < LEAST_MODULUS:
-            young = 2.0 * (1.0 + _least(body.material.poisson_ratio)) * modulus
-            number = f"{name}.material.shear_modulus = {modulus:.4g} Pa (Young's {young:.4g} Pa)"
-            slips.append(f"unit: {number}: is it in GPa?")
+            unit = "GPa" if modulus < MEGA else "MPa"
+            slips.append(f"unit: {_modulus(name, body)}: is it in {unit}?")
+        elif density is not None and _least(density) > HEAVY and modulus < LEAST_HARD:
+            slips.append(f"unit: {_modulus(name, body)}: is it in MPa?")
     if scene.sphere is None:
-        return slips
+        met = scene.encounter
+        return slips if met is None or met.of_spheres else [*slips, *units_of_bodies(met)]
     speed = math.hypot(_most(scene.normal_speed), _most(abs(scene.tangential_velocity)))
     spin = _most(abs(scene.spin))
     rim = _most(scene.sphere.radius) * spin
@@ -244,7 +252,27 @@ def unit_slips(scene: Scene) -> list[str]:
     if angle_deg <= 0.5 * math.pi and nearest > 0.0 and abs(intended - nearest) <= NEAR_DEG:
         number = f"angle of incidence {angle_deg:.6g}°: {nearest:g}° are as many radians"
         slips.append(f"unit: {number}; angle_deg is in degrees")
+    elif _like_radians(scene):
+        number = f"all {scene.shape[0]} angles of incidence lie below {angle_deg:.4g}°"
+        slips.append(f"unit: {number}, as radians do; angle_deg is in degrees")
     return slips
+
+
+def _modulus(name: str, body: Any) -> str:
+    """Return the shear modulus of a body in words."""
+    modulus = _least(body.material.shear_modulus)
+    young = 2.0 * (1.0 + _least(body.material.poisson_ratio)) * modulus
+    return f"{name}.material.shear_modulus = {modulus:.4g} Pa (Young's {young:.4g} Pa)"
+
+
+def _like_radians(scene: Scene) -> bool:
+    """Return whether several angles look like radians: all below 90 degrees in radians."""
+    if len(scene.shape) != 1 or np.any(scene.spin):
+        return False
+    angles = np.degrees(np.arctan2(np.abs(scene.tangential_velocity), scene.normal_speed))
+    angles = np.broadcast_to(angles, scene.shape)
+    several = np.unique(angles.round(9)).size >= SEVERAL
+    return bool(several and LEAST_RADIANS <= np.max(angles) <= 0.5 * math.pi)
 
 
 def unlikely(scene: Scene) -> list[str]:
@@ -252,7 +280,7 @@ def unlikely(scene: Scene) -> list[str]:
     bodies = named(scene)
     if not bodies:
         return []
-    slips, speed = [], _most(scene.normal_speed)
+    slips, speed = shells(scene), _most(scene.normal_speed)
     if (friction := _most(scene.friction_coefficient)) > MOST_FRICTION:
         slips.append(
             f"friction_coefficient = {friction:.4g}: above {MOST_FRICTION:g} surfaces stick like "

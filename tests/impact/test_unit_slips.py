@@ -6,7 +6,16 @@ import attrs
 import numpy as np
 import pytest
 
-from contactlab import Encounter, HalfSpace, Material, Scene, Simulation, Sphere, collide
+from contactlab import (
+    Encounter,
+    HalfSpace,
+    Material,
+    Scene,
+    Simulation,
+    Sphere,
+    collide,
+    shapes,
+)
 from contactlab.impact import material as materials
 from contactlab.impact.cautions import unit_slips
 
@@ -31,6 +40,12 @@ def steel(**changes):
         (attrs.evolve(BALL, tangential_velocity=math.tan(math.radians(0.7854))),
          "45° are as many radians"),
         (attrs.evolve(BALL, tangential_velocity=-math.tan(math.radians(0.5236))), "30° are"),
+        (attrs.evolve(BALL, target=HalfSpace(steel(young_modulus=207e3))), "is it in MPa?"),
+        (attrs.evolve(BALL, target=HalfSpace(steel(young_modulus=3e3))), "is it in MPa?"),
+        (attrs.evolve(BALL, tangential_velocity=np.tan(np.radians([0.5, 0.75, 1.0]))),
+         "all 3 angles of incidence lie below 1°, as radians do"),
+        (attrs.evolve(BALL, tangential_velocity=np.tan(np.radians(np.linspace(0, 1.5, 31)))),
+         "all 31 angles of incidence lie below 1.5°"),
     ],
 )  # fmt: skip
 def test_slips(scene, words):
@@ -94,3 +109,83 @@ def test_extremes_of_what_a_float_holds_raise_nothing():
     with np.errstate(all="raise"):
         scene = Scene(Sphere(1e-150, STEEL, mass=1e-3), HalfSpace(STEEL), 0.1, 1.0, 1e150)
         assert unit_slips(scene) == []
+
+
+PING_PONG = Material(young_modulus=2.2e9, poisson_ratio=0.35, density=1400.0)
+
+
+@pytest.mark.parametrize(
+    ("ball", "words"),
+    [
+        (Sphere(0.02, PING_PONG, mass=2.7e-3), "sphere.mass is 0.058 of a solid sphere's"),
+        (Sphere(0.02, PING_PONG, mass=2.7e-3), "(model, of a size that is not known)"),
+        (Sphere(0.02, PING_PONG, gyration_ratio=0.8), "is that of a shell"),
+        (Sphere(0.02, PING_PONG, mass=47.0), "unit: sphere.mass = 47 kg is 1e+03 times"),
+    ],
+)
+def test_a_shell_is_cautioned(ball, words):
+    scene = Scene(ball, HalfSpace(STEEL), 0.2, 2.0, 0.5)
+    assert words in str(Simulation().plan(scene).cautions)
+    assert words in str(Simulation().run(scene))
+
+
+def test_what_is_known_of_a_shell_is_told():
+    """Wall m/(4 pi R² rho), Reissner's stiffness and pi sqrt(m/k), against 4 numbers by hand.
+
+    A table-tennis ball lies on a table for about 1 ms: that of a solid one is a tenth of it.
+    """
+    ball = Sphere(0.02, PING_PONG, mass=2.7e-3)
+    (told,) = [
+        str(each) for each in Simulation().plan(Scene(ball, HalfSpace(STEEL), 0.2, 2.0)).cautions
+        if "shell" in str(each)
+    ]  # fmt: skip
+    wall = 2.7e-3 / (4 * math.pi * 0.02**2 * 1400)
+    spring = 4 * 2.2e9 * wall**2 / (0.02 * math.sqrt(3 * (1 - 0.35**2)))
+    lasting = math.pi * math.sqrt(2.7e-3 / spring)
+    assert f"wall of {wall * 1e3:.2g} mm" in told
+    assert f"spring of {spring / 1e3:.2g} kN/m" in told
+    assert f"for {lasting * 1e3:.2g} ms" in told
+    assert 0.5e-3 < lasting < 1.5e-3
+
+
+@pytest.mark.parametrize("share", [0.7, 1.0, 1.3])
+def test_balls_with_a_hole_or_a_core_are_not_cautioned(share):
+    solid = Sphere(0.02, STEEL)
+    ball = Sphere(0.02, STEEL, mass=share * solid.mass, gyration_ratio=0.66)
+    assert "shell" not in str(Simulation().plan(Scene(ball, HalfSpace(STEEL), 0.2, 2.0)))
+
+
+DOWN = np.array([0.0, 0.0, -1.0])
+ROD = {"length": 0.5, "radius": 0.01, "material": STEEL, "normal": DOWN, "axis": [0.5, 0, 1]}
+
+
+def of_rod(changes=(), body=(), **given):
+    made, contact = shapes.rod(**ROD | dict(changes))
+    if body:
+        made = attrs.evolve(made, **dict(body))
+    met = {"velocity": [0.3, 0, -1.0], "contact": contact} | given
+    return Encounter(made, HalfSpace(STEEL), 0.3, normal=DOWN, **met)
+
+
+@pytest.mark.parametrize(
+    ("encounter", "words"),
+    [
+        (
+            of_rod({"length": 1000.0, "radius": 10.0}),
+            "m from its centre of mass: are lengths in mm",
+        ),
+        (of_rod(body={"inertia": 1e6 * shapes.rod(**ROD)[0].inertia}), "body.inertia has a radius"),
+        (of_rod(body={"curvature_radius": 20.0}), "body.curvature_radius = 20 m: is it in mm?"),
+        (of_rod(spin=[0, -60 * 9.55, 0]), "is it in turns a minute?"),
+        (of_rod({"material": steel(young_modulus=207e3)}), "is it in MPa?"),
+    ],
+)
+def test_slips_of_bodies(encounter, words):
+    assert words in str(Simulation().plan(encounter.scene).cautions)
+    assert words in str(collide(encounter).plan.cautions)
+
+
+def test_bodies_as_they_are_are_not_cautioned():
+    thin = of_rod({"length": 2.0, "radius": 0.001})
+    for met in (of_rod(), thin, of_rod(spin=[0, -20.0, 0])):
+        assert unit_slips(met.scene) == []

@@ -1,0 +1,124 @@
+"""Cautions about shells, and about numbers of rigid bodies that are probably in another unit."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from contactlab.impact.bodies import Sphere
+from contactlab.impact.body_contact import arms
+from contactlab.impact.encounter import Encounter
+from contactlab.impact.hertz import hertz_scales
+from contactlab.impact.rigid_body import FLAT, RigidBody
+from contactlab.impact.scene import Scene
+
+#: Mass over that of a solid sphere below which it is a shell, with a wall below a fifth of R; and
+#: above which the unit of the mass is suspect.
+SHELL, HEAVY = 0.5, 20.0
+#: Radius of gyration over R above which most mass lies in a shell; 0.632 of a solid sphere, 0.816
+#: of a thin shell.
+HOLLOW = 0.72
+#: Distance in m of a contact from the centre of mass above which the unit is suspect.
+LONG = 10.0
+#: Radius of curvature in m, and over the size (mass/density)^(1/3), above which it is suspect.
+CURVED, OVER_SIZE = 1.0, 20.0
+#: Radius of gyration over (mass/density)^(1/3), and over the distance of the contact, above which
+#: it is suspect; a rod a thousand times as long as wide has 31 of the first.
+SPREAD, OVER_ARM = 100.0, 200.0
+#: As of spheres: spin in rad/s, and speed it gives the contact over that of the centre.
+LEAST_SPIN, MOST_RIM = 50.0, 8.0
+
+
+def shells(scene: Scene) -> list[str]:
+    """Return the caution of each sphere that is a shell, or far heavier than a solid one."""
+    said = []
+    for name, body in (("sphere", scene.sphere), ("target", scene.target)):
+        if not isinstance(body, Sphere):
+            continue
+        density = body.material.density
+        solid = None if density is None else 4.0 / 3.0 * math.pi * body.radius**3 * density
+        share = 1.0 if solid is None else float(np.min(body.mass / solid))
+        if solid is not None and float(np.max(body.mass / solid)) > HEAVY:
+            said.append(
+                f"unit: {name}.mass = {_most(body.mass):.4g} kg is {_most(body.mass / solid):.3g} "
+                "times that of a solid sphere of its density: is it in g?"
+            )
+        if share < SHELL:
+            said.append(
+                f"{name}.mass is {share:.2g} of a solid sphere's of its density: a shell, whose "
+                f"wall bends, and Hertz's contact is that of a solid; {_spring(scene, body)}"
+            )
+        elif _most(body.gyration_ratio) > HOLLOW:
+            said.append(
+                f"{name}.gyration_ratio = {_most(body.gyration_ratio):.3g} is that of a shell "
+                "(0.632 if solid, 0.816 if thin), whose wall bends, and Hertz's contact is that of "
+                "a solid (model, of a size that is not known)"
+            )
+    return said
+
+
+def _spring(scene: Scene, body: Sphere) -> str:
+    """Return what is known of the contact of a thin shell.
+
+    Reissner, J. Math. Phys. 25 (1946) 279-300: F = 4 E h²/(R sqrt(3 (1 - nu²))) times the
+    deflection under a force at a point, until the wall buckles at about its thickness.
+    """
+    density: Any = body.material.density
+    wall = body.mass / (4.0 * math.pi * body.radius**2 * density)
+    nu = body.material.poisson_ratio
+    young = 2.0 * body.material.shear_modulus * (1.0 + nu)
+    stiffness = 4.0 * young * wall * wall / (body.radius * np.sqrt(3.0 * (1.0 - nu * nu)))
+    lasting = math.pi * np.sqrt(scene.pair.normal_mass / stiffness)
+    hertz = float(np.max(hertz_scales(scene).duration))
+    return (
+        f"a thin wall of {_most(wall) * 1e3:.2g} mm is pressed as a spring of "
+        f"{_most(stiffness) / 1e3:.2g} kN/m up to about its thickness (Reissner 1946), for "
+        f"{_most(lasting) * 1e3:.2g} ms in place of {hertz * 1e3:.2g} ms: forces, times and psi "
+        "are not those of the shell (model, of a size that is not known)"
+    )
+
+
+def units_of_bodies(encounter: Encounter) -> list[str]:
+    """Return one sentence for each number of a rigid body that is probably in another unit."""
+    normal = encounter.normal / np.linalg.norm(encounter.normal, axis=-1)[..., None]
+    speed = np.linalg.norm(encounter.velocity - encounter.target_velocity, axis=-1)
+    spins = encounter.spin, encounter.target_spin
+    said = []
+    bodies = ("body", encounter.body), ("target", encounter.target)
+    for (name, body), arm, spin in zip(bodies, arms(encounter, normal), spins, strict=True):
+        if not isinstance(body, RigidBody):
+            continue
+        mass, density = np.asarray(body.mass), body.material.density
+        size = None if density is None else np.cbrt(mass / density)
+        length = np.linalg.norm(arm, axis=-1)
+        if _most(length) > LONG:
+            told = f"the contact of the {name} is {_most(length):.4g} m from its centre of mass"
+            said.append(f"unit: {told}: are lengths in mm?")
+        radius = _curvature(body)
+        if radius >= CURVED and (size is None or radius > OVER_SIZE * _most(size)):
+            said.append(f"unit: {name}.curvature_radius = {radius:.4g} m: is it in mm?")
+        gyration = np.sqrt(np.trace(body.inertia, axis1=-2, axis2=-1) / (3.0 * mass))
+        over = gyration / np.maximum(length, 1e-300)
+        if (size is not None and _most(gyration / size) > SPREAD) or _most(over) > OVER_ARM:
+            told = f"{name}.inertia has a radius of gyration of {_most(gyration):.4g} m"
+            said.append(f"unit: {told}: is it in kg mm² or g cm²?")
+        turning = np.linalg.norm(spin, axis=-1)
+        rim = _most(turning * length)
+        if _most(turning) >= LEAST_SPIN and rim > MOST_RIM * _most(speed) > 0.0:
+            told = f"the {name} spins at {_most(turning):.4g} rad/s: its contact moves "
+            told += f"{rim / _most(speed):.3g} times as fast as its centre"
+            said.append(f"unit: {told}; is it in turns a minute?")
+    return said
+
+
+def _curvature(body: RigidBody) -> float:
+    """Return the largest radius of curvature in m that is not flat."""
+    radii = np.abs(np.stack([np.ravel(each)[0] for each in (body.curvature_radius, body.crossing)]))
+    finite = radii[radii < FLAT]
+    return float(finite.max()) if finite.size else 0.0
+
+
+def _most(value: Any) -> float:
+    return float(np.max(value))
