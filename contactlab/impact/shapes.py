@@ -2,24 +2,35 @@
 
 Each function takes the outward normal at the contact and the orientation of the body, in the frame
 of the encounter, and returns ``(body, contact)`` for ``Encounter(body, target, contact=contact)``.
+Normals and orientations may be arrays, a pose of the same body in each row: shape (..., 3), and of
+``axes`` (..., 3, 3). Body and contacts are then a batch.
 """
 
 from __future__ import annotations
 
+import functools
 import math
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeVar
 
+import attrs
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.impact.material import Material
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.checks import POSITIVE, real, refuse
+from contactlab.numeric.names import function_told
 
 __all__ = ["box", "disc", "ellipsoid", "rod"]
 
 Array = NDArray[np.float64]
+Maker = TypeVar("Maker", bound=Callable[..., tuple[RigidBody, Array]])
 
+#: Arguments of a pose, and how many dimensions each has for one.
+POSE = {"normal": 1, "axis": 1, "axes": 2}
+#: Direction of curvature where both radii are the same.
+ANY_AXIS = (0.0, 0.0, 1.0)
 #: Cosine of the normal with an edge or face below which the contact is a line or a face.
 FLUSH = 1e-9
 #: Gauss points along the quarter circle of a rim: more change nothing.
@@ -31,6 +42,55 @@ FREE_ENDS = 4.730040744862704**2
 NEEDLE = 8.206954742
 
 
+def _posed(one: Maker) -> Maker:
+    """Return a function of one pose as one of many."""
+
+    @functools.wraps(one)
+    def posed(*values: Any, **given: Any) -> Any:
+        poses = {name: given[name] for name in POSE if given.get(name) is not None}
+        try:
+            arrays = {name: np.asarray(pose, dtype=float) for name, pose in poses.items()}
+            fronts = [array.shape[: array.ndim - POSE[name]] for name, array in arrays.items()]
+            shape = np.broadcast_shapes(*fronts)
+        except (TypeError, ValueError):  # refused for one pose
+            return one(*values, **given)
+        if not shape or values:
+            return one(*values, **given)
+        each = {
+            name: np.broadcast_to(array, (*shape, *array.shape[array.ndim - POSE[name] :]))
+            for name, array in arrays.items()
+        }
+        made = []
+        for index in np.ndindex(shape):
+            try:
+                made.append(one(**given | {name: array[index] for name, array in each.items()}))
+            except ValueError as error:
+                raise ValueError(f"pose {', '.join(map(str, index))}: {error}") from None
+        return _stacked(made, shape)
+
+    return posed  # type: ignore[return-value]
+
+
+def _stacked(
+    made: list[tuple[RigidBody, Array]], shape: tuple[int, ...]
+) -> tuple[RigidBody, Array]:
+    """Return poses of one body as a batch, with their contacts."""
+    bodies = [body for body, _ in made]
+    columns: dict[str, Any] = {
+        "inertia": np.array([body.inertia for body in bodies]).reshape(*shape, 3, 3),
+        "curvature_radius": np.reshape([body.curvature_radius for body in bodies], shape),
+    }
+    if any(body.cross_radius is not None for body in bodies):
+        columns["cross_radius"] = np.reshape([body.crossing for body in bodies], shape)
+        axes = (body.curvature_axis for body in bodies)  # none of those with one radius
+        every = [ANY_AXIS if each is None else each for each in axes]
+        columns["curvature_axis"] = np.reshape(every, (*shape, 3))
+    body = attrs.evolve(bodies[0], principal=None, axes=None, **columns)
+    return body, np.reshape([contact for _, contact in made], (*shape, 3))
+
+
+@function_told
+@_posed
 def rod(
     *,
     length: float,
@@ -106,6 +166,8 @@ def rod(
     return body, contact
 
 
+@function_told
+@_posed
 def disc(
     *,
     radius: float,
@@ -178,6 +240,8 @@ def disc(
     return body, contact
 
 
+@function_told
+@_posed
 def box(
     *,
     sides: Any,
@@ -255,6 +319,8 @@ def box(
     return body, turn @ contact
 
 
+@function_told
+@_posed
 def ellipsoid(
     *,
     semi_axes: Any,
@@ -411,6 +477,9 @@ def _unit(name: str, value: Any) -> Array:
 
 def _axes(value: Any) -> Array:
     """Return unit vectors at right angles as columns."""
+    if hasattr(value, "as_matrix"):
+        rule = "must be an array of shape (3, 3): a rotation has it as axes.as_matrix()"
+        raise refuse("axes", value, rule)
     axes = np.eye(3) if value is None else np.asarray(real("axes", value))
     if axes.shape != (3, 3) or not np.allclose(axes.T @ axes, np.eye(3), rtol=0.0, atol=1e-6):
         raise refuse("axes", value, "must be of shape (3, 3), unit vectors at right angles")

@@ -9,6 +9,7 @@ from importlib import import_module
 from typing import Any, TypeVar
 
 Class = TypeVar("Class", bound=type)
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 #: Names in this package for symbols and names that users try. The first two that are accepted
 #: where the symbol was used are suggested.
@@ -83,6 +84,21 @@ def arguments_told(made: Class) -> Class:
     return made
 
 
+def function_told(call: Function) -> Function:
+    """Return a function whose wrong arguments are refused with the nearest, and all names."""
+
+    @functools.wraps(call)
+    def told(*values: Any, **named: Any) -> Any:
+        try:
+            return call(*values, **named)
+        except TypeError:
+            if complaint := _unfit(call, (None, *values), named, "", own=0):
+                raise TypeError(f"{call.__name__}: {complaint}") from None
+            raise
+
+    return told  # type: ignore[return-value]
+
+
 def attributes_told(made: Class) -> Class:
     """Return a class of results that refuses a wrong attribute with the nearest, or all names."""
 
@@ -113,15 +129,18 @@ def _told(made: Any, call: Callable[..., Any]) -> Callable[..., Any]:
     return told
 
 
-def _unfit(call: Any, values: Any, named: Mapping[str, Any], remedy: str) -> str:
-    """Return why arguments do not fit a method, and what would; empty if they fit."""
+def _unfit(call: Any, values: Any, named: Mapping[str, Any], remedy: str, *, own: int = 1) -> str:
+    """Return why arguments do not fit a method, and what would; empty if they fit.
+
+    ``values`` begin with the object; a function has ``own`` = 0 arguments of this kind.
+    """
     import inspect  # slow to import, needed for wrong arguments only
 
     signature = inspect.signature(call)
     try:
-        signature.bind(*values, **named)
+        signature.bind(*values[1 - own :], **named)
     except TypeError:
-        _, *parameters = signature.parameters.values()
+        parameters = [*signature.parameters.values()][own:]
     else:
         return ""  # the error came from within
     names = [each.name for each in parameters]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-import attrs
 import numpy as np
 
 from contactlab.impact import shapes
@@ -59,13 +58,10 @@ def rigid_body(
     def made(**numbers: Any) -> tuple[RigidBody, Any]:
         maker: Callable[..., tuple[RigidBody, Any]] = getattr(shapes, shape)
         try:
-            turned = [
-                _about_y(angle) @ np.asarray(upright, dtype=float) for angle in np.ravel(tilt)
-            ]
+            turned = _about_y(tilt) @ np.asarray(upright, dtype=float)
         except ValueError:
             raise refuse(oriented, upright, "must be vectors of three numbers") from None
-        every = [maker(**numbers, **{oriented: each}) for each in turned]
-        return every[0] if np.ndim(tilt) == 0 else _stacked(every)
+        return maker(**numbers, **{oriented: turned})
 
     needed = [key for key in SHAPE_KEYS[shape] if key in NEEDED]
     for key in needed:
@@ -73,22 +69,9 @@ def rigid_body(
     return table.make(made, **options)
 
 
-def _about_y(degrees: float) -> Any:
-    """Return the matrix of a turn about y."""
+def _about_y(degrees: Any) -> Any:
+    """Return the matrix of a turn about y, shape (..., 3, 3)."""
     s, c = np.sin(np.radians(degrees)), np.cos(np.radians(degrees))
-    return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
-
-
-def _stacked(made: list[tuple[RigidBody, Any]]) -> tuple[RigidBody, Any]:
-    """Return bodies of one shape as a batch, with their contacts."""
-    bodies = [body for body, _ in made]
-    columns: dict[str, Any] = {
-        name: np.array([getattr(body, name) for body in bodies])
-        for name in ("inertia", "curvature_radius")
-    }
-    if any(body.cross_radius is not None for body in bodies):
-        columns["cross_radius"] = np.array([body.crossing for body in bodies])
-        axes = (body.curvature_axis for body in bodies)  # none of those with one radius
-        columns["curvature_axis"] = np.array([UPRIGHT if each is None else each for each in axes])
-    body = attrs.evolve(bodies[0], principal=None, axes=None, **columns)
-    return body, np.array([contact for _, contact in made])
+    one, none = np.ones_like(s), np.zeros_like(s)
+    rows = [[c, none, s], [none, one, none], [-s, none, c]]
+    return np.moveaxis(np.array(rows), (0, 1), (-2, -1))

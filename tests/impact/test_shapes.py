@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 from scipy.spatial.transform import Rotation
 
-from contactlab import Encounter, HalfSpace, Material, Simulation, shapes
+from contactlab import Encounter, HalfSpace, Material, Simulation, collide, shapes
 
 STEEL = Material.named("steel")
 PLAIN = Material(young_modulus=1e9, poisson_ratio=0.3)
@@ -235,3 +235,44 @@ def test_an_edge_of_a_box_is_a_barrel():
     assert (TURN.T @ contact)[1] == pytest.approx(20.0 * 0.01 / math.sqrt(2.0001))
     corner, _ = shapes.box(**crowned | {"normal": TURN @ [1, 0.1, -1]})
     assert (corner.curvature_radius, corner.cross_radius) == (0.1, None)
+
+
+POSES = Rotation.from_rotvec(np.random.default_rng(5).normal(0.0, 0.3, (1000, 3))).as_matrix()
+
+
+@pytest.mark.parametrize(
+    ("make", "given", "oriented"),
+    [
+        (shapes.rod, ROD | {"axis": None}, POSES[:, :, 2]),
+        (shapes.disc, DISC, POSES[:, :, 2]),
+        (shapes.box, BOX | {"crown_radius": 5.0}, POSES),
+        (shapes.ellipsoid, EGG, POSES),
+    ],
+)
+def test_a_thousand_poses_are_those_of_a_thousand_calls(make, given, oriented):
+    name = "axis" if "axis" in given else "axes"
+    bodies, contacts = make(**given | {name: oriented})
+    assert (bodies.shape, contacts.shape) == ((1000,), (1000, 3))
+    for index in (0, 17, 999):
+        one, contact = make(**given | {name: oriented[index]})
+        taken = bodies.take((1000,), index)
+        np.testing.assert_array_equal(contacts[index], contact)
+        np.testing.assert_array_equal(taken.inertia, one.inertia)
+        assert (taken.mass, taken.curvature_radius) == (one.mass, one.curvature_radius)
+        assert taken.crossing == one.crossing
+        assert taken.bending_period == one.bending_period
+
+
+def test_poses_broadcast_and_a_bad_one_is_told():
+    normals = np.array([[0.0, 0.1, -1.0], [0.0, 0.2, -1.0]])
+    bodies, contacts = shapes.rod(**ROD | {"normal": normals[:, None], "axis": POSES[:5, :, 2]})
+    assert (bodies.shape, contacts.shape) == ((2, 5), (2, 5, 3))
+    with pytest.raises(ValueError, match=r"pose 1: normal .*along a face"):
+        shapes.box(**BOX | {"normal": [[1.0, 1.0, 1.0], [0.0, 0.0, 1.0]]})
+    met = Encounter(
+        *(bodies, HalfSpace(STEEL), 0.3), normal=normals[:, None], velocity=DOWN, contact=contacts
+    )
+    found = collide(met)
+    one, contact = shapes.rod(**ROD | {"normal": normals[1], "axis": POSES[3, :, 2]})
+    alone = Encounter(one, HalfSpace(STEEL), 0.3, normal=normals[1], velocity=DOWN, contact=contact)
+    np.testing.assert_allclose(found.velocity[1, 3], collide(alone).velocity, rtol=1e-9)
