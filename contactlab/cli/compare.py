@@ -138,14 +138,17 @@ def _answering(
 ) -> dict[str, Simulation]:
     """Return the simulations that have an answer; report the others on stderr if ``told``."""
     answering, refused = {}, None
+    reasons: dict[str, list[str]] = {}
     for name, simulation in compared.items():
         try:
             simulation.laws.accept(scene)
             answering[name] = simulation
         except ValueError as error:
             refused = error
-            if told:
-                print(f"contactlab compare: {name} is left out: {error}", file=sys.stderr)
+            reasons.setdefault(str(error).partition(": ")[2], []).append(name)
+    for reason, names in reasons.items() if told else ():
+        are = "is" if len(names) == 1 else "are"
+        print(f"contactlab compare: {', '.join(names)} {are} left out: {reason}", file=sys.stderr)
     if not answering and refused is not None:
         raise refused
     return answering

@@ -47,6 +47,8 @@ class Parser(argparse.ArgumentParser):
         if wrong:
             words = re.findall(r"[\w-]+", wrong[2])
             message += f"; {nearest(wrong[1], words)}"
+            if wrong[1] in ("help", "version"):
+                message = f"{wrong[1]} is an option: write contactlab --{wrong[1]}"
         unknown = re.match(r"unrecognized arguments: (--[\w-]+)", message)
         if unknown:
             message += f"; {nearest(unknown[1], self._option_string_actions)}"

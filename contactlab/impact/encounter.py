@@ -28,6 +28,7 @@ from contactlab.numeric.names import arguments_told
 from contactlab.numeric.vectors import (
     LEAST,
     NOTHING,
+    ZERO,
     components,
     difference,
     moving,
@@ -157,7 +158,9 @@ class Encounter:
                 raise refuse(name, getattr(self, name).tolist(), rule, "leave it out")
             if not given and isinstance(body, RigidBody):
                 rule = "is needed: the vector in m from the centre of mass to the contact"
-                raise refuse(name, None, rule, "contactlab.shapes has those of common bodies")
+                value = getattr(self, name)
+                told = None if value is ZERO else value.tolist()
+                raise refuse(name, told, rule, "contactlab.shapes has those of common bodies")
 
     def take(self, part: Any) -> Encounter:
         """Return the encounters that ``part`` indexes.

@@ -28,7 +28,7 @@ def check(inverse: Array) -> None:
     with np.errstate(all="ignore"):
         scaled = inverse / (diagonal[..., None] * diagonal[..., None, :])
     if not (np.isfinite(scaled).all() and np.linalg.eigvalsh(scaled).min() > SINGULAR):
-        rule = "must be positive definite: lam · chi⁻¹ · eta < 2, in the plane lam eta < 2 chi"
+        rule = "must be positive definite: lam · chi⁻¹ · eta must be below 2"
         raise refuse("inverse_mass", inverse.tolist(), rule)
 
 

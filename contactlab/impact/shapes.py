@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from contactlab.impact.material import Material
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.checks import POSITIVE, real, refuse
-from contactlab.numeric.names import function_told
+from contactlab.numeric.names import SHAPES, function_told
 
 __all__ = ["box", "disc", "ellipsoid", "rod"]
 
@@ -29,6 +29,11 @@ Maker = TypeVar("Maker", bound=Callable[..., tuple[RigidBody, Array]])
 
 #: Arguments of a pose, and how many dimensions each has for one.
 POSE = {"normal": 1, "axis": 1, "axes": 2}
+#: What to write for a direction.
+UNIT = {
+    "normal": "such as [0, 0, -1], down",
+    "axis": "such as [0, 0, 1], up; an angle is tilt_deg of a scene file",
+}
 #: Direction of curvature where both radii are the same.
 ANY_AXIS = (0.0, 0.0, 1.0)
 #: Cosine of the normal with an edge or face below which the contact is a line or a face.
@@ -40,6 +45,13 @@ FREE_ENDS = 4.730040744862704**2
 #: The same of a needle, an ellipsoid far longer than wide, over its half-length: the root of the
 #: least eigenvalue of ((1 - s²)² w'')'' = q² (1 - s²) w that is no rigid motion.
 NEEDLE = 8.206954742
+
+
+def __getattr__(name: str) -> Any:
+    """Refuse a name with the shape that is meant."""
+    meant = SHAPES.get(name.lower())
+    told = f"that body is made by {meant}; " if meant else ""
+    raise AttributeError(f"shapes has no attribute {name!r}; {told}it has {', '.join(__all__)}")
 
 
 def _posed(one: Maker) -> Maker:
@@ -470,7 +482,7 @@ def _unit(name: str, value: Any) -> Array:
     """Return a direction as a unit vector."""
     vector = np.asarray(real(name, value, remedy="give a vector of shape (3,)"))
     if vector.shape != (3,) or not vector.any():
-        raise refuse(name, value, "must be a vector of shape (3,), not zero")
+        raise refuse(name, value, "must be a vector of shape (3,), not zero", UNIT[name])
     vector = vector / np.abs(vector).max()
     return np.asarray(vector / np.linalg.norm(vector))
 

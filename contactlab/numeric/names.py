@@ -34,12 +34,23 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
     "F": ("tangential_force",), "P": ("normal_force",), "work": ("friction_work",),
     "beta0": ("slip_restitution", "beta"), "kappa": ("stiffness_ratio",),
     "shear_modulus_ratio": ("stiffness_ratio",),
-    "rebound_velocity": ("rebound_tangential_velocity", "rebound_normal_velocity"),
-    "final_velocity": ("rebound_tangential_velocity", "rebound_normal_velocity"),
+    "rebound_velocity": ("rebound_tangential_velocity", "rebound_normal_velocity", "velocity"),
+    "final_velocity": ("rebound_tangential_velocity", "rebound_normal_velocity", "velocity"),
+    "velocity_after": ("velocity",), "rebound_spin": ("spin",), "final_spin": ("spin",),
     "ball": ("sphere", "body"), "sphere": ("body",), "wall": ("target",), "plane": ("target",),
     "half_space": ("target",),
     "laws": ("simulation",), "output": ("out",), "plot": ("figure",), "jobs": ("workers",),
     "angle": ("angle_deg", "rebound_angle"), "psi": ("psi1",), "dt": ("steps",), "n": ("steps",),
+}  # fmt: skip
+#: Shapes of bodies by the names that users try, and what makes them.
+SHAPES = {
+    "box": "shapes.box", "cube": "shapes.box", "cuboid": "shapes.box", "plate": "shapes.box",
+    "block": "shapes.box", "rod": "shapes.rod", "bar": "shapes.rod or shapes.box",
+    "cylinder": "shapes.rod (rounded ends) or shapes.disc (rounded rims)",
+    "capsule": "shapes.rod", "tube": "shapes.rod, with its mass", "disc": "shapes.disc",
+    "disk": "shapes.disc", "puck": "shapes.disc", "coin": "shapes.disc",
+    "ellipsoid": "shapes.ellipsoid", "egg": "shapes.ellipsoid", "ball": "contactlab.Sphere",
+    "sphere": "contactlab.Sphere",
 }  # fmt: skip
 #: Remarks on a suggested name whose quantity is another.
 REMARKS = {"diameter": ", half the diameter", "d": ", half the diameter"}
@@ -178,6 +189,9 @@ def imported_on_use(
         """Return a public name, imported on first use and kept."""
         if name not in modules:
             hint = "" if name.startswith("_") else f"; {nearest(name, modules)}".rstrip("; ")
+            if name.lower() in SHAPES and name not in modules:
+                hint = f"; that body is made by contactlab.{SHAPES[name.lower()]}"
+                hint = hint.replace("contactlab.contactlab", "contactlab")
             raise AttributeError(f"module {package!r} has no attribute {name!r}{hint}")
         module = import_module(f"contactlab.{modules[name]}")
         value = getattr(module, name, module)

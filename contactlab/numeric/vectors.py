@@ -44,7 +44,7 @@ def vector(unit: str, *, default: Any = attrs.NOTHING) -> Any:
 def _checked(value: object, field: attrs.Attribute[Any]) -> Array:
     """Return vectors, shape (..., 3), as a read-only copy."""
     if value is NOTHING:
-        return _ZERO
+        return ZERO
     numbers: Any = value.tolist() if type(value) is np.ndarray and value.shape == (3,) else value
     if type(numbers) in (list, tuple) and len(numbers) == 3:  # three plain numbers, the fast path
         x, y, z = numbers
@@ -62,7 +62,7 @@ def three(x: float, y: float, z: float) -> Array:
     return np.frombuffer(_THREE.pack(x, y, z))
 
 
-_ZERO = three(*NOTHING)
+ZERO = three(*NOTHING)
 
 
 def _many(value: Any, field: attrs.Attribute[Any]) -> Array:
@@ -100,7 +100,7 @@ def components(vectors: Array) -> tuple[Any, Any, Any]:
 
 def moving(vectors: Array) -> bool:
     """Return whether any vector is not zero."""
-    return vectors is not _ZERO and bool(vectors.any())
+    return vectors is not ZERO and bool(vectors.any())
 
 
 def square_root(square: Any) -> Any:

@@ -21,7 +21,7 @@ from contactlab.compose.names import (
     seen_from,
     short_name,
 )
-from contactlab.compose.registry import REGISTRY
+from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
@@ -72,8 +72,10 @@ class LawChoice:
         for path, value in settings.items():
             owner, _, option = path.rpartition(".")
             if complaint := _complaint(path):
-                hint = "" if owner else nearest(path, self._offered())
-                raise ValueError(f"{complaint}; {hint}".rstrip("; "))
+                near = "" if owner else nearest(path, self._offered())
+                if not (owner or near) and (found := _laws_with(path)):
+                    raise ValueError(f"{path}: {found}")
+                raise ValueError(f"{complaint}; {near}".rstrip("; "))
             options.setdefault(owner, {})[option] = value
         return attrs.evolve(self, options=options)
 
@@ -194,6 +196,20 @@ def _of_speed(restitution: object) -> tuple[str, Any]:
     rule = "is neither a number, nor a function or a table of the speed"
     remedy = "write 0.9, 1 - 0.02 v^(1/5), or 0.5:0.95,2:0.9 (speed in m/s and e)"
     raise refuse("restitution", restitution, rule, f"{remedy}; in TOML [[0.5, 0.95], [2, 0.9]]")
+
+
+def _laws_with(option: str) -> str:
+    """Return which installed laws have an option that was named without them; empty if none."""
+    having = []
+    for info in REGISTRY.installed():
+        with contextlib.suppress(PluginError, ValueError):
+            if option in signature(REGISTRY.law_class(info.name)).parameters:
+                having.append(info.name)
+    if not having:
+        return ""
+    kind, name = kind_of(having[0]), short_name(having[0])
+    others = f" (and of {', '.join(having[1:])})" if having[1:] else ""
+    return f"is an option of {having[0]}{others}: write --{kind} {name} --set {kind}.{option}=..."
 
 
 def same_law(one: str, other: str) -> bool:

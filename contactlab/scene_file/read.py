@@ -185,7 +185,10 @@ def _document(file: Path) -> dict[str, Any]:
     try:
         document = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise ValueError(f"{file}, {_place(str(error), text)}") from None
+        if file.suffix.lower() in (".csv", ".txt", ".dat"):
+            rule = "holds no scene; measured impacts go to contactlab fit"
+            raise ValueError(f"{file}: {rule} {file.name} bodies.toml") from None
+        raise ValueError(f"{file}, {_place(str(error), text)}{_written(text)}") from None
     except ValueError as error:  # an integer with thousands of digits
         raise ValueError(f"{file}: {error}") from None
     except RecursionError:
@@ -217,6 +220,21 @@ def _deep(document: Mapping[str, Any]) -> bool:
         inner = (value.values() if isinstance(value, dict) else value for value in level)
         level = [item for items in inner for item in items if isinstance(item, dict | list)]
     return bool(level)
+
+
+def _written(text: str) -> str:
+    """Return what to write in place of the first value that is not TOML; empty if none is known."""
+    for line in text.splitlines():
+        key, equals, value = (part.strip() for part in line.partition("#")[0].partition("="))
+        if not equals:
+            continue
+        if re.fullmatch(r"[+-]?\d+,\d+", value):
+            return f"; write numbers with a point: {key} = {value.replace(',', '.')}"
+        if re.fullmatch(r"[+-]?\.\d+(e[+-]?\d+)?", value, re.IGNORECASE):
+            return f"; write {key} = {value.replace('.', '0.', 1)}"
+        if re.fullmatch(r"[A-Za-z][\w -]*", value) and value not in ("true", "false", "inf", "nan"):
+            return f'; put words in quotes: {key} = "{value}"'
+    return ""
 
 
 def _place(message: str, text: str) -> str:

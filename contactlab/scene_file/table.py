@@ -20,6 +20,13 @@ ABSENT = {
     "friction_coefficient": "a number such as 0.2; `contactlab fit` finds it from measured rebounds"
 }
 
+#: Where keys stand that users write in another table.
+ELSEWHERE = {
+    "restitution": "write restitution = 0.9 under [simulation]",
+    "mu": "write friction_coefficient under [impact]",
+    "gravity": "leave it out: in an impact it is nothing beside the forces of contact",
+}
+
 
 class Table:
     """A table, its dotted ``path`` for messages, and the keys it may have.
@@ -95,6 +102,8 @@ class Table:
     def _unknown(self, key: str) -> ValueError:
         """Return the error of an unknown key."""
         remedy = nearest_of(key, self.known)
+        if key in ELSEWHERE and key not in self.known:
+            remedy = ELSEWHERE[key]
         if "material" in self.known and key in MATERIAL_KEYS:
             remedy = f"a number of the material: write it under [{self.at('material')}]"
         return ValueError(f"{self.at(key)}: is not a known key; {remedy}")
