@@ -16,11 +16,12 @@ import textwrap
 from collections import Counter
 from typing import Any
 
-from contactlab.cli.arguments import FAILED, OK, add_progress, print_json, progress
+from contactlab.cli.arguments import FAILED, OK, add_progress, finite, print_json, progress
 from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.compose.options import Option, options
 from contactlab.compose.registry import REGISTRY, PluginInfo
 from contactlab.contracts import Integrator, TangentialLaw
+from contactlab.numeric.checks import POSITIVE, real
 from contactlab.outcome.text_table import WIDTH, table
 
 
@@ -35,6 +36,13 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         action.add_argument(
             "name", metavar="NAME", help="such as tangential.annulus, or my_law.py:Stribeck"
         )
+    check.add_argument(
+        "--seconds",
+        type=finite,
+        metavar="S",
+        help="time limit of each check, and of the import (default 60); after three checks out of "
+        "time the others are not tried",
+    )
     add_progress(check)
     for action in (listing, show, check):
         action.add_argument("--json", action="store_true", help="print JSON")
@@ -116,10 +124,13 @@ def _indented(words: str, margin: str) -> str:
 def _check(arguments: argparse.Namespace) -> int:
     """Check a law against its contract; only this action imports the conformance kit."""
     from contactlab.testing import examine
+    from contactlab.testing.limits import SECONDS
     from contactlab.testing.outcomes import REMEDY
 
+    limit = SECONDS if arguments.seconds is None else arguments.seconds
+    seconds = float(real("--seconds", limit, rule=POSITIVE, remedy="in s"))
     with progress(arguments.progress, f"checking {arguments.name}") as counted:
-        outcomes = examine(arguments.name, progress=counted)
+        outcomes = examine(arguments.name, progress=counted, seconds=seconds)
     failures = [outcome for outcome in outcomes if not outcome.verdict.good]
     if arguments.json:
         entries = [

@@ -17,7 +17,7 @@ from contactlab.testing.check import (
     CheckStoppedError,
     NotApplicableError,
 )
-from contactlab.testing.limits import MOST_TIMEOUTS, SECONDS
+from contactlab.testing.limits import MOST_TIMEOUTS, SECONDS, OutOfTimeError, limited
 
 #: Last line of a report with failures.
 REMEDY = (
@@ -93,7 +93,7 @@ def outcome(law: Law, check: Check, *, seconds: float = SECONDS) -> Outcome:
         return Outcome(check.name, Verdict.NOT_APPLICABLE, str(inapplicable))
     except CheckFailedError as failure:
         sentence = str(failure)
-    except Exception as error:
+    except (Exception, SystemExit) as error:  # a law may not end the process
         where = traceback.extract_tb(error.__traceback__)[-1]
         sentence = f"Raised {type(error).__name__}: {error} (in {where.name}, line {where.lineno})"
     else:
@@ -121,8 +121,18 @@ def examine(
         Called as ``progress(done, total)`` after each check.
     seconds : float
         Time limit of each check, in s. After three checks out of time the others are not tried.
+
+    Raises
+    ------
+    TimeoutError
+        If the law cannot be imported and made in that time.
     """
-    made = made_law(law)
+    try:
+        with limited("loading", law, seconds):
+            made = made_law(law)
+    except OutOfTimeError:
+        rule = f"its module or its class did not return within {seconds:g} s of computing"
+        raise TimeoutError(f"{law}: {rule}; it is imported and made before it is checked") from None
     checks = checks_for(made)
     outcomes: list[Outcome] = []
     for done, check in enumerate(checks, 1):

@@ -113,3 +113,35 @@ def test_laws_that_one_reason_leaves_out_are_told_in_one_line(capsys):
     assert len(told) == 1
     assert "annulus, annulus mean, halfspace" in told[0]
     assert "are left out: has no answer where friction changes the approach" in told[0]
+
+
+LAW = """
+import sys
+from typing import ClassVar
+import attrs
+from contactlab.contracts import SteppedTangentialLaw
+{at_once}
+@attrs.frozen(kw_only=True)
+class Mine(SteppedTangentialLaw):
+    api_version: ClassVar[int] = 2
+    def start(self, scene, normal):
+        {start}
+    def advance(self, state, increment, before, after):
+        return None
+"""
+
+
+@pytest.mark.parametrize(
+    ("start", "at_once", "words"),
+    [
+        ("sys.exit(3)", "", "Raised SystemExit: 3 (in start, line 11)"),
+        ("while True: pass", "", "was stopped after 0.2 s of computing"),
+        ("return 1", "while True: pass", "did not return within 0.2 s of computing"),
+    ],
+)
+def test_a_law_that_exits_or_never_returns(start, at_once, words, tmp_path, capsys):
+    path = tmp_path / "law.py"
+    path.write_text(LAW.format(start=start, at_once=at_once), encoding="utf-8")
+    assert main(["plugins", "check", f"{path}:Mine", "--seconds", "0.2"]) == 1
+    out, err = capsys.readouterr()
+    assert words in " ".join((out + err).split())
