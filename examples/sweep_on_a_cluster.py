@@ -1,6 +1,6 @@
 """A sweep on a cluster of dask: here two processes, elsewhere the machines of a computing centre.
 
-    pip install "contactlab[dask,xarray]"
+    pip install ".[dask,xarray]"
 
 Writes ``sweep_on_a_cluster.png`` in the current folder. The scene is a grid, so that the answer
 is an array with named axes. Of `LocalCluster` only the

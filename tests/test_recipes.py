@@ -51,7 +51,7 @@ def test_every_recipe_is_run_here():
 
 
 def test_jax():
-    jax = pytest.importorskip("jax", reason="JAX is not installed: pip install contactlab[recipes]")
+    jax = pytest.importorskip("jax", reason="JAX is not installed: pip install .[recipes]")
     ours = recipe("rebound_in_jax").rebound
     by_psi1, by_chi = differences(PSI1, CHI)
     assert np.asarray(ours(PSI1, CHI)) == pytest.approx(rebound(PSI1, CHI), abs=1e-9)
@@ -67,9 +67,7 @@ def test_jax():
 
 
 def test_torch():
-    torch = pytest.importorskip(
-        "torch", reason="PyTorch is not installed: pip install contactlab[recipes]"
-    )
+    torch = pytest.importorskip("torch", reason="PyTorch is not installed: pip install .[recipes]")
     ours = recipe("rebound_in_torch").rebound
     psi1 = torch.tensor(PSI1, requires_grad=True)
     chi = torch.tensor(CHI, dtype=torch.float64, requires_grad=True)
@@ -267,7 +265,7 @@ def bounced(ball, floor, friction, e, velocity, spin):
 
 def test_a_ball_in_pymunk():
     """Without gravity one bounce is that of ``collide``; with it the ball comes to rest."""
-    pytest.importorskip("pymunk", reason="pymunk is not installed: pip install contactlab[recipes]")
+    pytest.importorskip("pymunk", reason="pymunk is not installed: pip install .[recipes]")
     ours = recipe("ball_in_pymunk")
     for velocity, spin in THROWS:
         space, body = ours.thrown(velocity, spin, gravity=0.0)

@@ -70,5 +70,6 @@ def _needed(module: str, method: str) -> Any:
         return importlib.import_module(module)
     except ImportError as error:
         raise ImportError(
-            f'{method} needs {module}, which is not installed: pip install "contactlab[{module}]"'
+            f"{method} needs {module}, which is not installed: in the clone pip install "
+            f'".[{module}]"'
         ) from error
