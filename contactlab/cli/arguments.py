@@ -26,8 +26,8 @@ from contactlab.outcome.files import distinct, unwritable, write_table
 
 if TYPE_CHECKING:
     from contactlab.compose.simulation import Simulation
-    from contactlab.impact.scene import Scene
     from contactlab.fitting.measurements import Measurements
+    from contactlab.impact.scene import Scene
     from contactlab.scene_file import SceneFile
 
 

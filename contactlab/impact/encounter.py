@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
 from contactlab.impact.body_contact import (
     Contact,
+    inverse_mass_of,
     meeting_of_bodies,
     scene_of_bodies,
     spin_about,
@@ -286,6 +287,10 @@ class Encounter:
         where = np.argwhere(~(approach >= LEAST))
         first = tuple(where[0].tolist())
         state = "bodies separate" if approach[first] < 0.0 else "bodies separate, or rest"
+        if approach[first] == 0.0 and (jam := self._jam(first)):
+            rule = f"bodies slide without approach{first_of(where)}, and {jam}"
+            remedy = "give an approach of 1e-8 of the slip: the impact is the limit of slow ones"
+            return refuse("velocity, target_velocity", 0.0, rule, remedy)
         turned = (
             "turn normal from the first body to the target, or " if approach[first] < 0.0 else ""
         )
@@ -295,6 +300,19 @@ class Encounter:
             f"{state}: the speed of approach, in m/s, must be positive{first_of(where)}",
             f"{turned}let such pairs pass: collide(encounter, separating='pass')",
         )
+
+    def _jam(self, index: tuple[int, ...]) -> str:
+        """Return in words that friction alone presses sliding bodies together, else nothing."""
+        if self.of_spheres:
+            return ""
+        one = self.take(index)
+        contact = one.meeting()
+        n, along = np.array(contact.normal), np.array(contact.along)
+        pressed = inverse_mass_of(one, n) @ n
+        lam = float(one.friction_coefficient * (pressed @ along) / (pressed @ n))
+        if lam >= -1.0 or not contact.slip:
+            return ""
+        return f"friction presses them together, lambda = {lam:.3g} below -1 (Painlevé)"
 
 
 @cache

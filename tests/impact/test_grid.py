@@ -146,7 +146,7 @@ angle_deg = [10, 20, 30]
 )
 def test_without_the_extra_it_is_named(result, monkeypatch, method, module):
     monkeypatch.setitem(sys.modules, module, None)
-    with pytest.raises(ImportError, match=rf"{method} needs {module}.*contactlab\[{module}\]"):
+    with pytest.raises(ImportError, match=rf"{method} needs {module}.*\[{module}\]"):
         getattr(result, method)()
 
 
