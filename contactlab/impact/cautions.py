@@ -23,6 +23,8 @@ FIRST_YIELD = 1.6
 GPA = 1e9
 #: Above this ratio of contact radius to R the theory of half-spaces is doubtful (theory §8).
 DOUBTFUL_SIZE_RATIO = 0.1
+#: Growth of e_T of deep contacts over C² = z/R (theory §15).
+DEEPER = (0.8, 2.0)
 #: Range of attraction of surfaces in m, about the distance between atoms.
 RANGE = 3e-10
 #: Sphere radius in m from which the unit was probably mm.
@@ -52,9 +54,12 @@ def large_contact(ratio: float) -> tuple[str, ...]:
     """Return the caution of a contact that is not small; ``ratio`` is its ``size_of_contact``."""
     if not ratio > DOUBTFUL_SIZE_RATIO:
         return ()
+    low, high = (rate * ratio * ratio for rate in DEEPER)
     return (
         f"C = {ratio:.3g}, contact radius over R: the contact is not small against the "
-        f"radius, the theory of half-spaces is doubtful above {DOUBTFUL_SIZE_RATIO}",
+        f"radius, the theory of half-spaces is doubtful above {DOUBTFUL_SIZE_RATIO}; of balls "
+        f"e_T = -psi2/psi1 grows by {DEEPER[0]:g} to {DEEPER[1]:g} times C², here by {low:.2g} to "
+        f"{high:.2g} (model; theory §15)",
     )
 
 

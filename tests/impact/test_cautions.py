@@ -1,4 +1,4 @@
-"""The size that a plan gives to the elastic coupling of unlike bodies."""
+"""The sizes that a plan gives to the coupling of unlike bodies and to deep contacts."""
 
 import itertools
 import re
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import Scene, Simulation
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
 from contactlab.impact.coupling import coupling_shift
 
 GUIDE = Path(contactlab.__file__).parent / "guide" / "theory-coupling.md"
@@ -105,3 +105,15 @@ def test_without_friction_there_is_no_caution():
     scene = attrs.evolve(steel_on_rubber(1.0), friction_coefficient=0.0)
     assert not cautions(scene)
     assert float(coupling_shift(scene)) == 0.0
+
+
+def test_a_deep_contact_is_told_with_the_growth_of_its_error():
+    """Theory §15: each 0.1 of z/R = C² adds 0.08 to 0.2 to e_T; C by Hertz's maximum radius."""
+    soft = Material(young_modulus=1e7, poisson_ratio=0.45, density=1130.0)
+    scene = Scene(Sphere(0.0214, soft), HalfSpace(Material.named("steel")), 0.3, 10.0, 1.0)
+    result = Simulation().run(scene)
+    ratio = float(result.motion.maximum_radius) / 0.0214
+    told = next(str(each) for each in result.plan.cautions if "not small" in str(each))
+    assert ratio > 0.3
+    words = f"here by {0.8 * ratio**2:.2g} to {2.0 * ratio**2:.2g} (model; theory §15)"
+    assert words in told

@@ -118,7 +118,7 @@ PING_PONG = Material(young_modulus=2.2e9, poisson_ratio=0.35, density=1400.0)
     ("ball", "words"),
     [
         (Sphere(0.02, PING_PONG, mass=2.7e-3), "sphere.mass is 0.058 of a solid sphere's"),
-        (Sphere(0.02, PING_PONG, mass=2.7e-3), "(model, of a size that is not known)"),
+        (Sphere(0.02, PING_PONG, mass=2.7e-3), "(model, of a size that is not known; of a tennis"),
         (Sphere(0.02, PING_PONG, gyration_ratio=0.8), "is that of a shell"),
         (Sphere(0.02, PING_PONG, mass=47.0), "unit: sphere.mass = 47 kg is 1e+03 times"),
     ],
