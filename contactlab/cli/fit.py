@@ -91,6 +91,8 @@ def execute(arguments: argparse.Namespace) -> int:
     data, path = _files(arguments.files, arguments.flight)
     if arguments.flight is None:
         impacts = shared.read_impacts(data, arguments)
+    elif arguments.columns:
+        raise ValueError("--columns: names those of DATA.csv; of a film --column 'HEADING=x' does")
     else:
         impacts = read_flight(data, columns=dict(arguments.column))
     defaults = {"friction_coefficient": SOME_FRICTION}

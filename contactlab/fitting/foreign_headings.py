@@ -44,6 +44,8 @@ WHOLE = {
     r"ball_speed": "rebound_speed",
     r"launch_angle": "rebound_angle_deg",
 }
+#: Likeness of letters from which a heading is a misspelt name: "spni" for spin has 0.75.
+MISSPELT = 0.72
 #: Columns in the frame of the ground, of no use beside a club's speed.
 OF_THE_GROUND = ("rebound_speed", "rebound_angle_deg")
 
@@ -152,7 +154,9 @@ def _guess(text: str) -> str:
 
 def _nearest(name: str) -> str:
     """Return the quantity that a misspelt name means; empty for none."""
-    near = re.search(r"did you mean '([\w.]+)'", nearest(name, [*ENTRIES, *MEASURABLE], alike=0.8))
+    near = re.search(
+        r"did you mean '([\w.]+)'", nearest(name, [*ENTRIES, *MEASURABLE], alike=MISSPELT)
+    )
     return near[1] if near else ""
 
 

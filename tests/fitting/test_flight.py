@@ -171,3 +171,5 @@ def test_the_command(tmp_path, capsys):
     assert low < 0.85 < high
     assert main([*command[:3], str(path), str(bodies)]) == 2
     assert "--flight has the impacts; leave one of them out" in capsys.readouterr().err
+    assert main([*command, "--columns", "t,x,y,angle"]) == 2
+    assert "of a film --column 'HEADING=x' does" in capsys.readouterr().err

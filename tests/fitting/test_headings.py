@@ -237,6 +237,7 @@ def test_a_row_without_a_number_before_the_impact_is_left_out_and_told(tmp_path)
         ("Club Speed (mph)", 9.0, "speed (mph)"),
         ("COR", 0.9, "normal_restitution"),
         ("tangential_restituion", 0.9, "tangential_restitution"),
+        ("spni (rpm)", 0.9, "spin (rpm)"),
     ],
 )
 def test_a_heading_in_other_words_is_told_with_what_to_paste(heading, number, name):
