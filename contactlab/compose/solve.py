@@ -76,6 +76,8 @@ def _in_axes(motion: Motion, scene: Scene, part: Scene) -> Motion:
     """Return the motion of a part with its slip in the axes of the scene."""
     if scene.slip_axes == part.slip_axes:
         return motion
+    if part.inverse_mass is not None:  # slip along t1, of either sign
+        return motion.turned(np.array([1.0, 0.0]))
     return motion.turned(along(scene.slip_velocity))
 
 

@@ -101,6 +101,20 @@ def statuses(result):
 # Results.
 
 
+@pytest.mark.parametrize("psi1", [-1.5, -0.3, 0.0, 0.8])
+def test_a_planar_impact_beside_impacts_in_space_is_that_of_the_plane(psi1):
+    """Slip against t1 too, alone and in a batch, told as a vector or as a number."""
+    groups = {"chi": 1.4, "lam": 0.2, "eta": 0.5}
+    planar = Scene.nondimensional(psi1=psi1, **groups)
+    alone = EXACT.run(planar)
+    batch = EXACT.run(Scene.stack([ONES["space"], planar, ONES["central"]]))
+    single = EXACT.run(batch.scene.take(1))
+    for found in (batch.psi2[1], single.psi2):
+        assert found == pytest.approx([alone.psi2, 0.0], abs=1e-14)
+    assert batch.energy.friction_work[1] == pytest.approx(alone.energy.friction_work, rel=1e-12)
+    assert np.linalg.norm(batch.impulse[1] - alone.impulse) < 1e-13
+
+
 @each_batch
 def test_estimates_of_an_item_are_numbers(scene):
     """And those of the impact alone."""
