@@ -238,12 +238,19 @@ class RigidBody:
 
     @staticmethod
     def alike(bodies: Sequence[RigidBody]) -> list[RigidBody]:
-        """Return bodies of which all have two radii of curvature if any has, to be stacked.
+        """Return bodies that are given by the same entries, to be stacked.
+
+        All have their inertia if any has principal moments, and two radii of curvature if any has.
 
         Parameters
         ----------
         bodies : sequence of RigidBody
         """
+        if any(body.principal is not None for body in bodies):
+            bodies = [
+                attrs.evolve(body, inertia=body.inertia, principal=None, axes=None)
+                for body in bodies
+            ]
         if all(body.cross_radius is None for body in bodies):
             return list(bodies)
         any_axis = (1.0, 0.0, 0.0)  # says nothing where both radii are one

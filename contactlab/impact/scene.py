@@ -548,11 +548,7 @@ class Scene(Motions):
         W, pair = self.inverse_mass, self.pair
         if W is None:
             W = np.diag([1.0 / pair.normal_mass, *2 * [1.0 / pair.tangential_mass]])
-        # one impact taken of one: bodies given by principal moments then have their inertia
-        encounter = None if self.encounter is None else self.encounter.take(())
-        return attrs.evolve(
-            self, tangential_velocity=slip, inverse_mass=W, planar=planar, encounter=encounter
-        )
+        return attrs.evolve(self, tangential_velocity=slip, inverse_mass=W, planar=planar)
 
     def take(self, part: Any) -> Scene:
         """Return the scene of the impacts that ``part`` indexes.

@@ -1222,10 +1222,27 @@ def test_scenes_of_unlike_targets_stack(name, met):
         assert item.psi2 == pytest.approx(FEW.run(scene).psi2, abs=1e-12)
 
 
+def test_scenes_of_bodies_given_by_inertia_or_by_principal_moments_stack():
+    principal = {"mass": 1.0, "material": STEEL, "curvature_radius": 0.01}
+    turned = RigidBody(principal=(0.01, 0.014, 0.005), axes=np.eye(3)[[1, 0, 2]], **principal)
+    scenes = [meeting(body()).scene, meeting(turned).scene]
+    plain = meeting(attrs.evolve(turned, axes=None)).scene
+    for order in (scenes, scenes[::-1], [scenes[1], plain], [plain, scenes[1]]):
+        stacked = Scene.stack(order)
+        inertias = np.array([scene.encounter.body.inertia for scene in order])
+        np.testing.assert_array_equal(stacked.encounter.body.inertia, inertias)
+        for scene, item in zip(order, EXACT.run(stacked), strict=True):
+            assert item.psi2 == EXACT.run(scene).psi2
+
+
 RINGING = meeting(body(bending_period=1.0), velocity=(0.5, 0.3, -1.0), contact=(0.02, 0.01, -0.1))
 YIELDING = Sphere(0.01, attrs.evolve(STEEL, yield_stress=1e5))
+#: A body with a narrow contact, small by its mean curvature alone.
+NARROW = meeting(attrs.evolve(body(), cross_radius=1e-4, curvature_axis=(1, 0, 0)))
 STACKED = [
     ([RINGING.scene, RINGING.scene], "body rings"),
+    ([NARROW.scene, meeting().scene], "C = 0.768"),
+    ([NARROW.scene, OFF_CENTRE.scene], "C = 0.768"),
     ([AGAINST_A_BALL["spheres"].scene] * 2, "spin about the normal"),
     ([RINGING.scene, OFF_CENTRE.scene], "body rings"),
     ([OFF_CENTRE.scene, RINGING.scene], "body rings"),
