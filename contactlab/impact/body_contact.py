@@ -302,7 +302,15 @@ def _refuse_gap(encounter: Any, rule: str, what: str) -> None:
         getattr(body, "curvature_radius", getattr(body, "radius", math.inf))
         for body in (encounter.body, encounter.target)
     )
+    hollow = any(
+        np.any(np.less(radius, 0.0))
+        for body in (encounter.body, encounter.target)
+        if isinstance(body, RigidBody)
+        for radius in (body.curvature_radius, body.crossing)
+    )
     remedy = f"a contact of {what} is no Hertz contact; round the face or edge: crown_radius="
+    if hollow:
+        remedy = "a hollow must be less curved than what it touches; take a flatter one"
     raise refuse("curvature_radius", given, rule, remedy)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.impact.material import Material
-from contactlab.numeric.arrays import known, taken
+from contactlab.numeric.arrays import common_shape, known, taken
 from contactlab.numeric.checks import POSITIVE, Real, Rule, instance, key, quantity, real, refuse
 from contactlab.numeric.names import arguments_told
 
@@ -21,7 +22,9 @@ Array = NDArray[np.float64]
 ROUNDING = 1e-9
 #: A flat surface has an infinite radius; ``real`` refuses infinity, so this one is put in for it.
 FLAT = 1e200
-CURVED = Rule(lambda radius: radius != 0.0, "must not be zero")
+#: Curvatures of smaller radii, in m, would overflow.
+LEAST_RADIUS = 1e-100
+CURVED = Rule(lambda radius: abs(radius) >= LEAST_RADIUS, "must be a number, not zero")
 #: Length of an axis in the tangent plane over its length, below which it has no direction there.
 LOST = 1e-9
 #: Ratio of first bending period to duration of contact from which a body rings: a half-sine pulse
@@ -56,12 +59,28 @@ def _radius(value: Any, field: attrs.Attribute[Any]) -> Real | None:
     """Return a radius of curvature in m: infinite if flat, negative if hollow."""
     if value is None and field.default is None:
         return None
-    flat = np.isinf(value) if isinstance(value, float | np.ndarray) else False
-    if np.any(flat):
-        value = np.where(flat, FLAT, value)
+    flat = _flat(value)
     remedy = "in m; math.inf if flat, negative if hollow"
-    checked = real(field.name, value, rule=CURVED, remedy=remedy)
-    return np.where(flat, np.inf, checked) if np.ndim(checked) else (np.inf if flat else checked)
+    if not np.any(flat):
+        return real(field.name, value, rule=CURVED, remedy=remedy)
+    finite = np.where(flat, FLAT, np.asarray(value, dtype=np.float64))
+    try:
+        checked = real(field.name, finite, rule=CURVED, remedy=remedy)
+    except ValueError:
+        raise refuse(field.name, value, CURVED.sentence, remedy) from None
+    return np.where(flat, np.inf, checked) if np.ndim(checked) else np.inf
+
+
+def _flat(value: Any) -> Any:
+    """Return where a number or an array of numbers is infinite; False of anything else."""
+    if isinstance(value, float):
+        return math.isinf(value)
+    try:
+        array = np.asarray(value)
+    except ValueError:  # rows of unequal length
+        return False
+    known = array.dtype.kind == "f" and not (hasattr(value, "_mask") and np.ma.is_masked(value))
+    return np.isinf(array) if known else False
 
 
 def _curved(**default: Any) -> Any:
@@ -149,13 +168,17 @@ class RigidBody:
             raise refuse("axes", self.axes, "belong to principal moments", "leave axes out")
         _check_inertia(inertia)
         object.__setattr__(self, "inertia", inertia)
-        shapes = [np.shape(each) for each in (self.mass, self.curvature_radius)]
+        shapes = {name: np.shape(getattr(self, name)) for name in ("mass", "curvature_radius")}
         if self.cross_radius is not None:
-            shapes.append(np.shape(self.cross_radius))
+            shapes["cross_radius"] = np.shape(self.cross_radius)
         if self.curvature_axis is not None:
-            shapes.append(self.curvature_axis.shape[:-1])
+            shapes["curvature_axis"] = self.curvature_axis.shape[:-1]
+        shape = common_shape(
+            shapes | {"inertia": self.inertia.shape[:-2]},
+            what="RigidBody: the batch shapes",
+            remedy="give one number or vector, or as many as there are bodies",
+        )
         self._check_axis()
-        shape = np.broadcast_shapes(*shapes, self.inertia.shape[:-2])
         object.__setattr__(self, "shape", shape)
 
     def _check_axis(self) -> None:

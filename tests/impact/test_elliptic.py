@@ -163,17 +163,37 @@ def test_a_rod_across_a_rod_keeps_its_digits_however_unlike():
         ({"curvature_radius": 0.0}, None, "curvature_radius.*zero"),
         ({"curvature_radius": 1.0, "cross_radius": 0.0}, None, "cross_radius.*zero"),
         ({"curvature_radius": math.inf}, None, "two planes"),
-        ({"curvature_radius": -0.01}, Sphere(0.02, STEEL), "curve apart"),
+        ({"curvature_radius": -0.01}, Sphere(0.02, STEEL), "curve apart.*a hollow must be less"),
+        ({"curvature_radius": -0.01}, None, "a hollow must be less curved"),
         (
             {"curvature_radius": -0.01, "cross_radius": 1.0, "curvature_axis": [1, 0, 0]},
             Sphere(0.02, STEEL), "curve apart",
         ),
-        ({"curvature_radius": math.nan}, None, "curvature_radius"),
+        ({"curvature_radius": math.nan}, None, "curvature_radius.*a number"),
+        ({"curvature_radius": 1e-160}, None, "curvature_radius.*zero"),
+        ({"curvature_radius": np.array(["a", "b"])}, None, "curvature_radius.*real number"),
+        ({"curvature_radius": np.array([math.inf, None])}, None, "curvature_radius.*real number"),
+        ({"curvature_radius": [math.inf, 0.0]}, None, "curvature_radius = .inf, 0.0.: .*zero"),
+        (
+            {
+                "curvature_radius": 0.01, "cross_radius": [0.01, 0.02],
+                "curvature_axis": np.ones((3, 3)),
+            },
+            None, r"cross_radius \(2,\), curvature_axis \(3,\) must broadcast",
+        ),
     ],
 )  # fmt: skip
 def test_refusals(given, second, words):
     with pytest.raises(ValueError, match=words):
         met(body(**given), second)
+
+
+@pytest.mark.parametrize("kind", [list, tuple, np.array, np.float32])
+def test_infinite_radii_come_in_every_kind_of_number(kind):
+    radii = kind([math.inf, 0.5])
+    found = body(curvature_radius=radii, cross_radius=0.5, curvature_axis=[1, 0, 0])
+    assert found.curvature_radius.tolist() == [math.inf, 0.5]
+    assert body(curvature_radius=np.float32(math.inf)).curvature_radius == math.inf
 
 
 def test_parallel_rods_touch_along_a_line_and_crossed_ones_at_a_point():
