@@ -32,6 +32,9 @@ enum {
   CONTACTLAB_IMPACT_MEMORY = 3     /* it slips back and forth more often than its memory holds */
 };
 
+/* 1 + s lam from which the time of gross slip is Hertz's; below it the difference of two such times would cancel. */
+#define CONTACTLAB_IMPACT_SHALLOW 0.01
+
 /* Error of a step for an answer to 1e-12. */
 #define CONTACTLAB_IMPACT_EXACT 5e-13
 
@@ -375,18 +378,17 @@ static inline int contactlab_impact_event(int phase, int form, contactlab_impact
   for (n = 0; n <= order; ++n) {
     falling[0][n] = phase == CONTACTLAB_IMPACT_STICK ? rows[2][n] : -rows[2][n];
     if (phase == CONTACTLAB_IMPACT_STICK) falling[1][n] = rows[1][n] - (rows[2][n] - rows[1][n]);
-    else if (phase == CONTACTLAB_IMPACT_GROSS) falling[0][n] = form == 0 ? rows[0][n] : form > 0 ? rows[1][n] : -rows[1][n];
-    else {
+    else if (phase != CONTACTLAB_IMPACT_GROSS) {
       falling[1][n] = phase == CONTACTLAB_IMPACT_DRAWN ? rows[7][n] : rows[4][n];
       falling[2][n] = rows[0][n] - rows[4][n];
     }
   }
-  if (phase == CONTACTLAB_IMPACT_GROSS) {
-    begins[0] = form == 0 && rows[0][0] == 0;
-    if (form != 0) falling[0][0] -= form * end;
-  } else {
-    begins[0] = rows[2][0] == 0;
+  begins[0] = rows[2][0] == 0;
+  if (phase != CONTACTLAB_IMPACT_GROSS) {
     count = 2;
+  } else if (!form) { /* slip ends with the contact */
+    memcpy(falling[0], rows[0], sizeof falling[0]);
+    begins[0] = rows[0][0] == 0;
   }
   if (phase == CONTACTLAB_IMPACT_DRAWN || phase == CONTACTLAB_IMPACT_LOCKED) {
     if (phase == CONTACTLAB_IMPACT_LOCKED) falling[1][0] -= end;
@@ -404,7 +406,7 @@ static inline int contactlab_impact_event(int phase, int form, contactlab_impact
   return event;
 }
 
-/* Follows a phase to its event: state in and out, T and work its last two numbers; `end` is where V or c ends it.
+/* Follows a phase to its event: state in and out, T and work its last two numbers; `end` is where c ends it.
  * Returns the event, or minus a status. */
 static inline int contactlab_impact_phase(contactlab_impact_course *I, int phase, int form, double end, double *state)
 {
@@ -617,35 +619,36 @@ static inline int contactlab_impact_slide(contactlab_impact_course *I, int *next
   const double press = I->laws.press, drive = I->laws.drive, rate = I->rate, margin = I->margin;
   const double depth = pow(I->radius, 5), left = rate * rate + press * depth;
   const double end = left >= 0 ? -sqrt(left) : NAN;
-  double stop = INFINITY, last, after, fall, work, rise, radius;
+  double stop = INFINITY, after = 0, last, fall, work, rise, radius;
   int stops = 0;
   I->lack = 0;
   if (drive > 0) {
     stop = rate + margin * press / drive;
+    after = depth - margin * (rate + stop) / drive;
     /* where press is negative V grows, through zero if it can */
-    stops = press > 0 ? stop > end : left < 0 || rate >= 0 || stop < end;
+    stops = press <= 0 && (left < 0 || rate >= 0) ? 1 : after > 0 && (press > 0 || stop < 0);
   }
   last = stops ? stop : end;
-  after = stops ? depth - margin * (rate + stop) / drive : 0;
-  fall = rate - last;
   if (stops) {
+    fall = rate - last;
     work = 0.4 * margin * margin / drive;
     rise = -margin;
   } else {
-    if (rate < 0) fall = -press * depth / (rate + last); /* as the difference would cancel */
-    work = 0.8 * fall * (-margin - 0.5 * drive * fall / press) / press;
-    rise = drive * fall / press;
+    /* over press, which may be zero; in unloading the difference would cancel */
+    const double share = rate < 0 ? -depth / (rate + last) : (rate - last) / press;
+    after = 0;
+    fall = press * share;
+    work = 0.8 * share * (-margin - 0.5 * drive * share);
+    rise = drive * share;
   }
   radius = pow(fmax(after, 0), 0.2);
-  if (press > 0) {
-    I->out.compressions += rate <= 0 && last > 0;
+  if (press > CONTACTLAB_IMPACT_SHALLOW) {
     I->out.time += contactlab_impact_hertz_time(press, left, radius, last);
     I->out.time -= contactlab_impact_hertz_time(press, left, I->radius, rate);
     if (rate > 0 && last <= 0) I->out.radius = fmax(I->out.radius, pow(left / press, 0.2));
-  } else if (last != rate) {
+  } else if (depth > 0 || rate > 0) {
     double state[6] = {I->radius, rate, margin, 0, I->out.time, 0};
-    const int form = stops ? (rate > last ? 1 : -1) : 0;
-    const int event = contactlab_impact_phase(I, CONTACTLAB_IMPACT_GROSS, form, last, state);
+    const int event = contactlab_impact_phase(I, CONTACTLAB_IMPACT_GROSS, stops, 0, state);
     if (event < 0) return -event;
     I->out.time = state[4];
   }

@@ -118,6 +118,39 @@ def test_a_jam_that_is_not_settled_has_a_status_and_a_sentence(monkeypatch):
     assert np.isnan(result.psi2).all()
 
 
+#: psi1, chi and eta of impacts that slip throughout at some time, where friction of one sign takes
+#: all force off: lam is 1.
+LIFTED = [
+    (2.0, 1.0, 1.99), (0.3, 0.8, 1.0), (-5.0, 0.8, 1.0), (-5.0, 0.3, 0.1), (-0.1, 0.3, 0.1),
+    (-1.0, 0.3, 0.1), (-2.0, 1.0, 1.5), (-3.0, 2.0, 0.01),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("sense", [-1.0, 1.0])
+@pytest.mark.parametrize("compiled_law", ["0", "1"])
+def test_friction_that_takes_all_force_off_is_no_corner(monkeypatch, compiled_law, sense):
+    """At lam = 1, and a last bit beside it, answers are the mean of their neighbours'."""
+    monkeypatch.setenv(compiled.VARIABLE, compiled_law)
+    psi1, chi, eta = np.transpose(LIFTED)
+
+    def run(lam, **options):
+        scene = Scene.nondimensional(
+            psi1=sense * psi1, chi=chi, lam=sense * lam + 0.0 * psi1, eta=sense * eta
+        )
+        return Simulation().run(scene, **options).check()
+
+    names = ("duration", "normal_velocity", "slip_velocity_change", "friction_work")
+    low, high = (run(1.0 + step) for step in (-1e-6, 1e-6))
+    for lam in (np.nextafter(1.0, 0.0), 1.0, np.nextafter(1.0, 2.0)):
+        result = run(lam)
+        for name in names:
+            mean = 0.5 * (getattr(low.motion, name) + getattr(high.motion, name))
+            assert getattr(result.motion, name) == pytest.approx(mean, rel=1e-8, abs=1e-8)
+    for place in (0, 1):
+        history = Simulation().run(result.scene.take(place), history=True).check().history
+        assert history.time[-1] == pytest.approx(result.motion.duration[place], rel=1e-9)
+
+
 def test_a_history_is_followed_and_agrees():
     result = Simulation().run(Scene.nondimensional(psi1=1.2, chi=3.0), history=True)
     assert result.plan.marched

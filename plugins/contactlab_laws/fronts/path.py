@@ -15,6 +15,9 @@ from contactlab_laws.fronts.series import Laws
 
 #: Where slip or stick ends with a smaller V, it ends with maximum compression.
 AT_REST = 1e-14
+#: 1 + s lam from which the time of gross slip is Hertz's; below it the difference of two such times
+#: would cancel.
+SHALLOW = 0.01
 
 
 class Drawn(NamedTuple):
@@ -136,33 +139,29 @@ class Impact:
         self.lack = 0.0
         left = rate * rate + press * depth
         end = -math.sqrt(left) if left >= 0.0 else math.nan
-        stop = math.inf
+        stop, after, stops = math.inf, 0.0, False
         if drive > 0.0:
             stop = rate + margin * press / drive
+            after = depth - margin * (rate + stop) / drive
             # where press is negative V grows, through zero if it can
-            turns = left < 0.0 or rate >= 0.0 or stop < end
-            stops = stop > end if press > 0.0 else turns
-        else:
-            stops = False
+            turns = press <= 0.0 and (left < 0.0 or rate >= 0.0)
+            stops = turns or (after > 0.0 and (press > 0.0 or stop < 0.0))
         last = stop if stops else end
-        after = depth - margin * (rate + stop) / drive if stops else 0.0
-        fall = rate - last
         if stops:
-            work, rise = 0.4 * margin * margin / drive, -margin
+            fall, work, rise = rate - last, 0.4 * margin * margin / drive, -margin
         else:
-            if rate < 0.0:  # from V² + (1 + s lam) zeta^2.5, as the difference would cancel
-                fall = -press * depth / (rate + last)
-            work = 0.8 * fall * (-margin - 0.5 * drive * fall / press) / press
-            rise = drive * fall / press
+            # over press, which may be zero; in unloading the difference would cancel
+            share = -depth / (rate + last) if rate < 0.0 else (rate - last) / press
+            fall, rise, after = press * share, drive * share, 0.0
+            work = 0.8 * share * (-margin - 0.5 * drive * share)
         before, change = self.radius, self.change - self.sign * (fall + rise)
         radius = max(after, 0.0) ** 0.2
-        if press > 0.0 and not self.stepped:
-            self.compressions += rate <= 0.0 < last
+        if press > SHALLOW and not self.stepped:
             self.slides.append((press, left, before, rate, radius, last))
             if rate > 0.0 >= last:
                 self.deepest = max(self.deepest, (left / press) ** 0.2)
-        elif last != rate:
-            yield from self._along(GROSS, (), (last, (1 if rate > last else -1) if stops else 0))
+        elif depth > 0.0 or rate > 0.0:
+            yield from self._along(GROSS, (), (int(stops),))
         self.radius, self.rate, self.margin = radius, last, margin + rise
         self.change, self.work = change, self.work + work
         self.deepest = max(self.deepest, radius)

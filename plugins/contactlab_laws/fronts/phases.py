@@ -103,18 +103,14 @@ def _edge_meets(rows: Rows, state: Any) -> tuple[Series, Any]:
     return gap, meets
 
 
-def _gross(laws: Laws, state: Any, constants: Any, form: int) -> tuple[Rows, Events]:
-    """All slips until u is zero or, where slip stops, until V is the first constant."""
+def _gross(laws: Laws, state: Any, _constants: Any, form: int) -> tuple[Rows, Events]:
+    """All slips until slip stops or, where it does not, until u is zero."""
     rows = along_gross(laws, state)
-    if form == 0:
-        return rows, [(rows[0], state[0] == 0.0)]
-    left = rows[1].copy() if form > 0 else negative(rows[1])
-    left[0] = left[0] - form * constants[0]
-    return rows, [(left, False)]
+    return rows, [_slip_stops(rows, state) if form else (rows[0], state[0] == 0.0)]
 
 
 STICK = Phase(7, lambda state, _constants: 0 * state[0], _stick)
 DRAWN = Phase(10, _drawn_form, _drawn, (0, 2, 4, 6), _drawn_power)
 LOCKED = Phase(7, _locked_form, _locked, (0, 2, 4), _locked_power)
-#: The second constant is the form: 0, or the sign in which V falls to the first, or rises.
-GROSS = Phase(6, lambda _state, constants: constants[1], _gross)
+#: The constant is the form: whether slip stops.
+GROSS = Phase(6, lambda _state, constants: constants[0], _gross)
