@@ -2,9 +2,11 @@
 
 import hashlib
 import os
+import shlex
 import shutil
 import subprocess
 import sysconfig
+import tempfile
 from pathlib import Path
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
@@ -20,21 +22,24 @@ class CompiledHook(BuildHookInterface):
     """Adds the library to a wheel; an editable installation has it beside its source."""
 
     PLUGIN_NAME = "custom"
+    folder = None
 
     def initialize(self, version, build_data):
         """Compile the library; say so where that is not possible."""
-        compiler = shutil.which(os.environ.get("CC", "cc"))
-        if os.environ.get("CONTACTLAB_COMPILED") == "0" or compiler is None:
+        compiler = shlex.split(os.environ.get("CC") or "cc")  # it may have options, or a wrapper
+        found = compiler and shutil.which(compiler[0])
+        if os.environ.get("CONTACTLAB_COMPILED") == "0" or not found:
             self.app.display_info("contactlab: no C compiler is used, the exact law is Python's")
             return
         root = Path(self.root)
         editable = version == "editable"
-        target = root / "plugins" / LIBRARY if editable else Path(self.directory) / "_impacts.so"
-        target.parent.mkdir(parents=True, exist_ok=True)
+        # not beside the wheel, where everything is uploaded
+        self.folder = None if editable else tempfile.TemporaryDirectory()
+        target = root / "plugins" / LIBRARY if editable else Path(self.folder.name) / "_impacts.so"
         digest = hashlib.sha256((root / HEADER).read_bytes() + (root / SOURCE).read_bytes())
         fresh = target.with_name(f"{target.name}.{os.getpid()}")
         command = [
-            compiler, *FLAGS, f'-DCONTACTLAB_SOURCES="{digest.hexdigest()}"',
+            *compiler, *FLAGS, f'-DCONTACTLAB_SOURCES="{digest.hexdigest()}"',
             f"-I{(root / HEADER).parent}", str(root / SOURCE), "-o", str(fresh), "-lm",
         ]  # fmt: skip
         made = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -47,3 +52,8 @@ class CompiledHook(BuildHookInterface):
             build_data["pure_python"] = False
             platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
             build_data["tag"] = f"py3-none-{platform}"
+
+    def finalize(self, version, build_data, artifact_path):
+        """Remove the library that the wheel now holds."""
+        if self.folder is not None:
+            self.folder.cleanup()

@@ -3,6 +3,8 @@
 import os
 import re
 import tomllib
+from shutil import which
+from zipfile import ZipFile
 
 import pytest
 
@@ -23,6 +25,26 @@ def test_the_wheel_installs_contactlab_and_its_laws_only():
     paths = built(wheel.WheelBuilder)
     assert {path.partition("/")[0] for path in paths} == {"contactlab", "contactlab_laws"}
     assert {"contactlab/py.typed", "contactlab/kernels/package.json"} <= paths
+
+
+@needs_sources
+@pytest.mark.parametrize(
+    ("compiler", "holds"),
+    [
+        pytest.param("cc -O1", True, marks=pytest.mark.skipif(not which("cc"), reason="no cc")),
+        ("no-such-compiler", False),
+        ("false", False),
+    ],
+)
+def test_the_wheel_stands_alone_with_or_without_a_compiler(tmp_path, monkeypatch, compiler, holds):
+    wheel = pytest.importorskip("hatchling.builders.wheel", reason="needs hatchling (extra dev)")
+    monkeypatch.setenv("CC", compiler)
+    monkeypatch.setenv("CONTACTLAB_COMPILED", "1")
+    (made,) = wheel.WheelBuilder(str(ROOT)).build(directory=str(tmp_path), versions=["standard"])
+    assert [str(path) for path in tmp_path.iterdir()] == [made]
+    with ZipFile(made) as archive:
+        assert ("contactlab_laws/fronts/_impacts.so" in archive.namelist()) == holds
+    assert ("-none-any" in made) != holds
 
 
 @needs_sources

@@ -1,5 +1,8 @@
 """The compiled exact law behind the doors of contactlab: answers as Python's, and words."""
 
+import ctypes
+import re
+
 import numpy as np
 import pytest
 
@@ -182,6 +185,23 @@ def test_a_library_older_than_its_sources_is_left_out(monkeypatch):
         assert "older than its sources" in compiled.told()
     finally:
         compiled._library.cache_clear()
+
+
+@needs_library
+def test_a_library_without_its_sources_or_of_another_kind_is_left_out(monkeypatch):
+    process = ctypes.CDLL(None)
+    for place, name, value, words in (
+        (compiled, "SOURCES", (("contactlab", "kernels/none.h"),), "sources .* are not there"),
+        (compiled, "LIBRARY", "impacts.c", "does not load"),
+        (ctypes, "CDLL", lambda _path: process, "does not load.*contactlab_impact_sources"),
+    ):
+        with monkeypatch.context() as patch:
+            patch.setattr(place, name, value)
+            compiled._library.cache_clear()
+            assert compiled.library() is None
+            assert re.search(words, compiled.told())
+            assert rebound(1.2, 3.0) == pytest.approx(0.23537850255, abs=1e-10)
+    compiled._library.cache_clear()
 
 
 def test_a_followed_law_stays_a_reference():

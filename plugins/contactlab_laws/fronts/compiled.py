@@ -70,10 +70,15 @@ def _library(wanted: bool) -> tuple[Any, str]:
             return None, f"{BY_PYTHON}: the compiled solver was not built; {again}"
         try:
             found = ctypes.CDLL(str(path))
-        except OSError as error:
+            built_of = found.contactlab_impact_sources
+        except (OSError, AttributeError) as error:
             return None, f"{BY_PYTHON}: the compiled solver does not load ({error}); {again}"
-    found.contactlab_impact_sources.restype = ctypes.c_char_p
-    if found.contactlab_impact_sources().decode() != digest():
+    built_of.restype = ctypes.c_char_p
+    try:
+        sources = digest()
+    except OSError:
+        return None, f"{BY_PYTHON}: the sources of the compiled solver are not there; {again}"
+    if built_of().decode() != sources:
         return None, f"{BY_PYTHON}: the compiled solver is older than its sources; {again}"
     pointer = ctypes.c_void_p  # ``ndpointer`` takes longer than an impact
     found.contactlab_impact_follow_all.argtypes = (
