@@ -15,7 +15,7 @@ from contactlab.compose.path_steps import Followed, Points, followed
 from contactlab.contracts import faults
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.tangential import SteppedTangentialLaw, TangentialLaw
-from contactlab.impact.cautions import path_cautions
+from contactlab.impact.cautions import of_ellipse, path_cautions
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
@@ -87,8 +87,10 @@ class LoadPath(Answer):
     def cautions(self) -> list[str]:
         """Doubts about the model: of the friction law on such paths, and of the bodies."""
         deepest = float(np.nanmax(self.approach, initial=0.0))
+        round_ = [law for law in (self.normal, self.tangential) if not law.elliptic]
         return [
             *self.tangential.path_cautions(),
+            *(text for law in round_ for text in of_ellipse(self.scene, type(law).__name__)),
             *path_cautions(self.scene, deepest, plastic=self.normal.plastic),
         ]
 
@@ -144,7 +146,8 @@ def load_path(
     approach : array, shape (K,) or (K, ...)
         Approach of the bodies in m, positive in compression.
     displacement : array, shape (K,) or (K, ...)
-        Tangential displacement of the bodies in m, far from the contact.
+        Tangential displacement of the bodies in m, far from the contact; of bodies of any shape
+        along t1 of their scene.
     normal : str or NormalLaw
         Hertz's law by default.
     tangential : str or SteppedTangentialLaw

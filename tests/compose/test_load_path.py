@@ -7,7 +7,17 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import ImpactError, Material, Scene, Sphere, Status, load_path
+from contactlab import (
+    Encounter,
+    HalfSpace,
+    ImpactError,
+    Material,
+    RigidBody,
+    Scene,
+    Sphere,
+    Status,
+    load_path,
+)
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 
 MU, DEEP = 0.3, 1e-6
@@ -254,6 +264,20 @@ def test_a_path_says_where_a_law_does_not_hold():
         assert "a held displacement" in str(paths[name])
         with pytest.raises(ImpactError, match="caution"):
             paths[name].check(cautions=True)
+
+
+@pytest.mark.parametrize("name", ["jkr", "thornton"])
+def test_a_law_made_for_a_circle_says_so_along_a_path(name):
+    axes = {"curvature_radius": 0.02, "cross_radius": 0.005, "curvature_axis": (1, 0, 0)}
+    body = RigidBody(mass=0.1, inertia=1e-5 * np.eye(3), material=Material.named("steel"), **axes)
+    floor, down = HalfSpace(body.material), (0, 0, -1)
+    scene = Encounter(
+        body, floor, 0.3, normal=down, velocity=(0.2, 0, -1), contact=(0, 0, -0.01)
+    ).scene
+    steps = np.linspace(0.0, 1e-7, 11)
+    for normal, told in ((name, True), ("hertz", False)):
+        path = load_path(scene, 1e-7 + steps, steps, normal=normal)
+        assert any("ellipse" in text for text in path.cautions) == told
 
 
 def test_a_path_cautions_of_its_bodies():
