@@ -9,12 +9,17 @@ from numpy.typing import NDArray
 
 from contactlab.impact.bodies import Pair
 from contactlab.numeric import arrays as batch
-from contactlab.numeric.checks import NON_NEGATIVE, POISSON, POSITIVE, real, refuse
+from contactlab.numeric.checks import NON_NEGATIVE, POISSON, POSITIVE, Rule, real, refuse
 
 Array = NDArray[np.float64]
 
 #: E* that makes C = 1 in eq. (9), where R = M_n = v1 = 1.
 MODULUS = 15.0 / 16.0
+#: Stiffnesses (1 - beta nu)/(2G) of two directions, with shares beta from 0 to 1 and nu from -1 to
+#: 1/2; springs were checked for these.
+OF_ELLIPSES = Rule(
+    lambda ratio: (ratio >= 0.5) & (ratio <= 2.0), "must lie in [0.5, 2], the range of ellipses"
+)
 #: Relative difference of two values of rho from which they contradict each other.
 ALIKE = 1e-9
 
@@ -61,7 +66,7 @@ def entries(
         )
     )
     remedy = "G* along t2 over that along t1; 1 for a circular contact"
-    cross = real("cross_stiffness_ratio", cross_stiffness_ratio, rule=POSITIVE, remedy=remedy)
+    cross = real("cross_stiffness_ratio", cross_stiffness_ratio, rule=OF_ELLIPSES, remedy=remedy)
     rim = real("spin", spin, remedy="w1 = kappa omega_n a/(mu v1) of theory §17")
     turning = real("spin_inertia", spin_inertia, rule=NON_NEGATIVE, remedy="chi_w of theory §17")
     squared = _rho(inertia, drag, eta, rho, given, friction, in_space)

@@ -360,7 +360,8 @@ class Scene(Motions):
         friction_coefficient : float or array, optional
             Coulomb's mu, positive. Axisymmetric answers in psi do not depend on mu.
         cross_stiffness_ratio : float or array
-            G* along t2 over that along t1, of an elliptic contact (theory §16); 1 for a circle.
+            G* along t2 over that along t1, of an elliptic contact (theory §16), from 1/2 to 2; 1
+            for a circle.
             kappa and rho are those of t1; psi1, chi and eta have kappa of each direction, so
             that chi_21 = ``cross_stiffness_ratio`` chi_12.
         spin : float or array

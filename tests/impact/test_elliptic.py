@@ -252,5 +252,6 @@ def test_groups_in_space_have_the_stiffness_of_each_direction():
     assert scene.eta == pytest.approx(np.array(given["lam"]) / 0.25 * [1.0, ratio])
     with pytest.raises(ValueError, match=r"chi.*symmetric"):
         Scene.nondimensional(**given | {"chi": X}, cross_stiffness_ratio=ratio)
-    with pytest.raises(ValueError, match=r"cross_stiffness_ratio.*positive"):
-        Scene.nondimensional(**given, cross_stiffness_ratio=-1.0)
+    for other in (-1.0, 0.49, 2.01, [1.0, 100.0]):
+        with pytest.raises(ValueError, match=r"cross_stiffness_ratio.*\[0.5, 2\]"):
+            Scene.nondimensional(**given, cross_stiffness_ratio=other)
