@@ -111,7 +111,8 @@ class Encounter:
     def __attrs_post_init__(self) -> None:
         paths, numbers = _numbers(*map(type, (self.body, self.target)))
         values, shape = numbers(self), ()
-        if np.ndarray in map(type, values) or max(_DIMENSIONS(self)) > 1:
+        many = getattr(self.body, "shape", ()) or getattr(self.target, "shape", ())
+        if many or np.ndarray in map(type, values) or max(_DIMENSIONS(self)) > 1:
             shapes = {name: getattr(self, name).shape[:-1] for name in GIVEN}
             shapes |= {
                 path.replace(".material", ""): value.shape

@@ -241,6 +241,29 @@ def test_a_batch_of_circles_and_ellipses_is_its_impacts_one_by_one():
         assert np.allclose(part.frame, alone.frame, rtol=0.0, atol=1e-14)
 
 
+@pytest.mark.parametrize(
+    "varied",
+    [
+        {"curvature_radius": [0.02, 0.03]},
+        {"cross_radius": [0.01, 0.02]},
+        {"curvature_axis": [[1, 0, 0], [1, 1, 0]]},
+        {"inertia": [1e-5 * np.eye(3), 2e-5 * np.eye(3)]},
+    ],
+    ids=lambda varied: next(iter(varied)),
+)
+def test_a_batch_that_varies_one_entry_of_a_body(varied):
+    given = {"curvature_radius": 0.02, "cross_radius": 0.01, "curvature_axis": [1, 0, 0]}
+    ((name, values),) = varied.items()
+    scene = met(body(**given | varied))
+    assert scene.shape == (2,)
+    for place, value in enumerate(values):
+        alone = met(body(**given | {name: value}))
+        assert np.linalg.norm(scene.take(place).psi1) == pytest.approx(
+            np.linalg.norm(alone.psi1), rel=1e-13
+        )
+        assert scene.take(place).pair.radius == pytest.approx(alone.pair.radius, rel=1e-13)
+
+
 def test_groups_in_space_have_the_stiffness_of_each_direction():
     kappa, ratio = np.array([0.8, 1.0]), 1.25
     X = np.array([[0.9, 0.2], [0.2, 1.4]])
