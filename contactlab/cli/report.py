@@ -47,16 +47,18 @@ def execute(arguments: argparse.Namespace) -> int:
     """Run the scene under the laws, write the page and print its path."""
     file = shared.measured(arguments, read_scene(arguments.scene, allow_code=arguments.allow_code))
     laws = file.laws.choose(normal=arguments.normal, integrator=arguments.integrator)
-    own = laws.resolved()
-    simulations = {str(own.tangential): own.simulation()}
+    own = laws.suited_to(file.scene).tangential
+    simulations = {str(own): laws.simulation()}
     for name in arguments.tangential or DEFAULT_LAWS:
         name = short_name(full_name("tangential", name))
         if name in simulations:
             continue
         try:
             chosen = laws.choose(tangential=name)
-            simulations[name] = (chosen if arguments.integrator else chosen.suited()).simulation()
-        except ValueError:  # a default that does not fit the file's normal law is left out
+            simulation = (chosen if arguments.integrator else chosen.suited()).simulation()
+            simulation.laws.accept(file.scene)
+            simulations[name] = simulation
+        except ValueError:  # a default that does not fit the file's normal law, or its bodies
             if arguments.tangential:
                 raise
     with shared.working(arguments.progress, "laws") as progress:

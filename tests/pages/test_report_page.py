@@ -173,6 +173,16 @@ SWEPT = "[sweep]\nangle_deg = [50.0, 60.0, 70.0]\n"
 HEAD = "angle_deg,speed (m/s),tangential_restitution\n"
 
 
+def test_a_report_of_slip_that_turns_leaves_out_laws_without_an_answer(reported, tmp_path):
+    scene = tmp_path / "aside.toml"
+    text = (EXAMPLES / "foot.toml").read_text("utf-8")
+    assert "velocity = [0.5, 0, -1.0]" in text
+    scene.write_text(text.replace("[0.5, 0, -1.0]", "[0.5, 0.2, -1.0]"), encoding="utf-8")
+    page = reported(scene)
+    assert "springs" in page
+    assert "fronts (" not in page
+
+
 def test_impacts_of_a_table_stand_beside_the_laws(reported, tmp_path):
     """Gross slip at 45 degrees has e_t = 1 - 2 mu = 0.8: 0.75 is 0.05 off, and 1.0 is 0.2."""
     (tmp_path / "drops.toml").write_text(DROPS + SWEPT, encoding="utf-8")
