@@ -156,9 +156,9 @@ def _words(
     law = f"{type(used.normal).__name__}, {how}{_defaults(used.normal)}"
     computed = [Clause(f"normal motion: {law}", masks.known)]
     elongation = elongation_of(part.pair)
-    if some(elongation > 1.0):
+    if some(elliptic := masks.known & (elongation > 1.0)):
         text = "contact: an ellipse of semi-axes {:.3g} : 1, by the circle that is as stiff"
-        computed.append(Clause(text, masks.known, (spread(elongation, scene.shape),)))
+        computed.append(Clause(text, elliptic, (spread(elongation, scene.shape),)))
     if used is not laws:
         computed.append(Clause(_in_place(laws, used), masks.known))
     if some(masks.marched):

@@ -140,11 +140,13 @@ def contact_vectors(encounter: Encounter) -> tuple[str, ...]:
 
 def of_ellipse(scene: Scene, name: str) -> tuple[str, ...]:
     """Return the caution of a law, by its name, that takes an elliptic contact for a circle."""
-    ratio = float(np.max(elongation_of(scene.pair)))
+    elongation = np.broadcast_to(elongation_of(scene.pair), scene.shape)
+    ratio = float(np.max(elongation))
     if ratio == 1.0:
         return ()
+    share = "" if np.all(elongation > 1.0) else for_share(elongation > 1.0)
     return (
-        f"the contact is an ellipse of semi-axes {ratio:.3g} : 1, and {name} was made for a "
+        f"elliptic contact{share}: its semi-axes are {ratio:.3g} : 1, and {name} was made for a "
         "circle: it is given that of the same stiffness (model)",
     )
 

@@ -324,6 +324,25 @@ def test_laws_that_were_made_for_a_circle_say_so(name, options):
     assert "contact: an ellipse of semi-axes 2.5 : 1" in plan
 
 
+def test_a_plan_counts_the_ellipses_among_circles():
+    """In a part of the batch that is solved alike, and beside one that is not."""
+    ellipse = PLANAR[0][0].scene
+    circle = ellipsoid((0.015, 0.015, 0.015), STEEL, 0.3, (0.45, 0.0)).scene
+    aside = ellipsoid(LONG, STEEL, 0.3, (0.45, 0.2)).scene
+    simulation = Simulation(normal="normal.jkr")
+    for scenes, share in (
+        ([ellipse, circle, ellipse], "2 of 3"),
+        ([aside, circle], "1 of 2"),
+        ([aside, circle, circle, ellipse], "2 of 4"),
+    ):
+        plan = str(simulation.plan(Scene.stack(scenes)))
+        assert f"contact ({share} impacts): an ellipse of semi-axes 2.5 : 1" in plan
+        assert "semi-axes are 2.5 : 1, and Johnson" in plan
+    assert "elliptic contact for 2 of 3 impacts: its" in str(
+        simulation.plan(Scene.stack([ellipse, circle, ellipse]))
+    )
+
+
 def test_an_elongated_contact_is_not_small_by_its_own_axes():
     """The circle's radius over R hides a contact that is as long as the body is high."""
     body, contact = shapes.rod(
