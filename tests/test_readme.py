@@ -41,6 +41,7 @@ def test_four_lines_end_in_a_plot_of_the_ball_of_the_moving_picture(tmp_path, mo
     (code,) = SNIPPETS
     assert len([line for line in code.splitlines() if line]) == 4
     monkeypatch.chdir(tmp_path)
+    pyplot.close("all")  # of tests before
     try:
         module, _ = run(code)
         (number,) = pyplot.get_fignums()
