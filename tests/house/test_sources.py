@@ -39,7 +39,7 @@ def names():
 def texts():
     """Return the tracked files that are text, by path from the root."""
     paths = {name: ROOT / name for name in names()}
-    binary = (".png", ".gif", ".npz", ".pyc")
+    binary = (".png", ".gif", ".npz", ".pyc", ".so")
     return {
         name: path.read_text(encoding="utf-8")
         for name, path in paths.items()

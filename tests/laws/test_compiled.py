@@ -67,6 +67,20 @@ def test_spheres_beyond_the_table_are_those_of_python(both):
 
 
 @needs_library
+@pytest.mark.parametrize("chi", [3.0, 1e3, 1e5, 1e6])
+def test_heavy_impacts_are_within_the_error_that_is_declared(chi):
+    """Against steps of a 25th of the error; thousands of oscillations add up."""
+    draw = np.random.default_rng(8)
+    psi1 = np.append(draw.uniform(0.01, 1.0, 12), draw.uniform(0.0, 4.0 * chi - 1.0, 12))
+    plan = Simulation().plan(Scene.nondimensional(psi1=psi1, chi=chi))
+    numbers = np.array([psi1, np.full(24, chi), np.zeros(24), np.zeros(24)])
+    (usual, ended), (fine, settled) = (compiled.follow(numbers, at) for at in (5e-13, 2e-14))
+    sound = (ended == 0) & (settled == 0)
+    assert sound.sum() >= 12
+    assert (np.abs(usual[1] - fine[1]) <= plan.psi2_error)[sound].all()
+
+
+@needs_library
 def test_one_impact_and_many_have_the_same_bits():
     scene = bodies(30, 3)
     many = Simulation().run(scene)

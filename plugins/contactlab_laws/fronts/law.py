@@ -35,8 +35,9 @@ REASON = "psi2 is tabulated; a history, or a tolerance below 1e-9, follows the i
 
 #: Error of impacts that are followed where none is asked for.
 FOLLOWED = 1e-9
-#: Error over max(1, psi1) of whole impacts by the compiled solver, and why they are not followed.
-COMPILED = 1e-11
+#: Error over max(1, psi1) of whole impacts by the compiled solver, from so large a chi on times chi
+#: over it, as the contact oscillates; and why they are not followed.
+COMPILED, HEAVY = 1e-11, 1e4
 SOLVED = "psi2 is solved by the compiled law; a history follows the impact"
 
 
@@ -180,6 +181,7 @@ def _solved(scene: Scene, where: Any) -> tuple[WholeImpact, ...]:
     unit: Any = mu * speed / pair.stiffness_ratio
     energy: Any = 1.25 * mu * unit * pair.normal_mass * speed  # 2.5 rho v1²/(2 W_nn), theory §14
     error = COMPILED * np.maximum(1.0, np.abs(np.where(known, psi1, 0.0)))
+    error = error * np.maximum(1.0, chi / HEAVY)
     change, work, error = (
         spread(each.reshape(scene.shape), scene.shape) for each in (change, work, error)
     )
