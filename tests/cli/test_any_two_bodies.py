@@ -110,6 +110,7 @@ def test_compare_has_a_row_for_each_law_and_says_why_not_the_others(run, file, t
     assert run("compare", swept).out.splitlines()[-1].split()[0] == "coulomb"
 
 
+@pytest.mark.slow
 def test_a_law_that_has_no_answer_is_refused_with_one_that_has(run, file):
     ran = run("run", file(SPACE), "--tangential", "fronts")
     assert ran.status == 2

@@ -34,6 +34,7 @@ def simulation():
     )
 
 
+@pytest.mark.slow
 def test_every_figure_as_png_and_csv(run, tmp_path, monkeypatch):
     monkeypatch.setattr(paper_figures, "FIGURE_4_CHI", paper_figures.FIGURE_4_CHI[::4])
     ran = run("figures", "--out", tmp_path / "new" / "folder", *FEW)

@@ -61,6 +61,7 @@ def test_commands_that_print_tables_tell_too(run, files, words):
     assert CAUTION in " ".join((ran.out + ran.err).split())
 
 
+@pytest.mark.slow
 def test_a_report_and_a_picture_of_a_ball(run, files, tmp_path, monkeypatch):
     shorten(monkeypatch)
     kind, one, _ = files

@@ -123,6 +123,7 @@ def test_scalars_of_hertz_are_the_codes(monkeypatch):
     assert not all(one.ok for one in validation.validate() if "force" in one.what)
 
 
+@pytest.mark.slow
 def test_one_loss_is_that_of_the_theory(monkeypatch):
     """56 numbers that other programs found, to the error of 50 springs."""
     monkeypatch.setattr(validation, "COMPOSITIONS", ())

@@ -163,6 +163,7 @@ def test_a_restitution_that_depends_on_the_speed():
         collide(met.take(slice(0, 2)), restitution=lambda _: [0.9] * 3)
 
 
+@pytest.mark.slow
 def test_the_plan_of_bodies_says_once_whose_restitution_it_is():
     met = rod(-35.0, slip=0.3)
     several = attrs.evolve(met, friction_coefficient=[0.3, 0.4, 0.5])

@@ -448,6 +448,7 @@ def test_keller_in_space_is_the_limit_of_stiff_contacts():
     assert mu * np.abs(soft.psi2 - rigid.psi2).max() / kappa < 2e-4
 
 
+@pytest.mark.slow
 def test_a_damped_law_marches_with_friction():
     """Without friction the restitution of a body is that of the law."""
     for laws in ("tsuji", "hunt_crossley"):

@@ -324,6 +324,7 @@ def test_laws_that_were_made_for_a_circle_say_so(name, options):
     assert "contact: an ellipse of semi-axes 2.5 : 1" in plan
 
 
+@pytest.mark.slow
 def test_a_plan_counts_the_ellipses_among_circles():
     """In a part of the batch that is solved alike, and beside one that is not."""
     ellipse = PLANAR[0][0].scene

@@ -250,6 +250,7 @@ def test_a_law_in_a_file_is_named_by_path_and_class(files, capsys, file):
     assert type(normal.normal).__name__ == "Soft"
 
 
+@pytest.mark.slow
 def test_every_command_takes_a_law_in_a_file(files, capsys):
     name = "half.py:Half"
     words = ("--psi1", "8:9:2", "--chi", "1", "--tangential", f"coulomb,{name}", "--json")

@@ -53,6 +53,7 @@ def test_derivatives_are_differences():
     assert rebound(np.empty((2, 0)), 1.0).shape == (2, 0)
 
 
+@pytest.mark.slow
 def test_each_restitution_of_an_array_is_its_own():
     """Over all of the table, at both ends of e, and out of the table."""
     draw = np.random.default_rng(8)

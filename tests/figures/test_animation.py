@@ -43,6 +43,7 @@ def test_a_picture_moves_at_its_pace_for_ever(tmp_path, small, recwarn):
         assert picture.n_frames <= 7
 
 
+@pytest.mark.slow
 def test_a_law_without_fields_is_drawn_by_its_forces(tmp_path, small, recwarn):
     drawn = []
     for name, fields in (("forces", {}), ("disc", FIELDS)):

@@ -107,6 +107,7 @@ def test_on_the_command_line(line, words, tmp_path, monkeypatch, capsys):
     assert words in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_laws_that_one_reason_leaves_out_are_told_in_one_line(capsys):
     assert main(["compare", str(EXAMPLES / "foot.toml"), "--all"]) == 0
     told = capsys.readouterr().err.splitlines()
@@ -135,7 +136,9 @@ class Mine(SteppedTangentialLaw):
     ("start", "at_once", "words"),
     [
         ("sys.exit(3)", "", "Raised SystemExit: 3 (in start, line 11)"),
-        ("while True: pass", "", "was stopped after 0.2 s of computing"),
+        pytest.param(
+            "while True: pass", "", "was stopped after 0.2 s of computing", marks=pytest.mark.slow
+        ),
         ("return 1", "while True: pass", "did not return within 0.2 s of computing"),
     ],
 )

@@ -379,6 +379,7 @@ def test_bodies_gain_no_energy(count):
             assert np.abs(result.energy.relative_imbalance).max() < 2e-2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("e", [0.05, *longer(0.01, 0.1, 0.4, 0.8)])
 def test_books_of_bodies_close(e):
     """Over the whole energy, also where contacts outgrow their springs, which then merge."""

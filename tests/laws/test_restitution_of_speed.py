@@ -90,6 +90,7 @@ def test_a_scene_without_a_speed_and_two_losses_are_refused():
         create("normal.viscoelastic", speed_loss=0.02, restitution=0.9)
 
 
+@pytest.mark.slow
 def test_the_loss_is_found_from_measured_restitutions():
     speeds = np.array([0.2, 0.5, 1.0, 2.0, 3.0, 4.0])
     angles = np.array([10.0, 20.0, 30.0, 40.0, 50.0, 60.0])

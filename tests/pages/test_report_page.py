@@ -306,6 +306,7 @@ friction_coefficient = 0.09
 """
 
 
+@pytest.mark.slow
 def test_the_table_has_the_measured_angles_and_a_wrong_sign_is_told_once(run, reported, tmp_path):
     data, scene = tmp_path / "drops.csv", tmp_path / "drops.toml"
     data.write_text(MEASURED, encoding="utf-8")

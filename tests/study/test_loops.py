@@ -38,6 +38,7 @@ def test_loops_at_constant_load_close_and_have_the_area_of_theory(found):
     assert np.abs(force).max() == pytest.approx(most, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_forms_of_the_capped_spring_part_where_the_load_oscillates():
     laws = {name: Simulation(tangential=law) for name, law in forms().items()}
     found = loops(SCENE, laws)
