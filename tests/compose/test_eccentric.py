@@ -701,6 +701,7 @@ def test_refusals(act, words):
         act()
 
 
+@pytest.mark.slow
 def test_an_estimated_error_is_the_distance_from_the_exact_answer():
     """In nine of ten impacts within a factor of three; in space beside the springs' own limit."""
     scene = random_planar(30, 15)

@@ -665,7 +665,13 @@ SOLVED = [
     ({"normal": "walton_braun", **BY_SPRINGS}, (*SPRINGS_WORDS, "restitution alone")),
 ]
 ROWS = [
-    pytest.param(scene, laws, words, id="-".join((*(str(law) for law in laws.values()), name)))
+    pytest.param(
+        scene,
+        laws,
+        words,
+        id="-".join((*(str(law) for law in laws.values()), name)),
+        marks=[pytest.mark.slow] * (name in ("mixed batch", "space batch")),
+    )
     for scenes, table in ((dict(zip(NAMES, ALL, strict=True)), CAUTIONED), (ONES, SOLVED))
     for laws, words in table
     for name, scene in scenes.items()
@@ -696,6 +702,7 @@ def test_a_spring_far_off_is_told_so(coupling):
     assert abs(result.psi2 + 1.498) < float(sizes.group(1))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "met",
     [Encounter(BALL, FLOOR, 0.3, normal=DOWN, velocity=(0.5, 0.3, -1.0)), meeting(),

@@ -359,6 +359,7 @@ def test_ctrl_c_ends_calls_and_processes(tmp_path, everybody):
     assert not any(map(alive, pids))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 def test_processes_end_with_a_program_that_is_killed(tmp_path):
     running, pids = waiting_program(tmp_path)

@@ -42,6 +42,7 @@ def test_each_law_has_a_smooth_curve_and_its_points(exact):
     assert axes.get_xlabel() == "angle of incidence from the normal (°)"
 
 
+@pytest.mark.slow
 def test_errors_are_bars_and_residuals_are_measured_less_predicted():
     errors = np.full(5, 0.05)
     found = fit(TABLE | {"tangential_restitution_error": errors}, BODIES)

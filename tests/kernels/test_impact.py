@@ -100,6 +100,7 @@ def test_closed_forms(followed):
     assert 2.5 * found[2] == pytest.approx(lost, abs=1e-11 * np.max(np.maximum(1.0, psi1**2)))
 
 
+@pytest.mark.slow
 def test_no_impact_gains_energy(followed):
     """Of 20,000: V² + ... with W the inverse of the energy's matrix (theory §14)."""
     numbers = drawn(20_000, 4)

@@ -120,7 +120,7 @@ def test_slip_and_spin_against_two_other_programs(rings, case):
 
 
 @pytest.mark.parametrize(
-    ("cells", "steps", "bound"), [(16, 30, 7e-3), *longer((32, 60, 5e-3), (48, 120, 3.5e-3))]
+    ("cells", "steps", "bound"), longer((16, 30, 7e-3), (32, 60, 5e-3), (48, 120, 3.5e-3))
 )
 def test_square_cells(cells, steps, bound):
     """Another discretisation, another solver, other steps, and no mirror."""

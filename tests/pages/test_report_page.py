@@ -89,6 +89,7 @@ def test_a_scene_without_bodies_has_no_units_and_a_sweep_its_range(reported, mea
     assert {unit for _, unit in rows.values()} == {"1"}
 
 
+@pytest.mark.slow
 def test_arrows_of_the_drawing_point_along_the_motion_of_the_sphere(reported, ball):
     """It comes down on the surface, to the right, and leaves upwards; 1.9 radii of 60 at most."""
     pattern = (

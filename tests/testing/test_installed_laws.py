@@ -40,8 +40,12 @@ LONGER = {
     "Annulus": "all_steps answers batch books closed_cycles friction_work impact_coulomb_limit "
     "impact_units load_impulse odd_in_slip partial_unloading random_paths sliding_impulse "
     "stiffness turning_points units whole_impact_form whole_impacts",
-    "Springs": "vectors_on_a_line vectors_rotate whole_impacts",
-    "MindlinCap": "impact_units vectors_on_a_line vectors_rotate whole_impact_form whole_impacts",
+    "Springs": "impact_books impact_bounds impact_odd impact_units vectors_on_a_line "
+    "vectors_rotate whole_impacts",
+    "LinearSpring": "impact_units",
+    "WaltonBraun": "motion_batch rebounds",
+    "Viscoelastic": "ends_unloaded rebounds",
+    "MindlinCap": "impact_odd impact_units vectors_on_a_line vectors_rotate whole_impact_form whole_impacts",
     "MindlinDeresiewicz": "begin_is_start impact_odd impact_units",
     "Coulomb": "whole_impact_form",
     "Frictionless": "whole_impact_form",
@@ -52,7 +56,7 @@ LONGER = {
     "KuwabaraKono": "ends_unloaded motion_batch rebounds",
     "Thornton": "ends_unloaded motion_batch rebounds",
     "JohnsonKendallRoberts": "ends_unloaded motion_batch rebounds",
-    "DerjaguinMullerToporov": "ends_unloaded motion_batch rebounds",
+    "DerjaguinMullerToporov": "dissipation ends_unloaded motion_batch rebounds",
 }
 
 
