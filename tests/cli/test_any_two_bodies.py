@@ -60,6 +60,7 @@ def test_a_sweep_is_written_and_read_back(run, file, tmp_path):
             assert row["status"] == "SUCCESS"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sweep", ["", "[sweep]\npsi1 = [0.5, 1.0]\n"])
 @pytest.mark.parametrize("scene", ["central", "plane", "space"])
 def test_comparisons_are_drawn(run, file, tmp_path, scene, sweep):

@@ -246,6 +246,7 @@ def test_a_path_may_have_one_point():
     assert path.work == 0.0
 
 
+@pytest.mark.slow
 def test_a_path_says_where_a_law_does_not_hold():
     """Thirty cycles of the load by 10 % at a held displacement, against many springs."""
     scene = Scene(BALL, BALL, 0.3, 1.0)

@@ -346,6 +346,7 @@ def waiting_program(tmp_path):
     return running, pids
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 @pytest.mark.parametrize("everybody", [True, *longer(False)])
 def test_ctrl_c_ends_calls_and_processes(tmp_path, everybody):

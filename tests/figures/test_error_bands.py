@@ -82,6 +82,7 @@ def check_bands(axes, compared, middles):
             assert close[0] == pytest.approx(to_rgb(lines[name].get_color()))
 
 
+@pytest.mark.slow
 def test_bands_of_laws_over_a_sweep_lie_around_their_own_curves(compared):
     axes = laws_over_sweep(Figure().subplots(), compared, "psi2")
     check_bands(axes, compared, {name: compared.values("psi2", name) for name in ROUGH})

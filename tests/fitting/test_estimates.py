@@ -216,6 +216,7 @@ def test_intervals_of_the_bootstrap_cover_the_truth():
     assert covered / 30 >= 0.8
 
 
+@pytest.mark.slow
 def test_the_bootstrap_is_as_wide_as_the_covariance_and_the_same_each_time():
     angles = np.linspace(8.0, 60.0, 20)
     data = table(scattered(restitution(0.12, angles), 0.01), angles)

@@ -240,6 +240,7 @@ def test_an_edge_of_a_box_is_a_barrel():
 POSES = Rotation.from_rotvec(np.random.default_rng(5).normal(0.0, 0.3, (1000, 3))).as_matrix()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("make", "given", "oriented"),
     [

@@ -141,6 +141,7 @@ def test_slope_is_continuous_at_psi1_of_one_and_at_full_slip():
             assert np.abs(one - other)[hard].max() < 5e-5
 
 
+@pytest.mark.slow
 def test_derivatives_against_differences_of_exact_impacts():
     psi1, chi, _ = draw(80, 24, shipped().cuts)
     curves = np.array([psi1, psi1 - 1.0, psi1 - 4.0 * chi + 1.0, chi, chi - 0.5, chi - LARGEST_CHI])

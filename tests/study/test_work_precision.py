@@ -169,6 +169,7 @@ def test_the_picture_names_every_law_beside_its_points(width):
     assert names["springs"] != names["walton"] == names["mindlin cap"]
 
 
+@pytest.mark.slow
 def test_names_do_not_lie_on_each_other():
     rows = tuple(
         row(method=f"law{number}", error=1e-6 * (1.0 + 0.01 * number), time=1e-4)

@@ -45,7 +45,8 @@ LONGER = {
     "LinearSpring": "impact_units",
     "WaltonBraun": "motion_batch rebounds",
     "Viscoelastic": "ends_unloaded rebounds",
-    "MindlinCap": "impact_odd impact_units vectors_on_a_line vectors_rotate whole_impact_form whole_impacts",
+    "MindlinCap": "impact_odd impact_units vectors_on_a_line vectors_rotate whole_impact_form "
+    "whole_impacts",
     "MindlinDeresiewicz": "begin_is_start impact_odd impact_units",
     "Coulomb": "whole_impact_form",
     "Frictionless": "whole_impact_form",
