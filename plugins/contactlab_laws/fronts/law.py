@@ -21,6 +21,7 @@ from contactlab.contracts import (
     from_change,
 )
 from contactlab.contracts.error_model import psi_magnitude
+from contactlab.impact.hertz import slips_throughout
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import spread
 from contactlab.numeric.checks import Real
@@ -96,7 +97,7 @@ class Fronts(PathTangentialLaw, Tabulated):
         chi: Any = scene.chi
         psi1: Any = scene.psi1
         tabulated = self.table and (chi <= LARGEST_CHI) & (abs(psi1) < 4.0 * LARGEST_CHI)
-        if not scene.shape and tabulated and psi1 and abs(psi1) < max(1.0, 4.0 * chi - 1.0):
+        if not scene.shape and tabulated and psi1 and not slips_throughout(psi1, chi):
             return (_from_table(scene, psi1, chi, where=True),)
         closed = (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
         if self.table and not np.all(tabulated):
@@ -114,7 +115,7 @@ class Fronts(PathTangentialLaw, Tabulated):
         """Return psi2 - psi1 by the compiled law; None where it does not answer for all."""
         if compiled.library() is None:
             return None
-        slips = np.abs(psi1) >= np.maximum(1.0, 4.0 * chi - 1.0)
+        slips = slips_throughout(psi1, chi)
         change, _, known = compiled.central(np.where(slips, 0.5, psi1), chi)
         return np.where(slips, -4.0 * chi, change) if known.all() else None
 
@@ -171,7 +172,7 @@ def _solved(scene: Scene, where: Any) -> tuple[WholeImpact, ...]:
         return ()
     columns = np.broadcast_arrays(scene.psi1, scene.chi, where)
     psi1, chi, wanted = (np.ravel(column) for column in columns)
-    slips = np.abs(psi1) >= np.maximum(1.0, 4.0 * chi - 1.0)  # a closed form, psi1 may be infinite
+    slips = slips_throughout(psi1, chi)  # a closed form, psi1 may be infinite
     places = np.flatnonzero(wanted & ~slips & (psi1 != 0.0))
     if not places.size:
         return ()
