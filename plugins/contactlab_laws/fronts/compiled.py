@@ -19,8 +19,8 @@ VARIABLE = "CONTACTLAB_COMPILED"
 #: Name of the library beside this module, and the sources that it is built of, by package.
 LIBRARY = "_impacts.so"
 SOURCES = (("contactlab", "kernels/contactlab_impact.h"), ("contactlab_laws", "fronts/impacts.c"))
-#: Least error of a step, as ``steps.LEAST_ERROR``.
-LEAST = 5e-13
+#: Least error of a step: of the compiled law, and of Python's if much accuracy is asked for.
+LEAST_ERROR = 5e-13
 #: Steps of an impact before it is given up; a hard one takes 30, one of kappa = 1e6 some 10,000.
 MOST_STEPS = 20_000
 #: psi2 is proportional to psi1 below it; smaller ones would be lost in rounding.
@@ -128,6 +128,6 @@ def central(psi1: Array, chi: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
     numbers = np.zeros((4, psi1.size))
     least = np.copysign(np.maximum(np.abs(psi1), LINEAR_BELOW), psi1)
     numbers[0], numbers[1] = least, chi
-    found, status = follow(numbers, LEAST)
+    found, status = follow(numbers, LEAST_ERROR)
     share = psi1 / least
     return found[1] * share, found[2] * share * share, status == 0

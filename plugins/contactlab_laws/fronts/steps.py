@@ -7,13 +7,14 @@ from collections.abc import Callable
 
 import numpy as np
 
+from contactlab_laws.fronts.compiled import LEAST_ERROR, LOST
 from contactlab_laws.fronts.path import Answer, Impact, Request
 from contactlab_laws.fronts.phases import HEAD, LAWS, Events, Numbers, Phase
 from contactlab_laws.fronts.series import ORDER, Laws, Rows, value
 
-#: Error of a step over the accuracy asked for, the least, and the most: forces within a coarse
-#: series err by more than what it leads to.
-STEP_PART, LEAST_ERROR, MOST_ERROR = 1e-3, 5e-13, 1e-8
+#: Error of a step over the accuracy asked for, and the most: forces within a coarse series err by
+#: more than what it leads to.
+STEP_PART, MOST_ERROR = 1e-3, 1e-8
 #: A series is followed as far as its last two terms stay below the tolerance, times this.
 CAREFUL = 0.9
 #: Longest step: beyond it forces turn more than events are looked for.
@@ -56,8 +57,8 @@ def alone(impact: Impact, tolerance: float, most: int, watch: Watch | None = Non
 def failure(answer: Answer | None, most: int) -> str:
     """Return why a phase has not come to its end, "" if it has."""
     if answer is None:
-        return "The velocities of a jam outgrow the numbers"
-    return "" if answer[0] >= 0 else f"The contact neither ends nor settles in {most} steps"
+        return LOST[2]
+    return "" if answer[0] >= 0 else LOST[1].format(most)
 
 
 def one(
