@@ -34,8 +34,6 @@ UNIT = {
     "normal": "such as [0, 0, -1], down",
     "axis": "such as [0, 0, 1], up; an angle is tilt_deg of a scene file",
 }
-#: Direction of curvature where both radii are the same.
-ANY_AXIS = (0.0, 0.0, 1.0)
 #: Cosine of the normal with an edge or face below which the contact is a line or a face.
 FLUSH = 1e-9
 #: Gauss points along the quarter circle of a rim: more change nothing.
@@ -87,16 +85,15 @@ def _stacked(
     made: list[tuple[RigidBody, Array]], shape: tuple[int, ...]
 ) -> tuple[RigidBody, Array]:
     """Return poses of one body as a batch, with their contacts."""
-    bodies = [body for body, _ in made]
+    bodies = RigidBody.alike([body for body, _ in made])
     columns: dict[str, Any] = {
         "inertia": np.array([body.inertia for body in bodies]).reshape(*shape, 3, 3),
         "curvature_radius": np.reshape([body.curvature_radius for body in bodies], shape),
     }
-    if any(body.cross_radius is not None for body in bodies):
-        columns["cross_radius"] = np.reshape([body.crossing for body in bodies], shape)
-        axes = (body.curvature_axis for body in bodies)  # none of those with one radius
-        every = [ANY_AXIS if each is None else each for each in axes]
-        columns["curvature_axis"] = np.reshape(every, (*shape, 3))
+    if bodies[0].cross_radius is not None:
+        columns["cross_radius"] = np.reshape([body.cross_radius for body in bodies], shape)
+        axes = [body.curvature_axis for body in bodies]
+        columns["curvature_axis"] = np.reshape(axes, (*shape, 3))
     body = attrs.evolve(bodies[0], principal=None, axes=None, **columns)
     return body, np.reshape([contact for _, contact in made], (*shape, 3))
 
