@@ -28,8 +28,8 @@ from contactlab.numeric.checks import refuse
 from contactlab.outcome.files import written
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import PlanColumns
+from contactlab.outcome.sweep_folder import ABOUT, CHUNKS
 
-ABOUT, PIECES = "sweep.json", "impacts-*.npz"
 #: Distributions that every number comes from.
 NUMBERS_FROM = (PROJECT, "numpy", "scipy")
 #: Statuses of impacts that were not computed: a resumed sweep computes them.
@@ -56,7 +56,7 @@ class Kept:
     def pieces(self) -> list[Piece]:
         """Return the pieces in the folder, no impact in two of them; refuse other files."""
         pieces: list[Piece] = []
-        for path in sorted(self.folder.glob(PIECES), key=_first):
+        for path in sorted(self.folder.glob(CHUNKS), key=_first):
             # Two runs at the same time, with different chunks, may have written impacts twice.
             if pieces and _first(path) < pieces[-1].chunk.stop:
                 continue
@@ -162,7 +162,7 @@ def refuse_file(argument: str, path: Path, rule: str, remedy: str) -> ValueError
 
 def count(folder: Path) -> int:
     """Return the number of impacts in the pieces of a folder; 0 if there is no folder."""
-    ends = (path.stem.split("-")[1:] for path in folder.glob(PIECES))
+    ends = (path.stem.split("-")[1:] for path in folder.glob(CHUNKS))
     return sum(
         int(end[1]) - int(end[0]) for end in ends if len(end) == 2 and all(map(str.isdigit, end))
     )
@@ -170,7 +170,7 @@ def count(folder: Path) -> int:
 
 def remove(folder: Path) -> None:
     """Delete the pieces of a sweep, and their folder if it is empty then."""
-    for pattern in (PIECES, ".contactlab-*.part", ABOUT):
+    for pattern in (CHUNKS, ".contactlab-*.part", ABOUT):
         for path in folder.glob(pattern):
             path.unlink(missing_ok=True)
     with contextlib.suppress(OSError):
@@ -247,7 +247,7 @@ def _first(path: Path) -> int:
 
 def name_of(chunk: Chunk) -> str:
     """Return the name of a chunk's file."""
-    return PIECES.replace("*", f"{chunk.first}-{chunk.stop}")
+    return CHUNKS.replace("*", f"{chunk.first}-{chunk.stop}")
 
 
 def _piece(content: Mapping[str, Any]) -> Piece:

@@ -270,13 +270,21 @@ class SweepFolder:
             With the sentence of the first impact that failed, is missing, or of the first caution.
         """
         for index, words in self.failures.items():
-            name = next(name for name in self._names if words.startswith(Status[name].value))
-            raise ImpactError(f"impact {index}: {words}", Status[name])
+            raise ImpactError(f"impact {index}: {words}", self._status(index))
         if not self.complete:
             raise ImpactError(self._unfinished(), Status.INTERRUPTED)
         for words in self.cautions if cautions else ():
             raise ImpactError(f"caution: {words}", Status.SUCCESS)
         return self
+
+    def _status(self, impact: int) -> Status:
+        """Return the status of a computed impact."""
+        names = (
+            columns[COLUMN_OF_STATUS][impact - place.start]
+            for place, columns in self.chunks(COLUMN_OF_STATUS)
+            if place.start <= impact < place.stop
+        )
+        return Status[next(names)]
 
     def _unfinished(self) -> str:
         """Return what is missing, and how to go on."""
