@@ -223,8 +223,7 @@ def frame(encounter: Any) -> Frame:
     slip = velocity - np.einsum("...i,...i->...", velocity, n)[..., None] * n
     # the first of coupling, slip and any axis that is not lost in rounding, as ``ways`` judges it
     mean = 0.5 * (np.trace(W, axis1=-2, axis2=-1) - pressed)
-    least = np.argmin(np.abs(n), axis=-1)
-    axis = np.eye(3)[least]
+    axis = np.eye(3)[np.argmin(np.abs(n), axis=-1)]
     rounding = (
         inverse_mass.ROUNDING * np.sqrt(pressed * mean),
         inverse_mass.ROUNDING * np.sqrt(np.einsum("...i,...i->...", velocity, velocity)),

@@ -157,8 +157,6 @@ def rod(
     contact = radius * outward if side else along * (0.5 * length - end) + end * outward
     volume, lengthwise, across = _revolved(length, radius, end, dome)
     mass = _mass(mass, material, volume)
-    moments = np.full((3, 3), 0.0)
-    moments += mass * (across * np.eye(3) + (lengthwise - across) * np.outer(along, along))
     density: Any = mass / volume
     inner: Any = 0.0
     if material.density is not None and density < material.density:  # a tube, of radius² inner
@@ -167,7 +165,7 @@ def rod(
     gyration = 0.5 * math.sqrt(radius * radius + float(inner))
     body = RigidBody(
         mass=mass,
-        inertia=0.5 * (moments + moments.T),
+        inertia=mass * _about(along, lengthwise, across),
         material=material,
         **(_two(math.inf, radius, along) if side else {"curvature_radius": end}),
         bending_period=_bending(length, gyration, material, density),
@@ -239,10 +237,9 @@ def disc(
     tangent = (outward * sine - along) / cosine  # along the side, across the rim
     volume, own, across = _rimmed(radius, straight, rim)
     mass = _mass(mass, material, volume)
-    moments = mass * (across * np.eye(3) + (own - across) * np.outer(along, along))
     body = RigidBody(
         mass=mass,
-        inertia=0.5 * (moments + moments.T),
+        inertia=mass * _about(along, own, across),
         material=material,
         **_two(lengthwise, around, tangent),
     )
@@ -442,6 +439,11 @@ def _rimmed(radius: float, straight: float, rim: float) -> tuple[float, float, f
     volume = math.pi * float(share @ square)
     own = 0.5 * math.pi * float(share @ (square * square)) / volume
     return volume, own, 0.5 * own + math.pi * float(share @ (z * z * square)) / volume
+
+
+def _about(axis: Array, along: float, across: float) -> Array:
+    """Return the tensor of a body of revolution from its moments along and across the axis."""
+    return across * np.eye(3) + (along - across) * np.outer(axis, axis)
 
 
 def _two(radius: float, cross: float, axis: Array) -> dict[str, Any]:
