@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from contactlab.fitting.csv_columns import (
     ERROR,
+    STRUCK,
     UnknownHeadingError,
     known_names,
     read_columns,
@@ -19,7 +20,7 @@ from contactlab.fitting.csv_columns import (
     read_text,
 )
 from contactlab.fitting.foreign_headings import ForeignHeadingsError, foreign
-from contactlab.fitting.struck import STRUCK, to_the_struck_body
+from contactlab.fitting.struck import to_the_struck_body
 from contactlab.numeric.checks import check_place, real, refuse
 from contactlab.scene_file import SceneFile
 from contactlab.scene_file.measured import Measured

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.fitting.csv_columns import STRUCK as STRUCK
+from contactlab.fitting.csv_columns import STRUCK
 
 Array = NDArray[np.float64]
 

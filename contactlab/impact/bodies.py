@@ -132,7 +132,7 @@ class Pair:
 
     Notes
     -----
-    Of an elliptic contact ``radius`` is that of the circular contact which is as stiff (theory
+    For an elliptic contact ``radius`` is that of the circular contact which is as stiff (theory
     §16): a contact radius is that of this circle, and force and approach are those of the ellipse.
     """
 

@@ -211,7 +211,7 @@ def meeting_of_bodies(encounter: Any, normal: tuple[Any, Any, Any]) -> Contact:
 def frame(encounter: Any) -> Frame:
     """Return the frame with t1 along W_nt, or along the slip without coupling.
 
-    Of an ellipse t1 is the axis that holds both, or else the major one.
+    For an ellipse t1 is the axis that holds both, or else the major one.
     """
     n = np.broadcast_to(encounter.normal, (*encounter.shape, 3))
     n = n / np.sqrt(np.einsum("...i,...i->...", n, n))[..., None]

@@ -127,7 +127,7 @@ def balanced(motion: Motion, scene: Scene, bound: Real, *, together: bool = Fals
 def _balances(motion: Motion, scene: Scene, bound: Any) -> bool:
     """Return whether the books of one impact balance: ``_with_unbalanced`` in a few floats.
 
-    Of a spin about the normal that does not change the energy is left out.
+    A spin about the normal that does not change the energy has no part in them.
     """
     speed: Any = scene.normal_speed
     slip: Any = scene.slip_velocity

@@ -58,7 +58,7 @@ class Table:
     starts : array of int, shape (regions,)
         Where the grid of each region begins.
     sizes : array of int, shape (coordinates, regions)
-        Of the fine grids.
+        Numbers of cells of the fine grids.
     patches : Patches
     """
 
