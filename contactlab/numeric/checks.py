@@ -7,18 +7,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.numeric.labels import misplaced
-
-#: A number or an array of numbers: laws accept both.
-Real: TypeAlias = float | NDArray[np.float64]
-#: A bool or an array of bool.
-Mask: TypeAlias = bool | np.bool_ | NDArray[np.bool_]
+from contactlab.numeric.types import Mask as Mask  # until all take them from there
+from contactlab.numeric.types import Real as Real
 
 
 class Rule(NamedTuple):

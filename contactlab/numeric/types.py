@@ -1,0 +1,44 @@
+"""Types of numbers, and where each is written.
+
+Inside the house a number, or an array with one value for each impact, is a ``Real``; where only
+arrays come it is an ``Array``, and where only numbers come a ``float``. ``Mask`` is the same of
+bool; ``Index`` takes a part of a batch; ``Places`` are indices in an array. A function that gives a
+float for a float and an array for an array is annotated with ``Kind`` on both sides, and one that
+gives back whatever it is given with ``Tree``. At a door, where a user's numbers are checked, an
+argument is ``Numbers``: whatever NumPy makes real numbers of. An array of any type of NumPy is
+``Column``. What may be anything is an ``object``; ``Any`` stays where nothing is known and
+something is done with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TypeAlias, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array: TypeAlias = NDArray[np.float64]
+#: A number or an array of numbers: laws accept both.
+Real: TypeAlias = float | Array
+#: A bool or an array of bool.
+Mask: TypeAlias = bool | np.bool_ | NDArray[np.bool_]
+#: Indices in an array.
+Places: TypeAlias = NDArray[np.intp]
+#: What takes a part of a batch.
+Index: TypeAlias = int | slice | tuple[int, ...] | NDArray[np.bool_] | Places
+#: An array of any type of NumPy: numbers, bools, codes, words.
+Column: TypeAlias = NDArray[np.generic]
+
+#: A number of Python or NumPy; a bool is none, but checkers take it for an int.
+Number: TypeAlias = float | np.floating | np.integer
+_Row: TypeAlias = Number | NDArray[np.floating | np.integer]
+#: What a user may give as real numbers.
+Numbers: TypeAlias = (
+    _Row | Sequence[_Row] | Sequence[Sequence[_Row]] | Sequence[Sequence[Sequence[_Row]]]
+)
+
+#: A float, or an array: the same on both sides of a function.
+Kind = TypeVar("Kind", float, Array, Real)
+#: A number, an array, or an object of such: the same on both sides of a function.
+Tree = TypeVar("Tree")
