@@ -10,11 +10,11 @@ import numpy as np
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import ClosedFormNormalLaw, Integrator
-from contactlab.testing.check import apply_if, check, hold, within
+from contactlab.testing.check import NotApplicableError, apply_if, check, hold, within
 from contactlab.testing.integrators import CHI, marched, marched_impact
 from contactlab.testing.laws import DampedHertz, PressedSpring, Slider, SlidingForEver, Yielding
 from contactlab.testing.load_paths import scene
-from contactlab.testing.ways import fitting
+from contactlab.testing.ways import at_resolution, fitting
 
 #: Numbers of steps over which the order is regressed.
 LADDER = (40, 80, 160, 320)
@@ -26,14 +26,15 @@ BOOKS = 0.03
 
 
 @check(Integrator)
-def order(integrator: Any) -> None:
+def order(integrator: Integrator) -> None:
     """The error of a smooth law falls with the steps at the declared order (Integrator, 4)."""
-    apply_if(integrator.order and integrator.resolution, "It declares no order.")
+    if not (integrator.order and integrator.resolution):
+        raise NotApplicableError("It declares no order.")
     for simulation in fitting(integrator, (PressedSpring(),), "normal.hertz"):
         exact = _exact(simulation, 2.0)
         errors = []
         for steps in LADDER:
-            finer = attrs.evolve(integrator, **{integrator.resolution: steps})
+            finer = at_resolution(integrator, steps)
             change = marched_impact(
                 attrs.evolve(simulation, integrator=finer), 2.0
             ).slip_velocity_change
@@ -46,7 +47,7 @@ def order(integrator: Any) -> None:
 
 
 @check(Integrator)
-def finer_is_better(integrator: Any) -> None:
+def finer_is_better(integrator: Integrator) -> None:
     """A finer resolution reduces the error, and a stated accuracy is kept (Law, 4)."""
     for simulation in fitting(integrator, (PressedSpring(), SlidingForEver()), "normal.hertz"):
         exact = _exact(simulation, 7.0)
@@ -57,7 +58,7 @@ def finer_is_better(integrator: Any) -> None:
             continue
         value = getattr(integrator, integrator.resolution)
         better = 4 * value if isinstance(value, int) else value / 16.0
-        finer = attrs.evolve(integrator, **{integrator.resolution: better})
+        finer = at_resolution(integrator, better)
         change = marched_impact(
             attrs.evolve(simulation, integrator=finer), 7.0
         ).slip_velocity_change
@@ -70,7 +71,7 @@ def finer_is_better(integrator: Any) -> None:
 
 
 @check(Integrator)
-def sliding_impulse_by(integrator: Any) -> None:
+def sliding_impulse_by(integrator: Integrator) -> None:
     """Slip throughout takes mu (1 + e) v1 M_n/M_t from v_x under any normal law.
 
     The law's force is mu times the friction load of the step. An integrator that passes the mean
@@ -99,7 +100,7 @@ def sliding_impulse_by(integrator: Any) -> None:
 
 
 @check(Integrator)
-def books_by(integrator: Any) -> None:
+def books_by(integrator: Integrator) -> None:
     """The energy lost is the sum of the law's friction work, and finer steps reduce the difference.
 
     If ``resolution`` is a number of steps, eight times as many at least halve the imbalance.
@@ -112,10 +113,10 @@ def books_by(integrator: Any) -> None:
             within(
                 imbalance, BOOKS, f"psi1 = {psi1}: {imbalance:.1%} of the energy is unaccounted."
             )
-        if isinstance(getattr(integrator, integrator.resolution or "", None), int):
+        steps = getattr(integrator, integrator.resolution or "", None)
+        if isinstance(steps, int):
             worst = max(_imbalance(simulation, psi1) for psi1 in (0.5, 1.2, 2.0))
-            finer_steps = {integrator.resolution: 8 * getattr(integrator, integrator.resolution)}
-            finer = attrs.evolve(simulation, integrator=attrs.evolve(integrator, **finer_steps))
+            finer = attrs.evolve(simulation, integrator=at_resolution(integrator, 8 * steps))
             finer_worst = max(_imbalance(finer, psi1) for psi1 in (0.5, 1.2, 2.0))
             within(
                 finer_worst,

@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 
 import attrs
 import numpy as np
+from numpy.typing import ArrayLike
 
 from contactlab.contracts import Law, TangentialMotion
 from contactlab.contracts.status import Status
@@ -133,12 +134,12 @@ def hold(condition: object, sentence: str) -> None:
         raise CheckFailedError(sentence)
 
 
-def within(value: Any, bound: Any, sentence: str) -> None:
+def within(value: float, bound: float, sentence: str) -> None:
     """Raise ``CheckFailedError`` with ``sentence`` and the bound unless ``value`` is within it."""
     hold(value <= bound, f"{sentence.rstrip()} Bound: {float(bound):.2g}.")
 
 
-def worst(values: Any) -> float:
+def worst(values: ArrayLike) -> float:
     """Return the largest magnitude; infinity if a value is NaN."""
     return float(np.nan_to_num(np.max(np.abs(values)), nan=np.inf))
 

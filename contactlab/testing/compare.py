@@ -4,31 +4,32 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from contactlab.impact.scene import Scene
 from contactlab.testing.check import hold
 
 #: Values nested deeper than this count as equal.
 DEEPEST = 12
 
 
-def same(left: Any, right: Any, *, depth: int = 0) -> bool:
+def same(left: object, right: object, *, depth: int = 0) -> bool:
     """Return whether two values are equal to the last bit; NaN equals NaN."""
     if left is right or depth > DEEPEST:
         return True
     if type(left) is not type(right):
         return False
-    if isinstance(left, np.ndarray):
+    if isinstance(left, np.ndarray) and isinstance(right, np.ndarray):
         return _same_arrays(left, right, depth)
     if isinstance(left, float | np.floating):
-        return bool(left == right or (np.isnan(left) and np.isnan(right)))
-    if isinstance(left, Mapping):
+        return bool(left == right or (left != left and right != right))
+    if isinstance(left, Mapping) and isinstance(right, Mapping):
         return left.keys() == right.keys() and all(
             same(left[key], right[key], depth=depth + 1) for key in left
         )
-    if isinstance(left, list | tuple):
+    if isinstance(left, list | tuple) and isinstance(right, list | tuple):
         return len(left) == len(right) and all(
             same(left_item, right_item, depth=depth + 1)
             for left_item, right_item in zip(left, right, strict=True)
@@ -43,7 +44,7 @@ def same(left: Any, right: Any, *, depth: int = 0) -> bool:
     return bool(left == right)
 
 
-def _same_arrays(left: Any, right: Any, depth: int) -> bool:
+def _same_arrays(left: NDArray[np.generic], right: NDArray[np.generic], depth: int) -> bool:
     if left.shape != right.shape or left.dtype != right.dtype:
         return False
     if left.dtype == object:
@@ -62,13 +63,13 @@ def _attributes(value: object) -> Iterator[str]:
                 yield name
 
 
-def well_formed(value: Any, shape: tuple[int, ...]) -> bool:
+def well_formed(value: object, shape: tuple[int, ...]) -> bool:
     """Return whether ``value`` holds real numbers of ``shape`` (floats, or an array of them)."""
     array = np.asarray(value)
     return array.dtype.kind in "fiu" and array.shape == shape
 
 
-def hold_read_only(run: Callable[[], object], scene: Any) -> None:
+def hold_read_only(run: Callable[[], object], scene: Scene) -> None:
     """Hold that a run with read-only arguments writes into none of them, and not into the scene."""
     kept = copy.deepcopy(scene)
     try:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from contactlab.compose.normal_motion import normal_motion
@@ -27,7 +25,7 @@ LEVEL = 0.7
 
 
 @check(TangentialLaw)
-def friction_coefficient(law: Any) -> None:
+def friction_coefficient(law: TangentialLaw) -> None:
     """The impulse of slip throughout is proportional to mu (TangentialLaw, 1)."""
     for way in ways(law):
         impulses = []
@@ -47,7 +45,7 @@ def friction_coefficient(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw)
-def friction_load(law: Any) -> None:
+def friction_load(law: SteppedTangentialLaw) -> None:
     """In gross slip F is mu times the friction load, even if that differs from P (stepped, 3)."""
     bench = Bench.of()
     pressed = bench.contact(LEVEL)
@@ -69,7 +67,7 @@ def friction_load(law: Any) -> None:
 
 
 @check(TangentialLaw)
-def load_impulse(law: Any) -> None:
+def load_impulse(law: TangentialLaw) -> None:
     """Slip throughout takes mu times the load impulse, also under a normal law that pulls."""
     pulling, tried = PullingHertz(), 0
     try:
@@ -97,7 +95,7 @@ def load_impulse(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw)
-def at_rest_stiffness(law: Any) -> None:
+def at_rest_stiffness(law: SteppedTangentialLaw) -> None:
     """A stiffness that grows with the contact radius is Mindlin's 2 G* b, or 2/3 of that.
 
     2 G* b is the slope dF/dD of a contact that sticks all over; Di Renzo & Di Maio (2005) take

@@ -6,8 +6,6 @@ The fields are ``radius`` (m) and ``traction`` (Pa), or ``radius``, ``displaceme
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -30,13 +28,13 @@ SMALL = 0.3
 
 
 @check(SteppedTangentialLaw)
-def coulomb_at_a_point(law: Any) -> None:
+def coulomb_at_a_point(law: SteppedTangentialLaw) -> None:
     """In elastic Hertz impacts the traction nowhere exceeds mu p, p being the hemisphere (3)."""
     _hold(law, REGISTRY.create("normal.hertz"))
 
 
 @check(SteppedTangentialLaw, nature="each spring is limited separately")
-def coulomb_at_a_point_damped(law: Any) -> None:
+def coulomb_at_a_point_damped(law: SteppedTangentialLaw) -> None:
     """Under a damped normal law the traction nowhere exceeds mu p.
 
     Limits of single springs do not ensure this there.
@@ -44,7 +42,7 @@ def coulomb_at_a_point_damped(law: Any) -> None:
     _hold(law, StronglyDampedHertz())
 
 
-def _hold(law: Any, normal_law: NormalLaw) -> None:
+def _hold(law: SteppedTangentialLaw, normal_law: NormalLaw) -> None:
     """Hold that abs(q) <= mu p at every point along impacts under a normal law."""
     try:
         way = next(way for way in ways(law, normal_law) if way.integrator is not None)

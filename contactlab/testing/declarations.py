@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import attrs
 import numpy as np
 
@@ -48,7 +46,7 @@ class Noting(Yielding):
 
 
 @check(Integrator)
-def drift(integrator: Any) -> None:
+def drift(integrator: Integrator) -> None:
     """The displacement of a step is velocity times drift, if the drift is told (Increment)."""
     apply_if(issubclass(SteppedTangentialLaw, integrator.tangential_contract), "It has no steps.")
     law, impact = Noting(), scene(ANGLES[1], CHI)
@@ -63,7 +61,7 @@ def drift(integrator: Any) -> None:
 
 
 @check(TangentialLaw)
-def books_bound_told(law: Any) -> None:
+def books_bound_told(law: TangentialLaw) -> None:
     """The bound of the energy books is a number >= 0 for each impact (TangentialLaw, 7)."""
     for impact in (scene(ANGLES[1], CHI), scene(np.array(ANGLES), CHI)):
         bound = np.asarray(law.books_bound(impact), dtype=np.float64)
@@ -72,7 +70,7 @@ def books_bound_told(law: Any) -> None:
 
 
 @check(NormalLaw)
-def dissipation(law: Any) -> None:
+def dissipation(law: NormalLaw) -> None:
     """The declared dissipation is the loss of an impact without friction (NormalLaw, 7)."""
     for impact in (scene(ANGLES[1], CHI), scene(np.array(ANGLES), CHI)):
         motion = normal_motion(law, impact)

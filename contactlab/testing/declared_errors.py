@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import Any
+from typing import Any, TypeVar
 
 import attrs
 import numpy as np
@@ -12,15 +12,15 @@ import numpy as np
 from contactlab.compose.answers import answers
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.simulation import Simulation
-from contactlab.contracts import ClosedFormNormalLaw, Integrator, TangentialLaw
+from contactlab.contracts import ClosedFormNormalLaw, Integrator, Law, TangentialLaw
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.impact.scene import Scene
-from contactlab.testing.check import apply_if, check, hold, within
+from contactlab.testing.check import NotApplicableError, apply_if, check, hold, within
 from contactlab.testing.impacts import CHI
 from contactlab.testing.integrators import CHI as SOLID
 from contactlab.testing.integrators import marched_impact
 from contactlab.testing.load_paths import scene
-from contactlab.testing.ways import Way, sound, ways
+from contactlab.testing.ways import Way, at_resolution, sound, ways
 
 #: Impacts that stick, slip in part, and slip nearly throughout.
 ANGLES = (0.3, 0.9, 1.2, 2.0, 3.5)
@@ -36,7 +36,7 @@ NODES, QUADRATURE = 200, 1e-12
 
 
 @check(TangentialLaw)
-def declared_error(law: Any) -> None:
+def declared_error(law: TangentialLaw) -> None:
     """The error is at most three times the declared psi2_error.
 
     NaN declares nothing. A law that claims partial slip is compared with the exact solution, any
@@ -89,7 +89,10 @@ def _better(way: Way, impact: Scene) -> tuple[float | None, str]:
     return float(np.asarray(change)), "the same with a finer resolution"
 
 
-def _finer(law: Any) -> Any:
+SameLaw = TypeVar("SameLaw", bound=Law)
+
+
+def _finer(law: SameLaw) -> SameLaw:
     """Return a law or integrator of finer resolution; the same if it has none."""
     if law.resolution is None:
         return law
@@ -97,14 +100,14 @@ def _finer(law: Any) -> Any:
     for factor in (FINER, 2):
         finer = factor * value if isinstance(value, int) else value / TIGHTER
         try:
-            return attrs.evolve(law, **{law.resolution: finer})
+            return at_resolution(law, finer)
         except ValueError:  # the law does not accept the finer value
             continue
     return law
 
 
 @check(ClosedFormNormalLaw)
-def motion_accuracy(law: Any) -> None:
+def motion_accuracy(law: ClosedFormNormalLaw) -> None:
     """The error of the load impulse is at most three times the declared accuracy of the motion.
 
     NaN declares nothing. The impulse is compared with the integral of the friction load over the
@@ -133,15 +136,16 @@ def motion_accuracy(law: Any) -> None:
 
 
 @check(Integrator)
-def resolution_told(integrator: Any) -> None:
+def resolution_told(integrator: Integrator) -> None:
     """An impact run at the value of ``resolution_for`` ends the same (Integrator, 8)."""
-    apply_if(integrator.resolution, "It has no resolution.")
+    if not integrator.resolution:
+        raise NotApplicableError("It has no resolution.")
     for simulation in sound(integrator):
         impact = scene(2.0, SOLID)
         normal = normal_motion(simulation.normal, impact)
         stated = float(np.max(integrator.resolution_for(normal, simulation.tangential, impact)))
         value = type(getattr(integrator, integrator.resolution))(stated)
-        asked = attrs.evolve(integrator, **{integrator.resolution: value})
+        asked = at_resolution(integrator, value)
         change = marched_impact(simulation, 2.0).slip_velocity_change
         as_stated = attrs.evolve(simulation, integrator=asked)
         asked_change = marched_impact(as_stated, 2.0).slip_velocity_change

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from contactlab.contracts import SteppedTangentialLaw
+from contactlab.numeric.vectors import Array
 from contactlab.testing.check import CHANGES, GROWS, check, hold, within
 from contactlab.testing.load_paths import (
     Bench,
@@ -27,14 +26,14 @@ PART = 128
 SEEDS = tuple(range(21, 27))
 
 
-def given_work(path: Path, force: Any) -> Any:
+def given_work(path: Path, force: Array) -> Array:
     """Return the work done on the contact up to each step, scaled, shape (K,)."""
     mean = force + np.concatenate(([0.0], force[:-1]))
     return np.cumsum(0.5 * mean * np.diff(path.slip, prepend=0.0))
 
 
 @check(SteppedTangentialLaw, nature=GROWS)
-def closed_cycles(law: Any) -> None:
+def closed_cycles(law: SteppedTangentialLaw) -> None:
     """A closed cycle of slip and normal load gives no energy."""
     bench = Bench.of()
     for low, high in ((0.6, 0.6), (0.2, 0.8), (0.8, 0.2), (0.4, 1.0), (1.0, 0.4)):
@@ -52,7 +51,7 @@ def closed_cycles(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw, nature=GROWS)
-def random_paths(law: Any) -> None:
+def random_paths(law: SteppedTangentialLaw) -> None:
     """No path from rest returns more energy than was put in (passivity, theory §7)."""
     bench = Bench.of()
     for fixed in (True, False):
@@ -67,7 +66,7 @@ def random_paths(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw, nature=GROWS)
-def partial_unloading(law: Any) -> None:
+def partial_unloading(law: SteppedTangentialLaw) -> None:
     """A contact sheared, loaded or unloaded, and released returns no more energy than put in."""
     bench = Bench.of()
     for first, then in ((1.0, 0.4), (1.0, 0.1), (0.4, 1.0), (0.1, 0.8)):
@@ -82,7 +81,7 @@ def partial_unloading(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw)
-def friction_work(law: Any) -> None:
+def friction_work(law: SteppedTangentialLaw) -> None:
     """The friction work of a step is never negative (TangentialResponse)."""
     allowed = 1e-12 if law.resolution is None else DISCRETE_WORK
     for seed in SEEDS:
@@ -91,7 +90,7 @@ def friction_work(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw, nature=CHANGES)
-def books(law: Any) -> None:
+def books(law: SteppedTangentialLaw) -> None:
     """All the work put in is friction work by the time that the bodies part."""
     bench = Bench.of()
     for seed in SEEDS[:3]:
@@ -112,7 +111,7 @@ def books(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw)
-def work_in_its_step(law: Any) -> None:
+def work_in_its_step(law: SteppedTangentialLaw) -> None:
     """A small step back after long steps in gross slip has small friction work."""
     bench, level, long, short = Bench.of(), 0.7, 0.1, 0.002
     slid = drive(law, bench, straight((0.0, level), (4.0, level), steps=40)).state

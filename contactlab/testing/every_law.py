@@ -9,8 +9,6 @@ import pickle
 from collections.abc import Iterator
 from typing import Any
 
-import attrs
-
 from contactlab.compose.composition import WAYS
 from contactlab.compose.registry import KINDS
 from contactlab.contracts import (
@@ -24,6 +22,7 @@ from contactlab.contracts import (
 )
 from contactlab.testing.check import CHECKS, check, hold
 from contactlab.testing.compare import same
+from contactlab.testing.units import with_parameters
 
 #: Similarity of two names, from 0 to 1, above which one counts as the other misspelt.
 ALIKE = 0.85
@@ -139,7 +138,7 @@ def parameters(law: Law) -> None:
     for name, value in _parameters(law):
         for wrong in _wrong(value):
             try:
-                attrs.evolve(law, **{name: wrong})  # type: ignore[misc]
+                with_parameters(law, {name: wrong})
             except ValueError as error:
                 hold(name in str(error), f"{name} = {wrong!r}: refused without its name: {error}")
             else:

@@ -196,7 +196,7 @@ class SpoiledHertz(ClosedFormNormalLaw):
         """Return the state of Hertz's law."""
         return self.law.start(scene)
 
-    def respond(self, state: Any, approach: Real, rate: Real) -> tuple[NormalContact, Any]:
+    def respond(self, state: object, approach: Real, rate: Real) -> tuple[NormalContact, Any]:
         """Return the contact of Hertz's law."""
         contact, new = self.law.respond(state, approach, rate)
         return contact, new

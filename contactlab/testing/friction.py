@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -31,7 +30,7 @@ PAID = 1e-6
 
 
 @check(SteppedTangentialLaw)
-def odd_in_slip(law: Any) -> None:
+def odd_in_slip(law: SteppedTangentialLaw) -> None:
     """Reversing every displacement reverses every force (TangentialLaw, 2)."""
     bench = Bench.of()
     for seed in SEEDS:
@@ -54,14 +53,14 @@ def odd_in_slip(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw)
-def opposes_slip(law: Any) -> None:
+def opposes_slip(law: SteppedTangentialLaw) -> None:
     """The force of a first, positive slip is positive or zero (TangentialResponse)."""
     force = drive(law, Bench.of(), straight((0.0, 0.7), (1.0, 0.7))).force
     hold(force.min() >= -ROUNDING, f"A first, positive slip meets a force of {force.min():.2g}.")
 
 
 @check(SteppedTangentialLaw)
-def units(law: Any) -> None:
+def units(law: SteppedTangentialLaw) -> None:
     """Answers do not depend on the units of length, time and mass (theory §7)."""
     converted = in_units(law, ODD_UNITS)
     for seed in SEEDS:
@@ -73,7 +72,7 @@ def units(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw)
-def coulomb_limit(law: Any) -> None:
+def coulomb_limit(law: SteppedTangentialLaw) -> None:
     """The force never exceeds mu P (TangentialLaw, 1)."""
     for seed in SEEDS:
         path = wandering(seed)
@@ -90,7 +89,7 @@ def coulomb_limit(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw)
-def separation(law: Any) -> None:
+def separation(law: SteppedTangentialLaw) -> None:
     """Out of contact there is no force (TangentialLaw, 1)."""
     away = straight((0.0, 0.7), (0.4, 0.7), (0.5, 0.0), (0.6, -0.3))
     gone = drive(law, Bench.of(), away).force[away.level <= 0.0]
@@ -98,7 +97,7 @@ def separation(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw, nature=GROWS)
-def normal_load_alone(law: Any) -> None:
+def normal_load_alone(law: SteppedTangentialLaw) -> None:
     """A change of normal load alone makes no tangential force (stepped contract, 4)."""
     bench = Bench.of()
     force = drive(law, bench, straight((0.0, 1.0), (0.0, 0.2), (0.0, 0.6))).force
@@ -115,7 +114,7 @@ def normal_load_alone(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw)
-def gross_slip(law: Any) -> None:
+def gross_slip(law: SteppedTangentialLaw) -> None:
     """A large displacement leads to F = mu P, and its friction work is F times slip."""
     path = straight((0.0, 0.7), (4.0, 0.7), (8.0, 0.7))
     answers = drive(law, Bench.of(), path)
@@ -132,7 +131,7 @@ def gross_slip(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw)
-def non_finite(law: Any) -> None:
+def non_finite(law: SteppedTangentialLaw) -> None:
     """NaN as slip or contact is refused, or gives NaN; never a finite force."""
     bench = Bench.of()
     state = drive(law, bench, straight((0.0, 0.7), (0.3, 0.7), steps=8)).state
@@ -153,7 +152,7 @@ def non_finite(law: Any) -> None:
     _non_finite_in_a_batch(law)
 
 
-def _non_finite_in_a_batch(law: Any) -> None:
+def _non_finite_in_a_batch(law: SteppedTangentialLaw) -> None:
     """Hold that NaN as the slip of one contact of a batch is refused, or gives NaN only there."""
     bench = Bench.of((3,))
     before = bench.contact(locked(np.full(3, 0.7)))
@@ -182,7 +181,7 @@ def _non_finite_in_a_batch(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw)
-def last_step(law: Any) -> None:
+def last_step(law: SteppedTangentialLaw) -> None:
     """Force and work of a step that ends with almost no load are bounded by the load before.
 
     An integrator may sample the contact at the ends of steps. The load after the last step is then

@@ -45,7 +45,7 @@ REFERENCE = {
 }
 
 
-def met(law: Any) -> Iterator[tuple[Way, float, float, Any, Any]]:
+def met(law: TangentialLaw | Integrator) -> Iterator[tuple[Way, float, float, Any, Any]]:
     """Iterate over ways, psi1 and chi, with change of psi and friction work of each impact."""
     for way in ways_of_bodies(law):
         for chi, psi1 in itertools.product(CHI, PSI1):
@@ -54,7 +54,7 @@ def met(law: Any) -> Iterator[tuple[Way, float, float, Any, Any]]:
 
 
 @check(TangentialLaw, Integrator)
-def impact_odd(law: Any) -> None:
+def impact_odd(law: TangentialLaw | Integrator) -> None:
     """An impact from the other side is the mirror image (theory §7)."""
     for way, psi1, chi, change, work in met(law):
         mirrored, _, work_back = meet(way, -psi1, chi)
@@ -67,7 +67,7 @@ def impact_odd(law: Any) -> None:
 
 
 @check(TangentialLaw)
-def impact_units(law: Any) -> None:
+def impact_units(law: TangentialLaw) -> None:
     """An impact does not depend on the units of length, time and mass (theory §7)."""
     for way, converted in zip(
         ways_of_bodies(law), ways_of_bodies(in_units(law, ODD_UNITS)), strict=True
@@ -84,7 +84,7 @@ def impact_units(law: Any) -> None:
 
 
 @check(TangentialLaw, nature=GROWS)
-def impact_bounds(law: Any) -> None:
+def impact_bounds(law: TangentialLaw) -> None:
     """|psi2| is at most |psi1|, and psi changes by at most 4 chi (theory §7)."""
     for way, psi1, chi, change, _ in met(law):
         room = allowed(way)
@@ -101,7 +101,7 @@ def impact_bounds(law: Any) -> None:
 
 
 @check(TangentialLaw, nature=CHANGES)
-def impact_books(law: Any) -> None:
+def impact_books(law: TangentialLaw) -> None:
     """The energy lost in an impact is the friction work, at any angle (theory §7)."""
     for way, psi1, chi, change, work in met(law):
         loss = -change * (psi1 + 0.5 * change)
@@ -115,7 +115,7 @@ def impact_books(law: Any) -> None:
 
 
 @check(TangentialLaw)
-def impact_coulomb_limit(law: Any) -> None:
+def impact_coulomb_limit(law: TangentialLaw) -> None:
     """The force never exceeds mu P along an impact (TangentialLaw, 1)."""
     followed = 0
     for way in ways_of_bodies(law):
@@ -136,7 +136,7 @@ def impact_coulomb_limit(law: Any) -> None:
 
 
 @check(TangentialLaw)
-def impact_central(law: Any) -> None:
+def impact_central(law: TangentialLaw) -> None:
     """A central impact makes no tangential force (TangentialLaw, 2)."""
     for way in ways_of_bodies(law):
         for chi in CHI:
@@ -147,7 +147,7 @@ def impact_central(law: Any) -> None:
 
 
 @check(TangentialLaw, Integrator)
-def impact_repeatable(law: Any) -> None:
+def impact_repeatable(law: TangentialLaw | Integrator) -> None:
     """A run does not change the law, is repeatable, and does not depend on an observer."""
     for way in ways_of_bodies(law):
         kept = copy.deepcopy(law)
@@ -168,7 +168,7 @@ def impact_repeatable(law: Any) -> None:
 
 
 @check(TangentialLaw, Integrator)
-def impact_batch(law: Any) -> None:
+def impact_batch(law: TangentialLaw | Integrator) -> None:
     """A batch of impacts of unlike bodies ends as each impact does alone (Integrator, 5)."""
     psi1 = np.array([[-2.0, 0.0, 0.3], [1.2, 5.0, 40.0]])
     chi = np.array([[0.4, 1.0, 1.5], [1.5, 3.0, 3.0]])
@@ -191,7 +191,7 @@ def impact_batch(law: Any) -> None:
 
 
 @check(TangentialLaw)
-def impact_after_another(law: Any) -> None:
+def impact_after_another(law: TangentialLaw) -> None:
     """An impact does not depend on scenes that were run before (Law, 1)."""
     first = scene(1.2, CHI[1])
     second = scene(2.0, CHI[2], bodies=1.6, friction=0.6)
@@ -212,7 +212,7 @@ def impact_after_another(law: Any) -> None:
 
 
 @check(TangentialLaw, claim="partial_slip", nature=WHOLE)
-def impact_reference(law: Any) -> None:
+def impact_reference(law: TangentialLaw) -> None:
     """Impacts with partial slip end as the exact solution does (theory §5)."""
     for way in ways_of_bodies(law):
         for (chi, psi1), psi2 in REFERENCE.items():
@@ -225,7 +225,7 @@ def impact_reference(law: Any) -> None:
 
 
 @check(AllStepsTangentialLaw)
-def all_steps(law: Any) -> None:
+def all_steps(law: AllStepsTangentialLaw) -> None:
     """All steps at once give the same as step by step, for a batch too (AllStepsTangentialLaw)."""
     way = next(iter(ways(law)))
     for chi, psi1 in itertools.product(CHI, PSI1):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import Integrator
 from contactlab.testing.check import CheckFailedError, apply_if, check, hold
@@ -24,7 +22,7 @@ NONE_FIT = "None of the faulty laws of the kit fits it."
 
 
 @check(Integrator)
-def faults_reported(integrator: Any) -> None:
+def faults_reported(integrator: Integrator) -> None:
     """A law that answers NaN, does not settle or raises gives a status and the partial history."""
     faulty = (
         FailingSpring(),
@@ -36,7 +34,7 @@ def faults_reported(integrator: Any) -> None:
 
 
 @check(Integrator)
-def faults_named(integrator: Any) -> None:
+def faults_named(integrator: Integrator) -> None:
     """The detail names a law that raises, at the start or later (Integrator, 1)."""
     faulty = (
         FailingSpring(raises=True),
@@ -52,14 +50,14 @@ def faults_named(integrator: Any) -> None:
 
 
 @check(Integrator)
-def normal_faults_reported(integrator: Any) -> None:
+def normal_faults_reported(integrator: Integrator) -> None:
     """A normal motion that becomes NaN gives a status, never an answer."""
     laws = (PressedSpring(), Slider(), SlidingForEver())
     _reported([*fitting(integrator, laws, SpoiledHertz())], least=0)
 
 
 @check(Integrator)
-def bounded(integrator: Any) -> None:
+def bounded(integrator: Integrator) -> None:
     """A run ends, under a law of any stiffness and under endless events (Integrator, 2)."""
     simulations = list(fitting(integrator, (Unyielding(), Endless()), "normal.hertz"))
     apply_if(simulations, NONE_FIT)

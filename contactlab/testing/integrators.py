@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.simulation import Simulation
-from contactlab.contracts import Integrator, TangentialMotion
+from contactlab.contracts import Integrator, Observer, TangentialMotion
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Real
 from contactlab.outcome.history import Recorder
 from contactlab.testing import limits
 from contactlab.testing.check import check, hold, hold_success
@@ -21,12 +22,16 @@ from contactlab.testing.ways import sound
 CHI = 1.4411764706
 
 
-def marched_impact(simulation: Simulation, psi1: Any, recorder: Any = None) -> TangentialMotion:
+def marched_impact(
+    simulation: Simulation, psi1: Real, recorder: Observer | None = None
+) -> TangentialMotion:
     """Return the motion of an impact by the integrator alone, without whole-impact answers."""
     return marched(simulation, scene(psi1, CHI), recorder)
 
 
-def marched(simulation: Simulation, impact: Any, recorder: Any = None) -> TangentialMotion:
+def marched(
+    simulation: Simulation, impact: Scene, recorder: Observer | None = None
+) -> TangentialMotion:
     """Return the motion of a scene by the integrator alone, without whole-impact answers."""
     limits.begin(f"an impact under {type(simulation.tangential).__name__}")
     normal = normal_motion(simulation.normal, impact)
@@ -34,7 +39,7 @@ def marched(simulation: Simulation, impact: Any, recorder: Any = None) -> Tangen
 
 
 @check(Integrator)
-def ends_well(integrator: Any) -> None:
+def ends_well(integrator: Integrator) -> None:
     """An impact under a sound law ends with success and finite numbers (Integrator, 1)."""
     for simulation in sound(integrator):
         motion = marched_impact(simulation, 2.0)
@@ -61,7 +66,7 @@ def slip_velocity(psi1: float) -> float:
 
 
 @check(Integrator)
-def observer_changes_nothing(integrator: Any) -> None:
+def observer_changes_nothing(integrator: Integrator) -> None:
     """An observer is called at increasing times, and changes no result (Integrator, 3)."""
     for simulation in sound(integrator):
         recorder = Recorder((), with_fields=True)

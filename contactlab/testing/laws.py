@@ -24,6 +24,7 @@ from contactlab.contracts import (
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
+from contactlab.numeric.vectors import Array
 
 
 class Stretched(NamedTuple):
@@ -74,7 +75,7 @@ class PressedSpring(SteppedTangentialLaw):
         """
         from scipy.integrate import solve_ivp
 
-        def slope(phase: float, state: Any) -> list[float]:
+        def slope(phase: float, state: Array) -> list[float]:
             contact = motion.scaled_at(phase)
             rate = contact.time_rate
             return [-rate * cls.strength * contact.force * state[1], rate * state[0]]
@@ -252,14 +253,14 @@ class PullingHertz(NormalLaw):
     offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure"})
     pull: ClassVar[float] = 0.05
 
-    def start(self, scene: Scene) -> tuple[Any, Any, Any]:
+    def start(self, scene: Scene) -> tuple[Real, Real, Real]:
         """Return stiffness in N/m^1.5, radius in m and pull in N."""
         pair = scene.pair
         stiffness = (4.0 / 3.0) * pair.effective_modulus * pair.radius**0.5
         return stiffness, pair.radius, self.pull * hertz_scales(scene).force
 
     def respond(
-        self, state: tuple[Any, Any, Any], approach: Real, rate: Real
+        self, state: tuple[Real, Real, Real], approach: Real, rate: Real
     ) -> tuple[NormalContact, Any]:
         """Return the contact."""
         stiffness, radius, pull = state

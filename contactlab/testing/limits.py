@@ -8,7 +8,6 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
-from typing import Any
 
 #: Processor time of a check, in s; contactlab's own laws take a few seconds on a slow machine.
 SECONDS = 60.0
@@ -42,7 +41,7 @@ def begin(what: str) -> None:
 
 
 @contextmanager
-def limited(name: str, law: Any, seconds: float = SECONDS) -> Iterator[None]:
+def limited(name: str, law: object, seconds: float = SECONDS) -> Iterator[None]:
     """Raise ``OutOfTimeError`` in the body after ``seconds`` of processor time.
 
     Only the main thread of a system with SIGALRM can be interrupted; elsewhere there is no limit.
@@ -88,7 +87,7 @@ def limited(name: str, law: Any, seconds: float = SECONDS) -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
 
 
-def _sentence(name: str, law: Any, after: str, frame: FrameType | None) -> str:
+def _sentence(name: str, law: object, after: str, frame: FrameType | None) -> str:
     """Return a sentence on the check stopped, its time, and the line that the law was at."""
     what = f", in {DOING.what}" if DOING.what else ""
     steps = f" at step {DOING.steps}" if DOING.steps else ""

@@ -23,6 +23,7 @@ from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
+from contactlab.numeric.checks import Real
 from contactlab.testing import limits
 from contactlab.testing.check import hold
 from contactlab.testing.units import Units
@@ -38,7 +39,12 @@ STEPS_TO_KNOT = 40
 
 
 def scene(
-    psi1: Any, chi: Any, *, friction: Any = FRICTION, units: Units | None = None, bodies: Any = 1.0
+    psi1: Real,
+    chi: Real,
+    *,
+    friction: Real = FRICTION,
+    units: Units | None = None,
+    bodies: Real = 1.0,
 ) -> Scene:
     """Return the scene of a ball like one of steel, by psi1 and chi, in a system of units.
 
@@ -64,7 +70,7 @@ def scene(
     return Scene(None, None, friction, speed, psi1 * friction * speed / kappa, pair=pair)
 
 
-def bodies(*shape: int) -> Any:
+def bodies(*shape: int) -> Array:
     """Return values of ``bodies`` of ``scene`` for a batch of unlike bodies."""
     return np.linspace(0.6, 1.6, math.prod(shape)).reshape(shape)
 
@@ -141,14 +147,14 @@ class Bench:
         """Return the state of ``law`` at first touch."""
         return law.start(self.scene, self.normal)
 
-    def contact(self, level: Any) -> NormalContact:
+    def contact(self, level: Real) -> NormalContact:
         """Return the Hertz contact at zeta = ``level``; negative levels are out of contact."""
         inside = level * (level > 0.0)
         force = locked(self.force * inside**1.5)
         radius, overlap = locked(self.radius * inside**0.5), locked(self.approach * level)
         return NormalContact(force, radius, overlap, force)
 
-    def increment(self, slip: Any, after: NormalContact, duration: Any) -> Increment:
+    def increment(self, slip: Real, after: NormalContact, duration: Real) -> Increment:
         """Return the increment of a step by ``slip``, scaled."""
         displacement = locked(self.slip * slip)
         return Increment(
@@ -169,11 +175,11 @@ def drive(law: SteppedTangentialLaw, bench: Bench, path: Path) -> Answers:
 def continue_from(
     law: SteppedTangentialLaw,
     bench: Bench,
-    state: Any,
+    state: object,
     path: Path,
     *,
-    slip: Any = 0.0,
-    level: Any = 0.0,
+    slip: Real = 0.0,
+    level: Real = 0.0,
     count: int | None = None,
 ) -> Answers:
     """Return the answers of ``law`` along ``path``, beginning at ``state``.

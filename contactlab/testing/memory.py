@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from contactlab.contracts import SteppedTangentialLaw
@@ -19,7 +17,7 @@ STILL = 400
 
 
 @check(SteppedTangentialLaw, nature="it has no memory")
-def turning_points(law: Any) -> None:
+def turning_points(law: SteppedTangentialLaw) -> None:
     """Masing: unloading is loading doubled, and a closed loop leaves no memory (theory §7)."""
     bench, press = Bench.of(), (0.0, LEVEL)
     for turn in (0.3, 0.6, 1.5):
@@ -45,7 +43,7 @@ def turning_points(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw, claim="partial_slip", nature=WHOLE)
-def cattaneo_mindlin(law: Any) -> None:
+def cattaneo_mindlin(law: SteppedTangentialLaw) -> None:
     """At fixed P, F/(mu P) = 1 - (1 - xi)^1.5: slip from the edge inwards (theory §7)."""
     path = straight((0.0, LEVEL), (1.3 * LEVEL, LEVEL), steps=65)
     force = drive(law, Bench.of(), path).force[65:] / LEVEL**1.5
@@ -59,7 +57,7 @@ def cattaneo_mindlin(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw)
-def contact_again(law: Any) -> None:
+def contact_again(law: SteppedTangentialLaw) -> None:
     """After separation, for one step or more, a contact begins without memory (stepped, 1)."""
     bench = Bench.of()
     touched = straight((0.0, LEVEL), (0.5, LEVEL), steps=16)
@@ -83,7 +81,7 @@ def contact_again(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw)
-def held_still(law: Any) -> None:
+def held_still(law: SteppedTangentialLaw) -> None:
     """Without displacement a contact keeps its force over any number of steps.
 
     The first step does not count, because a dashpot loses its force there.

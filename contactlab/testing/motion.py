@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import ClosedFormNormalLaw
+from contactlab.numeric.vectors import Array
 from contactlab.testing.check import check, hold, within
 from contactlab.testing.load_paths import scene
 from contactlab.testing.normal import STEPS, respond
@@ -17,7 +18,7 @@ PHASES = 2001
 
 
 @check(ClosedFormNormalLaw)
-def motion_agrees(law: Any) -> None:
+def motion_agrees(law: ClosedFormNormalLaw) -> None:
     """The motion in closed form has the contacts of ``respond``, and starts at touch with v1."""
     impact: Any = scene(0.0, 1.0)
     speed, motion = impact.normal_speed, law.motion(impact)
@@ -31,7 +32,7 @@ def motion_agrees(law: Any) -> None:
     ):
         # At separation rounding decides between the limit of the radius and zero.
         difference = np.abs(value - expected)[: -1 if name == "radius" else None]
-        gap = float(np.max(difference)) / scale
+        gap = float(np.max(difference)) / float(scale)
         within(gap, 1e-8, f"The {name} of the motion is {gap:.1e} off that of respond.")
     start = motion.at(0.0)
     rate_at_touch = float(start.rate)
@@ -45,7 +46,7 @@ def motion_agrees(law: Any) -> None:
 
 
 @check(ClosedFormNormalLaw)
-def motion_obeys_newton(law: Any) -> None:
+def motion_obeys_newton(law: ClosedFormNormalLaw) -> None:
     """Mass times change of rate is the force, and approach the integral of rate."""
     impact: Any = scene(0.0, 1.0)
     motion = law.motion(impact)
@@ -54,7 +55,7 @@ def motion_obeys_newton(law: Any) -> None:
     per_time = motion.maximum_approach / impact.normal_speed
     time_rate, width = np.asarray(motion.scaled(phases).time_rate) * per_time, np.diff(phases)
 
-    def gathered(slope: Any) -> Any:
+    def gathered(slope: Array) -> Array:
         return np.concatenate(([0.0], np.cumsum(0.5 * (slope[1:] + slope[:-1]) * width)))
 
     unit = 2.0 * impact.normal_speed
@@ -69,21 +70,21 @@ def motion_obeys_newton(law: Any) -> None:
         ("time", np.asarray(time), time_rate, motion.duration),
         ("load impulse", impulse, contact.friction_load * time_rate, motion.total_load_impulse),
     ):
-        gap = float(np.max(np.abs(change - gathered(slope)))) / scale
+        gap = float(np.max(np.abs(change - gathered(slope)))) / float(scale)
         within(gap, 1e-5, f"The {name} is {gap:.1e} off what its derivative adds up to.")
     for name, last, total in (
         ("duration", time[-1], motion.duration),
         ("final rate", rate[-1], motion.final_rate),
         ("total load impulse", impulse[-1], motion.total_load_impulse),
     ):
-        within(abs(float(last) / total - 1.0), 1e-9, f"It does not end at its {name}.")
+        within(abs(float(last) / float(total) - 1.0), 1e-9, f"It does not end at its {name}.")
     mass = motion.maximum_force * per_time / (impact.pair.normal_mass * impact.normal_speed)
     gap = abs(motion.scaled_mass * mass - 1.0)
     within(gap, 1e-9, f"The scaled mass is {gap:.1e} off that of Newton's law.")
 
 
 @check(ClosedFormNormalLaw)
-def motion_scaled(law: Any) -> None:
+def motion_scaled(law: ClosedFormNormalLaw) -> None:
     """``scaled``, ``scaled_at``, ``phase`` and ``phase_at_rate`` agree with ``at``."""
     impact: Any = scene(0.0, 1.0)
     motion = law.motion(impact)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import math
-from typing import Any
 
 import numpy as np
 
@@ -12,8 +11,10 @@ from contactlab.contracts import NormalContact, NormalLaw
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
+from contactlab.numeric.checks import Real
+from contactlab.numeric.vectors import Array
 from contactlab.testing import limits
-from contactlab.testing.check import check, hold, within
+from contactlab.testing.check import CheckFailedError, check, hold, within
 from contactlab.testing.compare import hold_read_only, same, well_formed
 from contactlab.testing.load_paths import bodies, scene, varied
 from contactlab.testing.units import ODD_UNITS, Units, in_units
@@ -27,8 +28,8 @@ DIFFERENT, SPARSE = ("normal_speed", "radius", "effective_modulus", "normal_mass
 
 
 def strokes(
-    units: Units | None = None, *, bodies: Any = 1.0, given: Scene | None = None
-) -> tuple[Scene, Any, Any]:
+    units: Units | None = None, *, bodies: Real = 1.0, given: Scene | None = None
+) -> tuple[Scene, Array, Array]:
     """Return a scene, and approach (m) and rate (m/s) of a press and release, shape (K, ...).
 
     As in an impact, the course leads from first touch to out of contact.
@@ -39,7 +40,7 @@ def strokes(
     return given, approach, np.multiply.outer(np.cos(x), given.normal_speed)
 
 
-def respond(law: Any, impact: Scene, approach: Any, rate: Any) -> Any:
+def respond(law: NormalLaw, impact: Scene, approach: Array, rate: Array) -> Array:
     """Return force, radius, overlap and friction load along a course, shape (4, K, ...).
 
     Parameters
@@ -60,20 +61,19 @@ def respond(law: Any, impact: Scene, approach: Any, rate: Any) -> Any:
     return answers
 
 
-def _rows(column: Any) -> Any:
+def _rows(column: Array) -> list[Real]:
     """Return the rows of a column: floats for one impact, read-only arrays for a batch."""
     return column.tolist() if column.ndim == 1 else [locked(row.copy()) for row in column]
 
 
-def _complete(contact: Any) -> NormalContact:
-    if not isinstance(contact, NormalContact):
-        hold(False, f"respond returned {contact!r}, no NormalContact.")
-    complete: NormalContact = contact.complete
-    return complete
+def _complete(contact: object) -> NormalContact:
+    if isinstance(contact, NormalContact):
+        return contact.complete
+    raise CheckFailedError(f"respond returned {contact!r}, no NormalContact.")
 
 
 @check(NormalLaw)
-def contacts(law: Any) -> None:
+def contacts(law: NormalLaw) -> None:
     """Every answer holds real, finite numbers of the batch's shape (NormalContact)."""
     for shape in ((), (3,), (2, 3)):
         impact, approach, rate = strokes(bodies=bodies(*shape) if shape else 1.0)
@@ -89,7 +89,7 @@ def contacts(law: Any) -> None:
 
 
 @check(NormalLaw)
-def contacts_batch(law: Any) -> None:
+def contacts_batch(law: NormalLaw) -> None:
     """A batch of unlike bodies gives the same as each contact alone (NormalLaw, 3)."""
     for quantity in DIFFERENT:
         impact, approach, rate = strokes(given=varied(quantity))
@@ -101,7 +101,7 @@ def contacts_batch(law: Any) -> None:
     _alike(law, *strokes(bodies=bodies(2, 3)), "of a batch of shape (2, 3)")
 
 
-def _alike(law: Any, impacts: Scene, approach: Any, rate: Any, words: str) -> None:
+def _alike(law: NormalLaw, impacts: Scene, approach: Array, rate: Array, words: str) -> None:
     """Hold that the contacts of a batch answer as each contact does alone."""
     shape = (len(approach), *impacts.shape)
     approach, rate = (np.broadcast_to(column.T, shape[::-1]).T for column in (approach, rate))
@@ -116,7 +116,7 @@ def _alike(law: Any, impacts: Scene, approach: Any, rate: Any, words: str) -> No
 
 
 @check(NormalLaw)
-def contacts_pure(law: Any) -> None:
+def contacts_pure(law: NormalLaw) -> None:
     """``respond`` changes neither the state passed to it nor the law (NormalLaw, 2)."""
     impact, approach, rate = strokes()
     kept_law, state = copy.deepcopy(law), law.start(impact)
@@ -132,14 +132,14 @@ def contacts_pure(law: Any) -> None:
 
 
 @check(NormalLaw)
-def contacts_read_only(law: Any) -> None:
+def contacts_read_only(law: NormalLaw) -> None:
     """The law does not write into its arguments (Law, 7)."""
     impacts, approach, rate = strokes(bodies=bodies(3))
     hold_read_only(lambda: respond(law, impacts, approach, rate), impacts)
 
 
 @check(NormalLaw)
-def contacts_units(law: Any) -> None:
+def contacts_units(law: NormalLaw) -> None:
     """Answers do not depend on the units of length, time and mass (theory §7)."""
     length, time, mass = ODD_UNITS
     in_si = respond(law, *strokes())
@@ -155,7 +155,7 @@ def contacts_units(law: Any) -> None:
 
 
 @check(NormalLaw)
-def contacts_non_finite(law: Any) -> None:
+def contacts_non_finite(law: NormalLaw) -> None:
     """NaN as approach or rate gives NaN, never "no contact" (NormalLaw, 4)."""
     impact, approach, rate = strokes()
     batch = strokes(bodies=bodies(2))[0]
@@ -173,10 +173,11 @@ def contacts_non_finite(law: Any) -> None:
         hold(not overlap <= 0.0, "An approach of NaN is taken for no contact.")
         hold(math.isnan(load), f"An approach of NaN gives a friction load of {load!r}.")
     try:
-        force, *_ = law.respond(law.start(impact), depth, math.nan)[0].complete
+        unsure, *_ = law.respond(law.start(impact), depth, math.nan)[0].complete
         at_rest, *_ = law.respond(law.start(impact), depth, 0.0)[0].complete
         moving, *_ = law.respond(law.start(impact), depth, speed)[0].complete
     except (ValueError, ArithmeticError):
         return
     if at_rest != moving:  # a force that does not depend on the rate may ignore a rate of NaN
-        hold(math.isnan(force), f"A rate of NaN gives a force of {float(force)!r}, as if at rest.")
+        told = f"A rate of NaN gives a force of {float(unsure)!r}, as if at rest."
+        hold(math.isnan(unsure), told)

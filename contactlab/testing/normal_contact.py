@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -23,7 +22,7 @@ NEAR, BEHIND = 1e-9, 0.5
 
 
 @check(NormalLaw)
-def presses(law: Any) -> None:
+def presses(law: NormalLaw) -> None:
     """Force, radius and friction load vanish out of contact; no friction load is negative.
 
     In contact the force may be negative, but the friction load may not.
@@ -50,7 +49,7 @@ def presses(law: Any) -> None:
 
 
 @check(NormalLaw)
-def grows(law: Any) -> None:
+def grows(law: NormalLaw) -> None:
     """Force, radius and friction load do not fall as the approach grows at a constant rate.
 
     In an impact a damped force reaches its maximum before the approach does.
@@ -65,7 +64,7 @@ def grows(law: Any) -> None:
 
 
 @check(NormalLaw, claim="radius")
-def radius(law: Any) -> None:
+def radius(law: NormalLaw) -> None:
     """A law that offers ``radius`` has a positive contact radius wherever it presses.
 
     First touch is excepted, because a dashpot presses there on a point.
@@ -84,7 +83,7 @@ def radius(law: Any) -> None:
 
 
 @check(NormalLaw, claim="hertzian_pressure")
-def hertzian_pressure(law: Any) -> None:
+def hertzian_pressure(law: NormalLaw) -> None:
     """b² is R z (2) if the law is elastic, and between R z and 2 R z at greatest compression.
 
     The force does not give the radius of a hemisphere of pressure under a damped or plastic law,
@@ -93,6 +92,7 @@ def hertzian_pressure(law: Any) -> None:
     compression, and never exceeds 2 R z_max.
     """
     impact, stroke, rate = strokes()
+    R = float(impact.pair.radius)
     depths = np.linspace(0.0, float(stroke.max()), STEPS + 1)
     course = np.concatenate((depths, depths[::-1]))
     for name, approach, speed in (
@@ -101,13 +101,13 @@ def hertzian_pressure(law: Any) -> None:
     ):
         force, radius, _, _ = respond(law, impact, approach, speed)
         deepest = int(approach.argmax())
-        share = float(radius[deepest] ** 2) / (impact.pair.radius * float(approach[deepest]))
+        share = float(radius[deepest] ** 2) / (R * float(approach[deepest]))
         hold(
             share >= ELASTIC - ROOM,
             f"{name} b² is {share:.3g} R z at greatest compression: less than an elastic "
             "sphere's (2).",
         )
-        share = float(np.max(radius**2)) / (impact.pair.radius * float(approach.max()))
+        share = float(np.max(radius**2)) / (R * float(approach.max()))
         within(
             share,
             GEOMETRIC + ROOM,
@@ -125,7 +125,7 @@ def hertzian_pressure(law: Any) -> None:
 
 
 @check(NormalLaw)
-def viscous(law: Any) -> None:
+def viscous(law: NormalLaw) -> None:
     """A viscous law has Hertz's radius and force at rest, and more in approach (NormalLaw, 8)."""
     apply_if(law.viscous, "It is not viscous.")
     impact, approach, _ = strokes()
@@ -143,7 +143,7 @@ def viscous(law: Any) -> None:
 
 
 @check(NormalLaw, claim="kelvin_voigt")
-def kelvin_voigt(law: Any) -> None:
+def kelvin_voigt(law: NormalLaw) -> None:
     """In unloading the pressure is Hertz's over b² = R (z + A z'), with one relaxation time A."""
     impact, approach, _ = strokes()
     pair, speed = impact.pair, float(impact.normal_speed)
@@ -159,7 +159,7 @@ def kelvin_voigt(law: Any) -> None:
 
 
 @check(NormalLaw, claim="elastic_hertz")
-def elastic_hertz(law: Any) -> None:
+def elastic_hertz(law: NormalLaw) -> None:
     """Radius (2), force (4) and impact (7)-(9) agree with elastic Hertz contact."""
     impact, approach, rate = strokes()
     pair, inside = impact.pair, np.maximum(approach, 0.0)

@@ -10,6 +10,8 @@ import numpy as np
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import NormalContact, NormalLaw, NormalMotion
 from contactlab.contracts.status import Status
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Real
 from contactlab.testing import limits
 from contactlab.testing.check import apply_if, check, hold, within
 from contactlab.testing.load_paths import bodies, scene
@@ -42,10 +44,10 @@ class _Stepwise(NormalLaw):
     def __init__(self, law: NormalLaw) -> None:
         self.law = law
 
-    def start(self, scene: Any) -> Any:
+    def start(self, scene: Scene) -> Any:
         return self.law.start(scene)
 
-    def respond(self, state: Any, approach: Any, rate: Any) -> tuple[NormalContact, Any]:
+    def respond(self, state: object, approach: Real, rate: Real) -> tuple[NormalContact, Any]:
         return self.law.respond(state, approach, rate)
 
 
@@ -54,7 +56,7 @@ def _pulls(motion: NormalMotion) -> bool:
     return bool(np.min(motion.at(np.linspace(0.0, np.pi, 101)).contact.force) < 0.0)
 
 
-def impacts(law: Any) -> Iterator[NormalMotion]:
+def impacts(law: NormalLaw) -> Iterator[NormalMotion]:
     """Iterate over motions of the law at several speeds, solved and in closed form.
 
     Raises
@@ -80,7 +82,7 @@ def impacts(law: Any) -> Iterator[NormalMotion]:
 
 
 @check(NormalLaw)
-def normal_passive(law: Any) -> None:
+def normal_passive(law: NormalLaw) -> None:
     """A closed cycle that begins and ends out of contact gives no energy, at any rates.
 
     Cycles press slowly and release fast, or the reverse; some release in part and press again.
@@ -116,7 +118,7 @@ def normal_passive(law: Any) -> None:
 
 
 @check(NormalLaw)
-def rebounds(law: Any) -> None:
+def rebounds(law: NormalLaw) -> None:
     """The bodies part no faster than v1, and the impulse of the force is the change of momentum."""
     from scipy.integrate import trapezoid  # help and lists import this file and need no scipy
 
@@ -136,7 +138,7 @@ def rebounds(law: Any) -> None:
 
 
 @check(NormalLaw)
-def ends_unloaded(law: Any) -> None:
+def ends_unloaded(law: NormalLaw) -> None:
     """The force is zero or negative when contact ends."""
     for motion in impacts(law):
         last = motion.at(np.asarray(np.pi)).contact
@@ -147,7 +149,7 @@ def ends_unloaded(law: Any) -> None:
 
 
 @check(NormalLaw)
-def motion_batch(law: Any) -> None:
+def motion_batch(law: NormalLaw) -> None:
     """A batch of unlike bodies moves as each pair does alone (Integrator, 5)."""
     impact = scene(0.0, 1.0, bodies=bodies(4))
     limits.begin("the normal motion of a batch")

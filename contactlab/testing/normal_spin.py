@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import attrs
 import numpy as np
 
@@ -46,7 +44,7 @@ def run(way: Way, psi1: float, w1: float) -> ImpactResult:
 
 
 @check(TangentialLaw, word=ANSWERS)
-def spin_is_odd(law: Any) -> None:
+def spin_is_odd(law: TangentialLaw) -> None:
     """The other sense of spin keeps psi2, and turns the change of the spin (tangential, 10)."""
     for way in ways(law):
         for psi1 in PSI1:
@@ -61,7 +59,7 @@ def spin_is_odd(law: Any) -> None:
 
 
 @check(TangentialLaw, word=ANSWERS)
-def spin_slows(law: Any) -> None:
+def spin_slows(law: TangentialLaw) -> None:
     """Friction takes spin, less than would return it faster, and no energy comes of it."""
     for way in ways(law):
         for psi1 in PSI1:
@@ -75,7 +73,7 @@ def spin_slows(law: Any) -> None:
 
 
 @check(TangentialLaw, word=ANSWERS)
-def spin_vanishes(law: Any) -> None:
+def spin_vanishes(law: TangentialLaw) -> None:
     """A spin that vanishes leaves the answer without spin, to the law's own error."""
     for way in ways(law):
         for psi1 in PSI1:
@@ -92,7 +90,7 @@ def spin_vanishes(law: Any) -> None:
 
 
 @check(TangentialLaw, word=LEAVES)
-def spin_is_left(law: Any) -> None:
+def spin_is_left(law: TangentialLaw) -> None:
     """A law without the word changes no spin about the normal, and psi2 does not feel it."""
     for way in ways(law):
         for psi1 in FEW:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
 
 import numpy as np
 
 from contactlab.contracts import TangentialLaw
 from contactlab.impact.hertz import rigid_body_rebound
+from contactlab.numeric.checks import Real
 from contactlab.testing.check import check, hold
 from contactlab.testing.ways import meet, ways
 
@@ -18,18 +19,18 @@ CHI = (0.3, 1.4412, 3.0)
 
 
 @check(TangentialLaw, claim="rigid")
-def rigid_body(law: Any) -> None:
+def rigid_body(law: TangentialLaw) -> None:
     """Impacts end as rigid bodies do: abs(psi) falls by 4 chi, or to zero (theory §2)."""
     _ends(law, rigid_body_rebound)
 
 
 @check(TangentialLaw, claim="no_friction")
-def no_friction(law: Any) -> None:
+def no_friction(law: TangentialLaw) -> None:
     """Impacts do not change the slip velocity."""
     _ends(law, lambda psi1, _: psi1)
 
 
-def _ends(law: Any, expected: Any) -> None:
+def _ends(law: TangentialLaw, expected: Callable[[float, float], Real]) -> None:
     """Hold that psi2 of elastic impacts is ``expected(psi1, chi)``."""
     for way in ways(law):
         for chi in CHI:

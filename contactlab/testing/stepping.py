@@ -11,6 +11,8 @@ from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import SteppedTangentialLaw
 from contactlab.numeric.arrays import locked
+from contactlab.numeric.checks import Real
+from contactlab.numeric.vectors import Array
 from contactlab.testing.check import check, hold, within, worst
 from contactlab.testing.compare import hold_read_only, same, well_formed
 from contactlab.testing.load_paths import (
@@ -29,7 +31,7 @@ ROUNDING = 1e-9
 
 
 @check(SteppedTangentialLaw)
-def answers(law: Any) -> None:
+def answers(law: SteppedTangentialLaw) -> None:
     """Every answer holds real, finite numbers of the batch's shape (TangentialResponse)."""
     for shape in ((), (3,), (2, 3)):
         bench = Bench.of(shape)
@@ -55,7 +57,7 @@ def answers(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw)
-def batch(law: Any) -> None:
+def batch(law: SteppedTangentialLaw) -> None:
     """A batch of unlike bodies gives the same as each contact alone (Integrator, 5)."""
     short = wandering(2, knots=4, steps=8)
     for quantity in QUANTITIES:
@@ -67,7 +69,7 @@ def batch(law: Any) -> None:
     _alike(law, Bench.of((2, 3)), paths, "of a batch of shape (2, 3)")
 
 
-def _alike(law: Any, whole: Bench, paths: list[Path], words: str) -> None:
+def _alike(law: SteppedTangentialLaw, whole: Bench, paths: list[Path], words: str) -> None:
     """Hold that the contacts of a batch, each along its path, answer as each does alone."""
     shape = whole.scene.shape
     slips, levels = (np.stack(each, 1) for each in zip(*paths, strict=True))
@@ -81,7 +83,7 @@ def _alike(law: Any, whole: Bench, paths: list[Path], words: str) -> None:
 
 
 @check(SteppedTangentialLaw)
-def pure(law: Any) -> None:
+def pure(law: SteppedTangentialLaw) -> None:
     """``advance`` changes neither the state passed to it nor the law (stepped contract, 2)."""
     law_before = copy.deepcopy(law)
     _pure(law, (), knots=6)
@@ -89,7 +91,7 @@ def pure(law: Any) -> None:
     hold(same(law, law_before), "The law itself was changed by a run.")
 
 
-def _pure(law: Any, shape: tuple[int, ...], *, knots: int) -> None:
+def _pure(law: SteppedTangentialLaw, shape: tuple[int, ...], *, knots: int) -> None:
     """Hold that steps tried and discarded change nothing, for one contact or a batch."""
     bench, path = Bench.of(shape), _spread(wandering(6, knots=knots), shape)
     before, slip, state = bench.contact(0.0 * path.level[0]), 0.0 * path.slip[0], bench.start(law)
@@ -113,7 +115,7 @@ def _pure(law: Any, shape: tuple[int, ...], *, knots: int) -> None:
 
 
 @check(SteppedTangentialLaw)
-def read_only(law: Any) -> None:
+def read_only(law: SteppedTangentialLaw) -> None:
     """The law does not write into its arguments (Law, 7)."""
     bench = Bench.of((3,))
     path = _spread(wandering(9, knots=5, steps=6), (3,))
@@ -121,7 +123,7 @@ def read_only(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw)
-def repeatable(law: Any) -> None:
+def repeatable(law: SteppedTangentialLaw) -> None:
     """Interleaved runs of one law do not change each other's forces (Law, 1)."""
     bench, paths = Bench.of(), (wandering(7, knots=6), wandering(8, knots=6))
     alone = [drive(law, bench, path).force for path in paths]
@@ -144,7 +146,7 @@ def repeatable(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw)
-def fields(law: Any) -> None:
+def fields(law: SteppedTangentialLaw) -> None:
     """``fields`` returns arrays by name and changes no state (stepped contract, 5)."""
     bench = Bench.of()
     state = drive(law, bench, straight((0.0, 0.7), (0.3, 0.7), steps=8)).state
@@ -162,7 +164,7 @@ def _spread(path: Path, shape: tuple[int, ...]) -> Path:
     return Path(np.multiply.outer(path.slip, factor), np.multiply.outer(path.level, factor))
 
 
-def _row(column: Any, step: int) -> Any:
+def _row(column: Array, step: int) -> Real:
     row = column[step]
     return row if isinstance(row, np.ndarray) and row.ndim else float(row)
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
-from contactlab.contracts import SteppedTangentialLaw
+from contactlab.contracts import NormalContact, SteppedTangentialLaw
+from contactlab.numeric.vectors import Array
 from contactlab.testing.check import check, hold, within, worst
 from contactlab.testing.laws import SoftHertz
 from contactlab.testing.load_paths import (
@@ -30,7 +30,7 @@ SLIPS = (1e-3, 2.0)
 
 
 @check(SteppedTangentialLaw)
-def stiffness(law: Any) -> None:
+def stiffness(law: SteppedTangentialLaw) -> None:
     """``stiffness`` is an upper bound of dF/dD, from which stable steps follow (stepped, 6).
 
     The contacts are as large as Hertz's, and larger under a softer normal law.
@@ -53,7 +53,7 @@ def stiffness(law: Any) -> None:
             )
 
 
-def _steepest(law: Any, bench: Bench, level: float, size: float) -> float:
+def _steepest(law: SteppedTangentialLaw, bench: Bench, level: float, size: float) -> float:
     """Return the largest scaled dF/dD as a contact at fixed load is sheared to and fro."""
     pressed = drive(law, bench, straight((0.0, level), steps=8)).state
     slip = straight((size, 0.0), (-size, 0.0), (0.5 * size, 0.0), steps=16).slip
@@ -63,7 +63,7 @@ def _steepest(law: Any, bench: Bench, level: float, size: float) -> float:
     return float(slopes.max())
 
 
-def _ignores_displacement(law: Any, bench: Bench) -> None:
+def _ignores_displacement(law: SteppedTangentialLaw, bench: Bench) -> None:
     """Hold that the force of a law of stiffness 0 does not depend on displacement."""
     after = bench.contact(0.7)
     increment = bench.increment(0.1, after, bench.time / 16.0)
@@ -74,7 +74,7 @@ def _ignores_displacement(law: Any, bench: Bench) -> None:
 
 
 @check(SteppedTangentialLaw)
-def tension(law: Any) -> None:
+def tension(law: SteppedTangentialLaw) -> None:
     """Under a negative normal force abs(F) is at most mu times the friction load, and F is odd.
 
     The force of an adhesive contact becomes negative before separation; its friction load is what
@@ -100,7 +100,7 @@ def tension(law: Any) -> None:
         )
 
 
-def _pulled(law: Any, bench: Bench, pulled: Any, sense: float) -> Any:
+def _pulled(law: SteppedTangentialLaw, bench: Bench, pulled: NormalContact, sense: float) -> Array:
     """Return the scaled forces of a sheared contact that comes under tension and is moved on."""
     pressed = drive(law, bench, straight((0.0, 0.7), (0.4 * sense, 0.7), steps=8)).state
     state, before, forces = pressed, bench.contact(0.7), []

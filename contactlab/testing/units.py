@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
-from typing import Any, NamedTuple
+from collections.abc import Callable, Mapping
+from typing import NamedTuple, TypeVar
 
 import attrs
 
+from contactlab.contracts import Law
 from contactlab.testing.check import hold
 
 
@@ -28,7 +30,10 @@ POWERS = {
 _TOKEN = re.compile(r"([A-Za-z]+|1)(?:\^(-?\d+(?:\.\d+)?))?")
 
 
-def in_units(law: Any, units: Units) -> Any:
+SameLaw = TypeVar("SameLaw", bound=Law)
+
+
+def in_units(law: SameLaw, units: Units) -> SameLaw:
     """Return ``law`` with its parameters in ``units``.
 
     The metadata of a field states its unit, as ``contactlab.numeric.checks.quantity`` writes it:
@@ -39,14 +44,21 @@ def in_units(law: Any, units: Units) -> Any:
     CheckFailedError
         If a unit is not understood.
     """
-    if not attrs.has(type(law)):
+    kind: type[object] = type(law)
+    if not attrs.has(kind):
         return law
     changed = {}
-    for field in attrs.fields(type(law)):
+    for field in attrs.fields(kind):
         value, unit = getattr(law, field.name), field.metadata.get("unit", "")
         if field.init and unit not in ("", "1") and isinstance(value, float):
             changed[field.name] = value * factor(unit, units)
-    return attrs.evolve(law, **changed) if changed else law
+    return with_parameters(law, changed) if changed else law
+
+
+def with_parameters(law: SameLaw, values: Mapping[str, object]) -> SameLaw:
+    """Return a law with other values of some parameters; ValueError if the law refuses one."""
+    evolve: Callable[..., SameLaw] = attrs.evolve  # not every law is an attrs class to a checker
+    return evolve(law, **values)
 
 
 def factor(unit: str, units: Units) -> float:

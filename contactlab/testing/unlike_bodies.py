@@ -12,6 +12,7 @@ from contactlab.impact.bodies import Sphere
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
+from contactlab.numeric.vectors import Array
 from contactlab.testing.check import check, within, worst
 from contactlab.testing.load_paths import FRICTION
 from contactlab.testing.normal import STEPS, respond
@@ -111,21 +112,21 @@ def _gap(scene: Scene, expected: Answer, answer: Answer) -> float:
 
 
 @check(TangentialLaw, Integrator)
-def unlike_bodies(law: Any) -> None:
+def unlike_bodies(law: TangentialLaw | Integrator) -> None:
     """Impacts of unlike balls depend on the pair alone, not on their order (theory §1)."""
     for way in ways(law):
         _hold_pairs(way)
 
 
 @check(TangentialLaw, Integrator)
-def spin(law: Any) -> None:
+def spin(law: TangentialLaw | Integrator) -> None:
     """The rebound depends on the slip velocity, not on the part that is spin, eq. (20)."""
     for way in ways(law):
         _hold_spin(way)
 
 
 @check(NormalLaw)
-def contacts_unlike(law: Any) -> None:
+def contacts_unlike(law: NormalLaw) -> None:
     """Contacts of unlike balls depend on the pair alone, not on their order (theory §1)."""
     for which, words in ((1, "exchanged, the"), (2, "in a scene of the pair without bodies, the")):
         for quantity in BALL:
@@ -145,7 +146,7 @@ def contacts_unlike(law: Any) -> None:
                 )
 
 
-def _course(law: Any, impact: Scene) -> Any:
+def _course(law: NormalLaw, impact: Scene) -> Array:
     """Return force, radius, overlap and friction load of a press and release, shape (4, K)."""
     x = np.linspace(0.0, math.pi, STEPS)
     depth, speed = float(hertz_scales(impact).approach), float(np.asarray(impact.normal_speed))

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import attrs
 import numpy as np
 from numpy.typing import NDArray
@@ -44,7 +42,7 @@ SHAPES: tuple[tuple[int, ...], ...] = ((), (3,))
 
 
 @check(SteppedTangentialLaw, word=PRESENT)
-def begin_is_start(law: Any) -> None:
+def begin_is_start(law: SteppedTangentialLaw) -> None:
     """In a contact that grows no larger than expected `begin` and `start` give the same forces."""
     for shape in SHAPES:
         bench = Bench.of(shape)
@@ -61,7 +59,7 @@ def begin_is_start(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw, word=PRESENT)
-def deeper_contact(law: Any) -> None:
+def deeper_contact(law: SteppedTangentialLaw) -> None:
     """A contact may grow and last beyond the approach without friction, and be made again."""
     bench = Bench.of()
     beyond = straight((0.0, DEEP), (4.0 * DEEP, DEEP), (4.0 * DEEP, 0.0), steps=STEPS)
@@ -88,7 +86,7 @@ def deeper_contact(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw, word=VECTORS)
-def vectors_rotate(law: Any) -> None:
+def vectors_rotate(law: SteppedTangentialLaw) -> None:
     """A rotation of all vectors in the tangent plane rotates the forces (vector, 2)."""
     for shape in SHAPES:
         bench = Bench.of(shape)
@@ -106,7 +104,7 @@ def vectors_rotate(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw, word=VECTORS)
-def vectors_turn(law: Any) -> None:
+def vectors_turn(law: SteppedTangentialLaw) -> None:
     """Under a steady drag the force comes to lie along the slip, at Coulomb's limit."""
     bench, level = Bench.of(), 0.8
     bound = slack(law, 1e-6)
@@ -126,7 +124,7 @@ def vectors_turn(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw, word=VECTORS)
-def vector_limit(law: Any) -> None:
+def vector_limit(law: SteppedTangentialLaw) -> None:
     """No force is longer than mu times the friction load, whichever way the slip turns."""
     bench = Bench.of((3,))
     for seed in SEEDS:
@@ -142,7 +140,7 @@ def vector_limit(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw, word=VECTORS)
-def vectors_on_a_line(law: Any) -> None:
+def vectors_on_a_line(law: SteppedTangentialLaw) -> None:
     """Vectors along t1 give the forces and the work of numbers, and no force along t2."""
     for shape in SHAPES:
         bench = Bench.of(shape)
@@ -165,7 +163,7 @@ def vectors_on_a_line(law: Any) -> None:
 
 
 @check(SteppedTangentialLaw, word=ELLIPTIC)
-def two_stiffnesses(law: Any) -> None:
+def two_stiffnesses(law: SteppedTangentialLaw) -> None:
     """On an ellipse vectors meet the stiffness of each axis, and numbers that of t1."""
     for shape in SHAPES:
         circle = Bench.of(shape)

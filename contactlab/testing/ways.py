@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import (
     Integrator,
+    Law,
     NormalLaw,
     NormalMotion,
     Observer,
@@ -23,12 +24,13 @@ from contactlab.contracts import (
     WholeImpactTangentialLaw,
 )
 from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Real
 from contactlab.outcome.history import History, Recorder
 from contactlab.testing import limits
 from contactlab.testing.check import apply_if, hold, hold_success
 from contactlab.testing.laws import PressedSpring, Slider, SlidingForEver, Yielding
 from contactlab.testing.load_paths import scene, slack
-from contactlab.testing.units import Units
+from contactlab.testing.units import Units, with_parameters
 
 #: Steps of an impact; the integrator takes more if the stiffness of the law needs more.
 STEPS = 200
@@ -138,7 +140,9 @@ def _which(impact: Scene) -> str:
     return f"psi1 = {float(impact.psi1):.6g}, chi = {float(impact.chi):.4g}"
 
 
-def fitting(integrator: Any, tangential: tuple[Any, ...], normal: Any) -> Iterator[Simulation]:
+def fitting(
+    integrator: Integrator, tangential: tuple[TangentialLaw, ...], normal: NormalLaw | str
+) -> Iterator[Simulation]:
     """Iterate over simulations with the tangential laws that the integrator can run."""
     normal_law = REGISTRY.create(normal) if isinstance(normal, str) else normal
     for law in tangential:
@@ -146,12 +150,21 @@ def fitting(integrator: Any, tangential: tuple[Any, ...], normal: Any) -> Iterat
             yield Simulation(normal=normal_law, tangential=law, integrator=integrator)
 
 
-def sound(integrator: Any) -> list[Simulation]:
+def sound(integrator: Integrator) -> list[Simulation]:
     """Return at least one simulation with laws of the kit that do not fail."""
     laws = (PressedSpring(), Yielding(), Slider(), SlidingForEver())
     simulations = list(fitting(integrator, laws, "normal.hertz"))
     hold(simulations, "It fits none of the laws of the kit: see the contracts that it states.")
     return simulations
+
+
+SameLaw = TypeVar("SameLaw", bound=Law)
+
+
+def at_resolution(law: SameLaw, value: float) -> SameLaw:
+    """Return a law with another value of its resolution; ValueError if the law refuses it."""
+    assert law.resolution is not None
+    return with_parameters(law, {law.resolution: value})
 
 
 def ways(law: TangentialLaw | Integrator, normal: NormalLaw | None = None) -> list[Way]:
@@ -206,7 +219,7 @@ def _marches(way: Way) -> bool:
 
 
 def meet(
-    way: Way, psi1: Any, chi: Any, *, units: Units | None = None, recorder: Observer | None = None
+    way: Way, psi1: Real, chi: Real, *, units: Units | None = None, recorder: Observer | None = None
 ) -> Answer:
     """Return the answer of one way for an impact, by psi1 and chi.
 

@@ -54,7 +54,7 @@ def answered_impacts(law: TangentialLaw) -> Iterator[AnsweredImpact]:
 
 
 @check(TangentialLaw)
-def whole_impacts(law: Any) -> None:
+def whole_impacts(law: TangentialLaw) -> None:
     """A whole-impact answer agrees with the march of the same law (Law, 4).
 
     The change of slip velocity, the energy lost and the course are compared.
@@ -110,7 +110,7 @@ def _courses_agree(way: Way, each: AnsweredImpact, room: float) -> None:
 
 
 @check(TangentialLaw)
-def whole_impact_form(law: Any) -> None:
+def whole_impact_form(law: TangentialLaw) -> None:
     """A whole-impact answer is finite, its work not negative, and its course leads to the answer.
 
     The impulse of the force along the course is the change of slip velocity times the mass, and
@@ -162,7 +162,7 @@ def whole_impact_form(law: Any) -> None:
 
 
 def changes(
-    law: Any, marches: list[Way], impact: Scene, normal: NormalMotion
+    law: TangentialLaw, marches: list[Way], impact: Scene, normal: NormalMotion
 ) -> Iterator[tuple[Way | None, Any, str]]:
     """Iterate over changes of slip velocity (m/s) by ways and whole-impact answers, in words."""
     for way in marches:
@@ -172,7 +172,7 @@ def changes(
 
 
 @check(TangentialLaw, nature="it makes no friction, or another than Coulomb's")
-def sliding_impulse(law: Any) -> None:
+def sliding_impulse(law: TangentialLaw) -> None:
     """A grazing impact slips throughout: friction takes mu (1 + e) v1 M_n/M_t from v_x.
 
     The impacts are under Hertz's law, eq. (45), and a damped law; by the march and as
