@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 
 from contactlab.figures.animation import ARRIVING, DOTS, IN_CONTACT, LEAVING, SIZE, write_gif
 from contactlab.figures.style import LAW_DASHES, QUIET, curve_colour, styled, zero_line
+from contactlab.numeric.types import Array
 from contactlab.outcome.columns import unit_in
-
-Array = NDArray[np.float64]
 
 #: Flight before and after contact: the body moves as far as this times its largest half-axis.
 FLIGHT = 1.6

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
 from contactlab.figures.style import law_style, verbatim, zero_line
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 
 def draw_loops(axes: Axes, curves: Mapping[str, tuple[Array, Array]], *, title: str = "") -> Axes:

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: Places along a curve beside which its name may stand, and most points that stand for a curve.
 PLACES, POINTS = 48, 1500

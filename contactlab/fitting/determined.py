@@ -7,14 +7,12 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.fitting.model import Model
 from contactlab.fitting.parameters import Parameter, in_words
 from contactlab.fitting.problem import Problem
 from contactlab.impact.scene import Scene
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: Singular value of the effects, each of unit length, below which parameters are
 #: indistinguishable.

@@ -8,7 +8,6 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.fitting import outliers, patterns, plausible
 from contactlab.fitting.f_test import CHANCE
@@ -18,9 +17,8 @@ from contactlab.fitting.parameters import SHEAR_LOSS
 from contactlab.fitting.problem import Problem
 from contactlab.fitting.slips import loosened, lossy, slips
 from contactlab.impact.coupling import LEFT_OUT, coupling_shift
+from contactlab.numeric.types import Array
 from contactlab.outcome.columns import QUANTITIES
-
-Array = NDArray[np.float64]
 
 #: The chance below which a pattern is reported beside outliers, which explain the residuals better.
 POSSIBLE = 1e-5

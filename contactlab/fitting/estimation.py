@@ -10,7 +10,6 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.compose.simulation import Simulation
 from contactlab.fitting import determined, nearby, tabulated
@@ -40,11 +39,10 @@ from contactlab.fitting.slips import SOME_LOSS, assumed, slips
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import common_shape
 from contactlab.numeric.checks import real, refuse, whole
+from contactlab.numeric.types import Array
 from contactlab.outcome.answer import ImpactError
 from contactlab.outcome.result import ImpactResult
 from contactlab.scene_file import SceneFile
-
-Array = NDArray[np.float64]
 
 #: Share of each tail beyond a 95 % interval.
 TAIL = 0.025

@@ -8,15 +8,14 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.fitting.measurements import Measurements
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import attributes_told
+from contactlab.numeric.types import Array
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.result import ImpactResult
 
-Array = NDArray[np.float64]
 Interval = tuple[float, float]
 
 

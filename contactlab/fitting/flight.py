@@ -20,8 +20,7 @@ from contactlab.fitting.csv_columns import (
 )
 from contactlab.fitting.measurements import Measurements
 from contactlab.numeric.checks import refuse
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: Columns of a film and their units; without z the flight stays in the plane of x and y.
 FILM = {"t": "s", "x": "m", "y": "m", "z": "m", "angle": "rad"}

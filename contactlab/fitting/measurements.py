@@ -8,7 +8,6 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.fitting.csv_columns import (
     ERROR,
@@ -22,10 +21,9 @@ from contactlab.fitting.csv_columns import (
 from contactlab.fitting.foreign_headings import ForeignHeadingsError, foreign
 from contactlab.fitting.struck import to_the_struck_body
 from contactlab.numeric.checks import check_place, real, refuse
+from contactlab.numeric.types import Array
 from contactlab.scene_file import SceneFile
 from contactlab.scene_file.measured import Measured
-
-Array = NDArray[np.float64]
 
 #: A column that varies by less than this share of its mean was kept constant.
 SAME = 0.1

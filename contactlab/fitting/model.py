@@ -7,19 +7,17 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.compose.simulation import Simulation
 from contactlab.fitting import tabulated
 from contactlab.fitting.parameters import RESTITUTION, Parameter, Setup
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
+from contactlab.numeric.types import Array
 from contactlab.outcome.columns import QUANTITIES
 from contactlab.outcome.result import ImpactResult
 from contactlab.scene_file import SceneFile, read_scene
 from contactlab.study.interrupts import uninterrupted
-
-Array = NDArray[np.float64]
 
 #: Friction of a scene file without a friction coefficient; searches have their own starts.
 SOME_FRICTION = 0.1

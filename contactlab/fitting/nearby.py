@@ -8,12 +8,10 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.fitting.model import Model
 from contactlab.fitting.problem import Problem
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: Distance from the best values, in standard errors, of the points that make a polynomial: a 95 %
 #: interval ends at two.

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from contactlab.fitting.f_test import CHANCE, NUMERICAL
 from contactlab.fitting.parameters import in_words
 from contactlab.fitting.problem import Problem, grid, minimum
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: Standard deviation of normal scatter over its median absolute deviation.
 NORMAL = 1.4826

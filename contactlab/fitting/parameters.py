@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.compose.names import full_name
 from contactlab.compose.registry import KINDS, REGISTRY, PluginError
@@ -21,8 +20,7 @@ from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, Rule
 from contactlab.numeric.names import nearest
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: Range of the friction coefficient, and starts of the searches.
 FRICTION, FRICTION_STARTS = (1e-6, 10.0), tuple(np.geomspace(0.004, 4.0, 25).tolist())

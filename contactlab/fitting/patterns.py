@@ -7,13 +7,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 
 from contactlab.fitting.f_test import NUMERICAL, SPARE, chance_of, orthonormal
 from contactlab.fitting.problem import Problem
+from contactlab.numeric.types import Array
 from contactlab.outcome.columns import QUANTITIES
-
-Array = NDArray[np.float64]
 
 #: Degree of the polynomial in the rank of a column.
 DEGREE = 3

@@ -7,14 +7,12 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.fitting import tabulated
 from contactlab.fitting.f_test import NUMERICAL
 from contactlab.fitting.measurements import Measurements
 from contactlab.fitting.problem import Problem
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: Plausible ranges of parameters: from the lowest friction of lubricated solids to that of
 #: rubber on a rough plate; the ratio of stiffnesses for Poisson's ratios from 0.5 to 0.

@@ -8,12 +8,11 @@ from typing import Any, Literal
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.fitting.model import Model
 from contactlab.fitting.parameters import Parameter
+from contactlab.numeric.types import Array
 
-Array = NDArray[np.float64]
 Loss = Literal["linear", "soft_l1"]
 
 #: Step of a derivative over the size of the parameter: the table of psi2 is good to 1e-9, steps

@@ -9,13 +9,11 @@ from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.fitting.problem import Problem
 from contactlab.impact.scene import Scene
+from contactlab.numeric.types import Array
 from contactlab.outcome.columns import QUANTITIES
-
-Array = NDArray[np.float64]
 
 RPM = 2.0 * math.pi / 60.0
 #: Mistaken units of numbers, by the unit of their quantity, with factors to that unit.

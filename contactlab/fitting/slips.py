@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.compose.names import short_name
 from contactlab.compose.rebound import RESTITUTED_CHI
@@ -29,8 +28,7 @@ from contactlab.fitting.patterns import NO_PATTERN, Pattern
 from contactlab.fitting.problem import Problem, grid, solved
 from contactlab.fitting.readings import Reading, readings, turned
 from contactlab.numeric.checks import Real
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: A mistake is reported if its correction makes residuals this many times smaller and the
 #: likelihood exp(CERTAIN/2) times greater, which chance does once in 20,000 times.

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.fitting.csv_columns import STRUCK
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: Rebound angles, of which one may be measured beside the rebound speed.
 ANGLES = {"rebound_angle_deg": np.pi / 180.0, "rebound_angle": 1.0}

@@ -10,14 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.numeric.names import attributes_told
+from contactlab.numeric.types import Array
 from contactlab.outcome.columns import components
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from contactlab.figures.style import Width
-
-Array = NDArray[np.float64]
 
 
 def _column(unit: str) -> Any:

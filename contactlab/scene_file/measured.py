@@ -6,16 +6,15 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.numeric.checks import refuse
+from contactlab.numeric.types import Array
 from contactlab.outcome.columns import quantity_named
 from contactlab.scene_file.entries import entry_path
 from contactlab.scene_file.table import Table
 
 KEYS = ("quantity", "against", "label", "source", "x", "values", "error", "readings")
 READING_KEYS = ("by", "point", "x", "values")
-Array = NDArray[np.float64]
 
 
 @attrs.frozen(kw_only=True, eq=False)

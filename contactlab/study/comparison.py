@@ -7,7 +7,6 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.compose.error_estimate import estimated
 from contactlab.compose.simulation import Simulation
@@ -15,13 +14,12 @@ from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import attributes_told
+from contactlab.numeric.types import Array
 from contactlab.outcome.columns import QUANTITIES, quantity_named
 from contactlab.outcome.result import ImpactResult
 from contactlab.scene_file import Measured, SceneFile
 from contactlab.study.interrupts import uninterrupted
 from contactlab.study.side_by_side import default_quantities, describe
-
-Array = NDArray[np.float64]
 
 #: Repeats of a short run. The least time counts, which other load of the machine disturbs least.
 REPEATS = 3

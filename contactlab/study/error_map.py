@@ -7,7 +7,6 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.compose.composition import DEFAULT_NORMAL, STEPPED, exact, fixed_steps
 from contactlab.compose.names import full_name
@@ -15,11 +14,10 @@ from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
+from contactlab.numeric.types import Array
 from contactlab.study.bench_methods import Method
 from contactlab.study.stability_cases import INCIDENCES
 from contactlab.study.stability_references import REFERENCE_TOLERANCES, converges
-
-Array = NDArray[np.float64]
 
 #: Columns, chi from light shells to heavy cores, and rows, steps of one contact.
 CHIS = tuple(np.geomspace(0.05, 30.0, 36).tolist())

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.compose.load_path import LoadPath, load_path
 from contactlab.compose.simulation import Simulation
@@ -14,8 +13,7 @@ from contactlab.contracts import SteppedTangentialLaw
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: Points of a quarter of a cycle: forces of smooth laws are then exact to 1e-3.
 QUARTER = 60

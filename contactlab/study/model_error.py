@@ -10,7 +10,6 @@ from collections.abc import Sequence
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.compose.names import full_name
 from contactlab.compose.registry import REGISTRY
@@ -18,9 +17,8 @@ from contactlab.compose.simulation import Simulation
 from contactlab.contracts import TangentialLaw, WholeImpactTangentialLaw
 from contactlab.contracts.error_model import range_of
 from contactlab.impact.scene import Scene
+from contactlab.numeric.types import Array
 from contactlab.study.stability_references import continuum, converges, reference_for
-
-Array = NDArray[np.float64]
 
 #: Numerical error of any answer, over the range of psi2.
 ROUNDING = 1e-12

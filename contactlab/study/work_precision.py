@@ -14,7 +14,6 @@ from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.compose import composition
 from contactlab.compose.rebound import rebound
@@ -25,8 +24,6 @@ from contactlab.study.bench_methods import Method, scenes
 from contactlab.study.benchmark import ALIKE, ROUNDING, Benchmark, Row
 from contactlab.study.interrupts import uninterrupted
 from contactlab.study.stability_references import converges, reference_for
-
-Array = NDArray[np.float64]
 
 #: Tolerance of the exact answers: finer than the default, which is measured too.
 EXACT_TOLERANCE = 1e-12

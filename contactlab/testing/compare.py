@@ -6,9 +6,9 @@ import copy
 from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.impact.scene import Scene
+from contactlab.numeric.types import Column
 from contactlab.testing.check import hold
 
 #: Values nested deeper than this count as equal.
@@ -44,7 +44,7 @@ def same(left: object, right: object, *, depth: int = 0) -> bool:
     return bool(left == right)
 
 
-def _same_arrays(left: NDArray[np.generic], right: NDArray[np.generic], depth: int) -> bool:
+def _same_arrays(left: Column, right: Column, depth: int) -> bool:
     if left.shape != right.shape or left.dtype != right.dtype:
         return False
     if left.dtype == object:

@@ -7,17 +7,15 @@ The fields are ``radius`` (m) and ``traction`` (Pa), or ``radius``, ``displaceme
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import NormalLaw, SteppedTangentialLaw
+from contactlab.numeric.types import Array
 from contactlab.outcome.history import Recorder
 from contactlab.testing.check import NotApplicableError, apply_if, check, hold
 from contactlab.testing.laws import StronglyDampedHertz
 from contactlab.testing.load_paths import FRICTION, scene
 from contactlab.testing.ways import meet, ways
-
-Array = NDArray[np.float64]
 
 #: (chi, psi1) of impacts in which stick and slip alternate.
 IMPACTS = ((1.4411764706, 0.5), (1.4411764706, 2.0), (3.0, 1.2), (3.0, 3.0))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from contactlab.contracts import SteppedTangentialLaw
-from contactlab.numeric.vectors import Array
+from contactlab.numeric.types import Array
 from contactlab.testing.check import CHANGES, GROWS, check, hold, within
 from contactlab.testing.load_paths import (
     Bench,

@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.path_steps import advanced
@@ -24,11 +23,10 @@ from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Array
 from contactlab.testing import limits
 from contactlab.testing.check import hold
 from contactlab.testing.units import Units
-
-Array = NDArray[np.float64]
 
 #: chi of a body so heavy that friction does not change its motion.
 HEAVY = 1e-4

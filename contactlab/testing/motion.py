@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import ClosedFormNormalLaw
-from contactlab.numeric.vectors import Array
+from contactlab.numeric.types import Array
 from contactlab.testing.check import check, hold, within
 from contactlab.testing.load_paths import scene
 from contactlab.testing.normal import STEPS, respond

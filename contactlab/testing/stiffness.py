@@ -9,7 +9,7 @@ import numpy as np
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import NormalContact, SteppedTangentialLaw
-from contactlab.numeric.vectors import Array
+from contactlab.numeric.types import Array
 from contactlab.testing.check import check, hold, within, worst
 from contactlab.testing.laws import SoftHertz
 from contactlab.testing.load_paths import (

@@ -12,7 +12,7 @@ from contactlab.impact.bodies import Sphere
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
-from contactlab.numeric.vectors import Array
+from contactlab.numeric.types import Array
 from contactlab.testing.check import check, within, worst
 from contactlab.testing.load_paths import FRICTION
 from contactlab.testing.normal import STEPS, respond

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import SteppedTangentialLaw
 from contactlab.numeric.arrays import locked
+from contactlab.numeric.types import Array
 from contactlab.testing import limits
 from contactlab.testing.check import check, hold, within, worst
 from contactlab.testing.load_paths import (
@@ -22,8 +22,6 @@ from contactlab.testing.load_paths import (
     straight,
     wandering,
 )
-
-Array = NDArray[np.float64]
 
 #: Words of the laws that the checks apply to, with their values.
 PRESENT, VECTORS = ("needs_future", False), ("vectors", True)

@@ -12,8 +12,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from contactlab.numeric.types import Array
 from contactlab_laws.annulus.step import MOST_PASSES, TIE
-from contactlab_laws.annulus.tables import Array, Tables, hertz_pressure, response
+from contactlab_laws.annulus.tables import Tables, hertz_pressure, response
 from contactlab_laws.jaeger.all_steps import ScaledSteps
 
 #: Least and most steps in a block, which grows while no test fails.

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.numeric.checks import Real
-from contactlab_laws.annulus.tables import Array, Tables, hertz_pressure
+from contactlab.numeric.types import Array
+from contactlab_laws.annulus.tables import Tables, hertz_pressure
 
 #: Passes of the division into stick and slip; measured never above 14 (theory §6).
 MOST_PASSES = 200

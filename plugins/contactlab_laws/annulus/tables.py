@@ -16,9 +16,8 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: Most annuli for which the responses of all leading divisions are kept (8 n³ bytes: 64 MB at 200).
 LARGEST_TABLE = 200

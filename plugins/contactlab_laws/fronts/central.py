@@ -12,13 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import ClosedFormMotion, LostPathError, ScaledContact, Stretch
+from contactlab.numeric.types import Array
 from contactlab_laws.fronts.path import Answer, Impact, Part, Request
 from contactlab_laws.fronts.phases import STICK, Phase
 from contactlab_laws.fronts.series import Rows
 from contactlab_laws.fronts.steps import alone, error_of_step
 from contactlab_laws.hertz.motion import velocity_factor
-
-Array = NDArray[np.float64]
 
 #: Rings in which stick and slip are shown; the solution itself knows no rings.
 RINGS = 200

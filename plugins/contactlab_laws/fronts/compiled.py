@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: 0 in this variable leaves the library out, at the build and at run time.
 VARIABLE = "CONTACTLAB_COMPILED"

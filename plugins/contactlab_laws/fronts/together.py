@@ -8,7 +8,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.contracts import (
     Ends,
@@ -21,6 +20,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.hertz import DURATION_CONSTANT, hertz_scales
+from contactlab.numeric.types import Array
 from contactlab_laws.fronts import compiled
 from contactlab_laws.fronts.path import Impact
 from contactlab_laws.fronts.phases import Phase
@@ -28,8 +28,6 @@ from contactlab_laws.fronts.series import Rows, value
 from contactlab_laws.fronts.steps import Watch, error_of_step
 from contactlab_laws.fronts.steps import alone as followed
 from contactlab_laws.hertz.motion import scaled_motion, velocity_factor
-
-Array = NDArray[np.float64]
 
 #: The accuracy if none is asked for.
 USUAL = 1e-9

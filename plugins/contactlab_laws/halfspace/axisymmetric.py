@@ -9,8 +9,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from contactlab.numeric.types import Array
 from contactlab_laws.halfspace.basis import basis
-from contactlab_laws.halfspace.hemispheres import Array
 from contactlab_laws.halfspace.instants import Instants
 from contactlab_laws.halfspace.march import Followed
 from contactlab_laws.halfspace.rings import Rings, rings, settle

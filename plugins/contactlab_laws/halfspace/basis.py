@@ -14,7 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactlab_laws.halfspace.hemispheres import Array, displacement
+from contactlab.numeric.types import Array
+from contactlab_laws.halfspace.hemispheres import displacement
 
 #: Power by which rings become narrower towards the edge of the largest contact. Of the powers 1 to
 #: 2 and of a sine this one leaves the least error of psi2 at equal numbers of rings.

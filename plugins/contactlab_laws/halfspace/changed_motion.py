@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import NormalContact, NormalMotion, SampledMotion
-from contactlab_laws.halfspace.hemispheres import Array
+from contactlab.numeric.types import Array
 from contactlab_laws.halfspace.instants import units
 
 

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import NormalMotion
+from contactlab.numeric.types import Array
 from contactlab_laws.halfspace.basis import basis
 from contactlab_laws.halfspace.groups import Options, groups, signs
-from contactlab_laws.halfspace.hemispheres import Array
 from contactlab_laws.halfspace.instants import units
 from contactlab_laws.halfspace.modes import SPARE
 

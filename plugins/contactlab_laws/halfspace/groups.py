@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from contactlab.contracts import NormalMotion
 from contactlab.impact.coupling import coupling_number
+from contactlab.numeric.types import Array
 from contactlab_laws.halfspace.axisymmetric import STEPS, follow_all
-from contactlab_laws.halfspace.hemispheres import Array
 from contactlab_laws.halfspace.instants import Instants, instants, units
 from contactlab_laws.halfspace.march import Followed, follow, joined
 from contactlab_laws.halfspace.modes import modes

@@ -15,10 +15,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import hyp2f1, rgamma
 
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 
 def displacement(order: int, source: int, radius: Any, edge: Any) -> Array:

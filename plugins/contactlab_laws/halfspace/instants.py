@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import ClosedFormMotion, NormalMotion
+from contactlab.numeric.types import Array
 from contactlab_laws.halfspace.basis import edge_at
-from contactlab_laws.halfspace.hemispheres import Array
 
 #: Phases at which the radius is looked at, and halvings in the search of an instant.
 SEARCHED, HALVINGS = 257, 50

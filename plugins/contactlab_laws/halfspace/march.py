@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlab_laws.halfspace.hemispheres import Array
+from contactlab.numeric.types import Array
 from contactlab_laws.halfspace.pressure import Answering, Prescribed
 from contactlab_laws.halfspace.slips import begun, moved, rest
 from contactlab_laws.halfspace.splitting import settle

@@ -15,8 +15,9 @@ from functools import lru_cache
 
 import numpy as np
 
+from contactlab.numeric.types import Array
 from contactlab_laws.halfspace.basis import Basis, basis
-from contactlab_laws.halfspace.hemispheres import Array, displacement
+from contactlab_laws.halfspace.hemispheres import displacement
 
 #: Factor on the local inverse compliance in ``Modes.metric``: the fewest applications of 1 to 8.
 METRIC = 2.0

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactlab_laws.halfspace.hemispheres import Array
+from contactlab.numeric.types import Array
 from contactlab_laws.halfspace.instants import Instants
 from contactlab_laws.halfspace.modes import SPARE, Modes
 

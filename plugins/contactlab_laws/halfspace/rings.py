@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.numeric.types import Array
 from contactlab_laws.annulus.tables import factors
-from contactlab_laws.halfspace.hemispheres import Array
 
 Mask = NDArray[np.bool_]
 

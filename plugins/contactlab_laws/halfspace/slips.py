@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab_laws.halfspace.hemispheres import Array
+from contactlab.numeric.types import Array
 
 
 class Slips(NamedTuple):

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg.lapack import dposv
 
-from contactlab_laws.halfspace.hemispheres import Array
+from contactlab.numeric.types import Array
 from contactlab_laws.halfspace.modes import Modes
 from contactlab_laws.halfspace.pressure import Contact
 

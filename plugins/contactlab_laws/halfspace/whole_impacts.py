@@ -10,10 +10,10 @@ import numpy as np
 
 from contactlab.contracts import NormalMotion, Status, WholeImpact, sliding
 from contactlab.impact.scene import Scene
+from contactlab.numeric.types import Array
 from contactlab_laws.halfspace.changed_motion import changed_motion
 from contactlab_laws.halfspace.fields import Fields
 from contactlab_laws.halfspace.groups import Options, groups
-from contactlab_laws.halfspace.hemispheres import Array
 from contactlab_laws.halfspace.instants import units
 from contactlab_laws.halfspace.march import Followed
 

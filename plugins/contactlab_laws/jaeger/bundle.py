@@ -7,11 +7,9 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.numeric.checks import Real
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 
 class Bundle:

@@ -20,9 +20,10 @@ from contactlab.contracts import (
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat
 from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Array
 from contactlab_laws.differences import table as differences
 from contactlab_laws.jaeger import all_steps, step
-from contactlab_laws.jaeger.bundle import Array, bundle, spring_fields
+from contactlab_laws.jaeger.bundle import bundle, spring_fields
 from contactlab_laws.jaeger.partial_slip import PartialSlip, Scales, hemisphere
 
 #: Most numbers in a table of a whole run (16 MB); longer runs go step by step.

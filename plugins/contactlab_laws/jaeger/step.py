@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlab.numeric.checks import Real
-from contactlab_laws.jaeger.bundle import Array, Bundle, Geometry, of_each, of_one
+from contactlab.numeric.types import Array
+from contactlab_laws.jaeger.bundle import Bundle, Geometry, of_each, of_one
 
 #: Relative difference up to which numbers of a batch count as equal: scaled impacts of any size
 #: and speed agree up to rounding.

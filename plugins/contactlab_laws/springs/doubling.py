@@ -20,7 +20,8 @@ from contactlab.contracts import Increment, NormalContact, TangentialResponse
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat
 from contactlab.numeric.checks import Real
-from contactlab_laws.jaeger.bundle import Array, spring_fields
+from contactlab.numeric.types import Array
+from contactlab_laws.jaeger.bundle import spring_fields
 from contactlab_laws.springs.turning import energy, turned
 
 #: Contacts whose radius is below this times that of the pair just touch: no friction. The cells of

@@ -21,7 +21,8 @@ from contactlab.contracts import Increment, NormalContact, TangentialResponse
 from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat
-from contactlab_laws.jaeger.bundle import Array, spring_fields
+from contactlab.numeric.types import Array
+from contactlab_laws.jaeger.bundle import spring_fields
 from contactlab_laws.jaeger.partial_slip import Scales
 from contactlab_laws.jaeger.step import common
 from contactlab_laws.springs.doubling import crossing, fitted

@@ -9,7 +9,7 @@ import numpy as np
 
 from contactlab.contracts import AllStepsResponse, NormalMotion, Steps
 from contactlab.impact.scene import Scene
-from contactlab_laws.jaeger.bundle import Array
+from contactlab.numeric.types import Array
 from contactlab_laws.jaeger.step import ROUNDING
 from contactlab_laws.springs import viscous
 from contactlab_laws.springs.viscous import TINY

@@ -11,9 +11,9 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.numeric.types import Array
 from contactlab_laws.tables.file import Stored, read
 from contactlab_laws.tables.patches import (
-    Array,
     Patches,
     chebyshev_of_values,
     compiled_polynomial,

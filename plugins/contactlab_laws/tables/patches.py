@@ -14,7 +14,8 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
+
 Numbers = NDArray[np.int16]
 
 #: Fewer places than this are computed from gathered terms, a kilobyte for each, so many at once as

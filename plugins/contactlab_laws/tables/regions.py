@@ -19,7 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose.rebound import TABULATED_CHI
-from contactlab_laws.tables.patches import Array, polynomial
+from contactlab.numeric.types import Array
+from contactlab_laws.tables.patches import polynomial
 
 Rows = NDArray[np.intp]
 

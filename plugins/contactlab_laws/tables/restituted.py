@@ -15,9 +15,10 @@ import numpy as np
 
 from contactlab.compose.rebound import TABULATED_CHI
 from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Array
 from contactlab_laws.tables import elastic
 from contactlab_laws.tables.file import read
-from contactlab_laws.tables.patches import Array, Single
+from contactlab_laws.tables.patches import Single
 from contactlab_laws.tables.restituted_regions import (
     NODES,
     REGIONS,

@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose.rebound import RESTITUTED_CHI
+from contactlab.numeric.types import Array
 from contactlab_laws.tables.file import Stored
-from contactlab_laws.tables.patches import Array, Patches, powers_of_chebyshev
+from contactlab_laws.tables.patches import Patches, powers_of_chebyshev
 
 
 class Region(NamedTuple):

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.numeric.checks import Real
-from contactlab_laws.viscoelastic.motion import Array, Course, course
+from contactlab.numeric.types import Array
+from contactlab_laws.viscoelastic.motion import Course, course
 
 #: Displacements of springs that are followed together: they stay in the processor's cache.
 TOGETHER = 1 << 17

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: x is followed to the end of each phase by Newton's method, in so many turns of so many steps,
 #: from powers of 1 + a that hit it to 3 %.

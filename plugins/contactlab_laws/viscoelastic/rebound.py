@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from contactlab.compose.rebound import RESTITUTED_CHI
+from contactlab.numeric.types import Array
 from contactlab_laws.tables import restituted
-from contactlab_laws.tables.patches import Array
 
 #: Springs and steps up to the largest chi of the table; beyond it as its fourth and square root.
 SPRINGS, STEPS = 100, 800

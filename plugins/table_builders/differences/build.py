@@ -19,8 +19,8 @@ from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.scene import Scene
+from contactlab.numeric.types import Array
 from contactlab_laws.differences.table import FILE, NODES, key
-from contactlab_laws.tables.patches import Array
 
 #: The impacts of the choice of a law: least and number of psi1, up to slip throughout and 1 more,
 #: at each chi; as many again in ``NARROW``.

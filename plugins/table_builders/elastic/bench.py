@@ -13,7 +13,7 @@ from time import process_time
 import numpy as np
 
 from contactlab import Encounter, Material, Scene, Simulation, Sphere, collide, rebound
-from contactlab_laws.tables.patches import Array
+from contactlab.numeric.types import Array
 from contactlab_laws.tables.regions import LARGEST_CHI
 
 #: The least time of these is taken: other work on the machine disturbs the rest.

@@ -13,9 +13,9 @@ from pathlib import Path
 import attrs
 import numpy as np
 
+from contactlab.numeric.types import Array
 from contactlab_laws.tables.elastic import DEEPEST, NODES
 from contactlab_laws.tables.file import Stored, write
-from contactlab_laws.tables.patches import Array
 from contactlab_laws.tables.regions import REGIONS, Cuts
 from table_builders.elastic import cuts as curves
 from table_builders.elastic.exact import exact

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from contactlab_laws.tables.patches import Array, polynomial
+from contactlab.numeric.types import Array
+from contactlab_laws.tables.patches import polynomial
 from contactlab_laws.tables.regions import (
     CUT_END,
     CUT_TOP,

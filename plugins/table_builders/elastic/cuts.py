@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from contactlab_laws.tables.patches import Array
+from contactlab.numeric.types import Array
 from contactlab_laws.tables.regions import CUT_END, Cuts
 from table_builders.elastic.coordinates import SLIP_POWERS, STUCK_POWERS
 from table_builders.elastic.exact import last_slip

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import contactlab
-from contactlab_laws.tables.patches import Array
+from contactlab.numeric.types import Array
 
 #: Solved alone at this tolerance, neighbouring answers agree to some 1e-14, and all to 1e-13.
 ALONE = 1e-11

@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import Chebyshev
 
+from contactlab.numeric.types import Array
 from contactlab_laws.tables.elastic import NODES
-from contactlab_laws.tables.patches import Array, chebyshev_of_values, nodes
+from contactlab_laws.tables.patches import chebyshev_of_values, nodes
 from contactlab_laws.tables.regions import (
     CUT_END,
     CUT_TOP,

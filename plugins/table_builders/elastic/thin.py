@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.numeric.types import Array
 from contactlab_laws.tables.elastic import NODES, SHIPPED
 from contactlab_laws.tables.file import read
-from contactlab_laws.tables.patches import Array, chebyshev_of_values, nodes
+from contactlab_laws.tables.patches import chebyshev_of_values, nodes
 from contactlab_laws.tables.regions import STUCK_BACK, Cuts
 from table_builders.elastic.coordinates import SLIP_POWERS, impact, measure
 

@@ -11,8 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.numeric.types import Array
 from contactlab_laws.tables.elastic import Table, values
-from contactlab_laws.tables.patches import Array, polynomial
+from contactlab_laws.tables.patches import polynomial
 from contactlab_laws.tables.regions import CUT_END, LARGEST_CHI, Cuts, places
 from table_builders.elastic.coordinates import NAMES
 from table_builders.elastic.exact import exact, together

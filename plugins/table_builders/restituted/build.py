@@ -10,8 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
+from contactlab.numeric.types import Array
 from contactlab_laws.tables.file import Stored, write
-from contactlab_laws.tables.patches import Array, chebyshev_of_values, nodes
+from contactlab_laws.tables.patches import chebyshev_of_values, nodes
 from contactlab_laws.tables.restituted_regions import NODES, REGIONS, border
 from contactlab_laws.viscoelastic.batch import extrapolated
 from contactlab_laws.viscoelastic.relaxation import number_of

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 from numpy.typing import NDArray
 
-from contactlab_laws.tables.patches import Array
+from contactlab.numeric.types import Array
 from contactlab_laws.viscoelastic.batch import extrapolated
 from contactlab_laws.viscoelastic.relaxation import number_of
 from table_builders.elastic import thin
