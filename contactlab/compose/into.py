@@ -87,10 +87,17 @@ class _Into:
             if name in arrays:
                 units[name] = unit_in(unit, result.scene) if unit else ""
         self._same_columns(units, chunk)
-        place = {"first": chunk.first, "stop": chunk.stop, "sweep": self.sweep, "scene": scene}
         counts = np.bincount(codes, minlength=len(CODES)).tolist()
         named = {status.name: count for status, count in zip(CODES, counts, strict=True) if count}
-        about = about_of(result, units, named, **place)
+        about = about_of(
+            result,
+            units,
+            named,
+            first=chunk.first,
+            stop=chunk.stop,
+            sweep=self.sweep,
+            scene=scene,
+        )
         arrays["about"] = np.array(json.dumps(about._asdict()))
         write_arrays("into", self.folder, chunk, arrays, "impacts")
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from contactlab.figures.animation_panels import FLIGHT, Ball, Disc, Forces, Frame
 from contactlab.figures.style import styled
 from contactlab.numeric.checks import refuse
+from contactlab.numeric.types import Real
 from contactlab.outcome.files import written
 from contactlab.outcome.result import ImpactResult
 
@@ -191,7 +192,7 @@ def _sequence(result: ImpactResult) -> list[Frame]:
     return [*before, *touching, *after]
 
 
-def _spin(spin: Any) -> str:
+def _spin(spin: Real) -> str:
     """Return a spin in words, in rad/s."""
     return f"{float(spin) + 0.0:.3g} rad/s".replace("-", "\N{MINUS SIGN}")
 

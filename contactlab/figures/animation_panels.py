@@ -21,7 +21,7 @@ from contactlab.figures.style import (
     zero_line,
 )
 from contactlab.impact.hertz import semi_axes
-from contactlab.outcome.columns import scaled_forces
+from contactlab.outcome.history import scaled_forces
 from contactlab.outcome.result import ImpactResult
 
 #: Length of the flight before and after contact, in radii of the sphere.

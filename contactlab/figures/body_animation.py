@@ -7,15 +7,19 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
+from contactlab.compose.collision import Collision
 from contactlab.figures.animation import ARRIVING, DOTS, IN_CONTACT, LEAVING, SIZE, write_gif
 from contactlab.figures.style import LAW_DASHES, QUIET, curve_colour, styled, zero_line
+from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.types import Array
 from contactlab.outcome.columns import unit_in
+from contactlab.outcome.result import ImpactResult
 
 #: Flight before and after contact: the body moves as far as this times its largest half-axis.
 FLIGHT = 1.6
@@ -60,7 +64,7 @@ class Body(NamedTuple):
         return np.stack((ends[:, 1], -ends[:, 0]), axis=-1)
 
 
-def body_of(collision: Any, axes: Array) -> Body:
+def body_of(collision: Collision, axes: Array) -> Body:
     """Return the first body of a collision; ``axes`` has n, t1 and t2 as rows.
 
     The body is drawn as the ellipsoid of the same inertia, at the scale at which it touches:
@@ -69,6 +73,7 @@ def body_of(collision: Any, axes: Array) -> Body:
     """
     encounter = collision.encounter
     body, contact = encounter.body, axes @ encounter.contact
+    assert isinstance(body, RigidBody)  # spheres have a picture of their own
     inertia = axes @ body.inertia @ axes.T / body.mass
     square = 2.5 * np.trace(inertia) * np.eye(3) - 5.0 * inertia
     square *= contact[0] ** 2 / square[0, 0]
@@ -78,10 +83,10 @@ def body_of(collision: Any, axes: Array) -> Body:
 
 def animate_bodies(
     path: str | Path,
-    collision: Any,
+    collision: Collision,
     axes: Array,
     *,
-    ghosts: Mapping[str, Any],
+    ghosts: Mapping[str, Collision],
     progress: Callable[[int, int], object] | None = None,
 ) -> None:
     """Write an animated GIF of a body that hits and leaves.
@@ -137,7 +142,7 @@ def animate_bodies(
     write_gif(path, frames, len(course))
 
 
-def _scene(axes: Any, body: Body, others: Mapping[str, Body], times: Array) -> Callable[..., None]:
+def _scene(axes: Axes, body: Body, others: Mapping[str, Body], times: Array) -> Callable[..., None]:
     """Draw the ground, and return what moves the body and its ghosts."""
     all_corners = np.concatenate([
         each.outline(time) for each in (body, *others.values()) for time in times.tolist()
@@ -176,7 +181,7 @@ def _scene(axes: Any, body: Body, others: Mapping[str, Body], times: Array) -> C
     return show
 
 
-def _course(axes: Any, result: Any) -> Callable[[float], None]:
+def _course(axes: Axes, result: ImpactResult) -> Callable[[float], None]:
     """Draw approach and slip over the time of contact, and return what moves a cursor."""
     history, duration = result.history, float(result.motion.duration)
     time = np.concatenate(([0.0], history.time / duration, [1.0]))
@@ -184,7 +189,8 @@ def _course(axes: Any, result: Any) -> Callable[[float], None]:
     unit = unit_in("m/s", result.scene)
     ends = result.scene.slip_velocity, result.rebound_slip_velocity
     slip = np.vstack([np.atleast_1d(each) for each in (ends[0], *history.slip_velocity, ends[1])])
-    approach = np.concatenate(([speed], history.normal_velocity, [result.normal_velocity]))
+    last = float(result.normal_velocity)
+    approach = np.concatenate(([speed], history.normal_velocity, [last]))
     names = ["slip"] if slip.shape[1] == 1 else ["slip along t1", "slip along t2"]
     curves = [("approach", approach), *zip(names, slip.T, strict=True)]
     zero_line(axes)

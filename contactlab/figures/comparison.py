@@ -26,7 +26,9 @@ from contactlab.figures.style import (
     zero_line,
 )
 from contactlab.impact.scene import entry_unit
-from contactlab.outcome.columns import quantity_named, scaled_forces
+from contactlab.numeric.types import Array
+from contactlab.outcome.columns import quantity_named
+from contactlab.outcome.history import scaled_forces
 from contactlab.study.comparison import Agreement, Comparison
 
 POINTS: dict[str, Any] = {
@@ -200,7 +202,7 @@ def laws_over_sweep(
     varied, x, ordered = _abscissa(comparison, agreement)
     words = LESS.get((quantity, varied))
 
-    def drawn(values: Any, at: Any) -> Any:
+    def drawn(values: Array, at: Array) -> Array:
         return values if words is None else values - at
 
     for number, name in enumerate(comparison.names):
@@ -316,7 +318,7 @@ def _abscissa(
         return name, x, np.asarray
     sizes, along = [len(values) for values in several.values()], list(several).index(name)
 
-    def ordered(values: Any) -> Any:
+    def ordered(values: Array) -> Array:
         curves = np.moveaxis(np.reshape(values, sizes), along, -1).reshape(-1, sizes[along])
         return np.pad(curves, ((0, 0), (0, 1)), constant_values=np.nan).ravel()
 

@@ -5,12 +5,15 @@ from __future__ import annotations
 import io
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import attrs
 import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from contactlab.figures.style import (
     NARROW,
@@ -56,13 +59,17 @@ class Picture:
         return self.path.read_text("utf-8") if self.path.suffix.lower() == ".svg" else None
 
 
+#: An array of Axes, and what draws on one Axes or on such an array.
+Panels: TypeAlias = NDArray[np.object_]
+Draw: TypeAlias = Callable[[Axes], object] | Callable[[Panels], object]
+
 #: Factors on the height of a figure with one panel and a short legend.
 NARROWER, LEGEND_BESIDE, LEGEND_BELOW = 0.8, 1.25, 1.9
 
 
 def save(
     path: Path,
-    draw: Callable[[Any], object],
+    draw: Draw,
     *,
     rows: int = 1,
     columns: int = 1,
@@ -102,9 +109,7 @@ def save(
     return Picture(Path(path))
 
 
-def as_svg(
-    draw: Callable[[Any], object], *, rows: int = 1, heights: tuple[float, ...] = (1.0,)
-) -> str:
+def as_svg(draw: Draw, *, rows: int = 1, heights: tuple[float, ...] = (1.0,)) -> str:
     """Return a picture as an SVG element for a page; arguments are those of ``save``."""
     text = io.StringIO()
     with styled(), mpl.rc_context({"svg.hashsalt": "contactlab"}):
@@ -131,7 +136,7 @@ def _size(
 
 
 def _drawn(
-    draw: Callable[[Any], object],
+    draw: Draw,
     *,
     rows: int,
     columns: int,
@@ -147,7 +152,8 @@ def _drawn(
         axes = figure.subplots(
             rows, columns, sharex="col", gridspec_kw={"height_ratios": heights}, squeeze=False
         )
-    draw(axes[0, 0] if rows == columns == 1 else axes)
+    given: Any = axes[0, 0] if rows == columns == 1 else axes
+    draw(given)
     return figure
 
 

@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from numpy.typing import NDArray
 
 from contactlab.figures.comparison import POINTS
-from contactlab.figures.files import save
-from contactlab.figures.style import label, law_style, verbatim, zero_line
+from contactlab.figures.files import Panels, save
+from contactlab.figures.style import Look, Width, label, law_style, verbatim, zero_line
 from contactlab.fitting.fit_result import Fit
 from contactlab.impact.scene import entry_unit
+from contactlab.numeric.types import Array
 from contactlab.outcome.columns import QUANTITIES
 
 MARKERS = "os^Dv<"
@@ -21,14 +23,22 @@ MARKERS = "os^Dv<"
 SMOOTH = 100
 
 
-def draw_fits(path: Path, fits: Mapping[str, Fit], **look: Any) -> None:
+def draw_fits(
+    path: Path, fits: Mapping[str, Fit], *, look: Look = "print", width: Width | None = None
+) -> None:
     """Draw each measured quantity in a column of panels, and write a picture.
 
-    Options ``look`` and ``width`` are those of ``contactlab.figures.files.save``.
+    Parameters
+    ----------
+    path : Path
+    fits : mapping of str to Fit
+        Fits to the same measurements, by the names of their laws.
+    look, width
+        As of ``contactlab.figures.files.save``.
     """
     names = list(dict.fromkeys(name for fit in fits.values() for name in fit.predicted))
 
-    def draw(axes: Any) -> None:
+    def draw(axes: Panels) -> None:
         for column, name in enumerate(names):
             measured_and_laws(axes[0, column], fits, name)
             residuals(axes[1, column], fits, name)
@@ -38,7 +48,7 @@ def draw_fits(path: Path, fits: Mapping[str, Fit], **look: Any) -> None:
         axes[0, 0].figure.legend(*entries, loc="outside upper left", ncols=len(names))
         axes[0, 0].figure.align_ylabels()
 
-    save(path, draw, rows=2, columns=len(names), heights=(2.0, 1.0), **look)
+    save(path, draw, rows=2, columns=len(names), heights=(2.0, 1.0), look=look, width=width)
 
 
 def measured_and_laws(axes: Axes, fits: Mapping[str, Fit], quantity: str) -> Axes:
@@ -60,7 +70,7 @@ def measured_and_laws(axes: Axes, fits: Mapping[str, Fit], quantity: str) -> Axe
     return axes
 
 
-def _curve(fit: Fit, x: Any, present: Any, quantity: str) -> tuple[Any, Any]:
+def _curve(fit: Fit, x: Array, present: NDArray[np.bool_], quantity: str) -> tuple[Array, Array]:
     """Return the law between the measured impacts: abscissas, and the quantity there."""
     if not fit.measurements.given:
         return x, fit.predicted[quantity][present]

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
+from matplotlib.transforms import BboxBase
 from numpy.typing import NDArray
 
 from contactlab.numeric.types import Array
@@ -126,7 +127,7 @@ def _places(points: Array) -> Array:
     return points[:: max(len(points) // PLACES, 1)]
 
 
-def _box(extent: Any) -> Array:
+def _box(extent: BboxBase) -> Array:
     """Return lower left and upper right corner of an extent, shape (2, 2)."""
     return np.array([extent.min, extent.max])
 

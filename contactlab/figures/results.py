@@ -22,12 +22,15 @@ from contactlab.figures.style import (
 )
 from contactlab.impact.scene import entry_unit
 from contactlab.numeric.checks import refuse
-from contactlab.outcome.columns import quantity_named, scaled_forces, unit_in
+from contactlab.numeric.types import Array, Places
+from contactlab.outcome.columns import quantity_named, unit_in
+from contactlab.outcome.history import History, scaled_forces
+from contactlab.outcome.result import ImpactResult
 
 
 def draw_result(
     axes: Axes | None,
-    result: Any,
+    result: ImpactResult,
     x: str | None,
     y: str | None,
     *,
@@ -71,7 +74,7 @@ def draw_result(
         return _quantities(drawn, result, x or _abscissa(result), y or "psi2")
 
 
-def _abscissa(result: Any) -> str:
+def _abscissa(result: ImpactResult) -> str:
     """Return psi1, or the first entry that varies where psi1 does not tell the impacts apart."""
     psi1: Any = result.psi1
     if np.shape(psi1) == result.scene.shape and np.ptp(psi1) > 0.0:
@@ -79,7 +82,7 @@ def _abscissa(result: Any) -> str:
     return next(iter(result.scene.varied), "psi1")
 
 
-def draw_history(axes: Axes | None, history: Any, *, width: Width | None = None) -> Axes:
+def draw_history(axes: Axes | None, history: History, *, width: Width | None = None) -> Axes:
     """Draw normal and tangential force over time, in the units of the history."""
     force, time = history.unit("normal_force"), history.unit("time")
     with on_axes(axes, width) as drawn:
@@ -108,7 +111,7 @@ def on_axes(axes: Axes | None, width: Width | None) -> Iterator[Axes]:
         yield pyplot.subplots(figsize=size)[1]
 
 
-def _forces(axes: Axes, result: Any) -> Axes:
+def _forces(axes: Axes, result: ImpactResult) -> Axes:
     """Draw the tangential force of a single impact with the friction limit."""
     time, tangential, normal = scaled_forces(result)
     zero_line(axes)
@@ -118,7 +121,7 @@ def _forces(axes: Axes, result: Any) -> Axes:
     return axes
 
 
-def _path(axes: Axes, result: Any) -> Axes:
+def _path(axes: Axes, result: ImpactResult) -> Axes:
     """Draw slip over approach in the plane, and the slip vector in space."""
     scene, history = result.scene, result.history
     ends = scene.slip_velocity, result.rebound_slip_velocity
@@ -126,8 +129,8 @@ def _path(axes: Axes, result: Any) -> Axes:
     unit = unit_in("m/s", scene)
     zero_line(axes)
     if slip.ndim == 1:
-        rates = [scene.normal_speed], history.normal_velocity, [result.normal_velocity]
-        across, up = np.concatenate(rates), slip
+        first, last = float(scene.normal_speed), float(result.normal_velocity)
+        across, up = np.concatenate(([first], history.normal_velocity, [last])), slip
         axes.set_xlabel(label("velocity of approach", unit))
         axes.set_ylabel(label("slip velocity", unit))
         axes.invert_xaxis()  # time runs to the right
@@ -144,7 +147,7 @@ def _path(axes: Axes, result: Any) -> Axes:
     return axes
 
 
-def _quantities(axes: Axes, result: Any, x: str, y: str) -> Axes:
+def _quantities(axes: Axes, result: ImpactResult, x: str, y: str) -> Axes:
     """Draw one quantity of a batch over another: a curve, or points if abscissas repeat."""
     scene = result.scene
     up = quantity_named(y, where="y")
@@ -168,7 +171,7 @@ def _quantities(axes: Axes, result: Any, x: str, y: str) -> Axes:
     return axes
 
 
-def _band(axes: Axes, result: Any, x: Any, y: Any, order: Any) -> None:
+def _band(axes: Axes, result: ImpactResult, x: Array, y: Array, order: Places) -> None:
     """Draw the visible numerical error of psi2, estimated or else declared."""
     error: Any = result.psi2_error_estimate
     if error is None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,7 +12,7 @@ from numpy.typing import NDArray
 
 from contactlab.figures.files import save
 from contactlab.figures.names import name_curves
-from contactlab.figures.style import ASIDE, label, law_style, verbatim
+from contactlab.figures.style import ASIDE, Look, Width, label, law_style, verbatim
 from contactlab.study.error_map import ErrorMap
 
 #: Error of psi2 that is asked for, from the law's own limit.
@@ -23,17 +22,19 @@ ROUNDED = 5
 REFUSED_COLOUR = "#DDDDDD"
 
 
-def draw_stability(path: Path, maps: Sequence[ErrorMap], **look: Any) -> None:
+def draw_stability(
+    path: Path, maps: Sequence[ErrorMap], *, look: Look = "print", width: Width | None = None
+) -> None:
     """Draw the steps that each law needs, and write a picture.
 
     Parameters
     ----------
     path : Path
     maps : sequence of ErrorMap
-    **look
-        ``look`` and ``width`` of ``contactlab.figures.files.save``.
+    look, width
+        As of ``contactlab.figures.files.save``.
     """
-    save(path, lambda axes: steps_needed(axes, maps), **look)
+    save(path, lambda axes: steps_needed(axes, maps), look=look, width=width)
 
 
 def steps_needed(axes: Axes, maps: Sequence[ErrorMap]) -> Axes:

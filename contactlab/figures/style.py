@@ -13,6 +13,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
 from contactlab.numeric.checks import refuse
+from contactlab.numeric.types import Array
 
 Look = Literal["print", "slides"]
 Width = Literal["one", "two"]
@@ -179,7 +180,7 @@ def darken(figure: Figure) -> None:
         put(colour)
 
 
-def _on_dark(colour: Any, kept: Set[Any]) -> tuple[float, ...]:
+def _on_dark(colour: Array, kept: Set[tuple[float, float, float]]) -> tuple[float, ...]:
     """Return a colour for the dark ground, or one that is kept; what is transparent stays so."""
     red, green, blue, alpha = map(float, colour)
     if (red, green, blue) in kept:
@@ -189,7 +190,7 @@ def _on_dark(colour: Any, kept: Set[Any]) -> tuple[float, ...]:
     return (*(part + LIGHTER * (1.0 - part) for part in (red, green, blue)), alpha)
 
 
-def error_band(axes: Axes, x: Any, middle: Any, half: Any, look: Mapping[str, Any]) -> Axes:
+def error_band(axes: Axes, x: Array, middle: Array, half: Array, look: Mapping[str, Any]) -> Axes:
     """Shade the numerical error around a curve if any of it is wide enough to be visible.
 
     Parameters
@@ -261,7 +262,7 @@ def force_axes(axes: Axes) -> Axes:
     return axes
 
 
-def friction_limit(axes: Axes, time: Any, normal_force: Any) -> Axes:
+def friction_limit(axes: Axes, time: Array, normal_force: Array) -> Axes:
     """Draw the friction limit, plus and minus P/P_max, with its name."""
     look: Any = {"color": "black", "linestyle": (0, (4, 3)), "linewidth": 0.9, "zorder": 4}
     axes.plot(time, normal_force, **look)

@@ -10,7 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 
+from contactlab.figures.files import Panels
 from contactlab.figures.style import LAW_COLOURS, QUIET
+from contactlab.numeric.types import Array
 from contactlab.study.benchmark import Benchmark, Row
 
 #: Integrator that a law is drawn under: the first that ran it.
@@ -77,7 +79,7 @@ SOURCES = (
 )
 
 
-def work_precision(panels: Any, benchmark: Benchmark) -> Any:
+def work_precision(panels: Panels, benchmark: Benchmark) -> Panels:
     """Draw error over run time: each of many impacts on the left, one alone on the right.
 
     Parameters
@@ -256,19 +258,19 @@ def _write_beside(axes: Axes, names: Sequence[Name]) -> None:
         )  # fmt: skip
 
 
-def _meets(points: Any, others: Any, near: float) -> bool:
+def _meets(points: Array, others: Array, near: float) -> bool:
     """Return whether one of the points, shape (n, 2), is near one of the others."""
     return bool((np.abs(points[:, None] - others).max(axis=2) < near).any())
 
 
-def _inside(points: Any, box: Box) -> bool:
+def _inside(points: Array, box: Box) -> bool:
     """Return whether one of the points, shape (n, 2), lies in a box."""
     across, up = points.T
     inside = (across > box[0]) & (across < box[1]) & (up > box[2]) & (up < box[3])
     return bool(inside.any())
 
 
-def _along(corners: Any) -> Any:
+def _along(corners: Array) -> Array:
     """Return points along a line, close enough that a name on it is seen to be."""
     if len(corners) < 2:
         return corners

@@ -85,7 +85,7 @@ class Answer:
         return "\n".join([*lines, *(f"caution: {text}" for text in self.cautions)])
 
 
-def statuses_told(statuses: Any) -> str:
+def statuses_told(statuses: object) -> str:
     """Return the names of statuses in words, in a batch with the count of each."""
     if isinstance(statuses, Status):
         return statuses.name

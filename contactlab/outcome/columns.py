@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from operator import attrgetter
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import attrs
 import numpy as np
@@ -18,6 +18,14 @@ from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
+
+
+class WithScene(Protocol):
+    """What columns are read of: their ``path`` leads from its attributes."""
+
+    @property
+    def scene(self) -> Scene:
+        """The scene, whose shape the columns have."""
 
 
 class Column(NamedTuple):
@@ -46,7 +54,7 @@ class Column(NamedTuple):
     of_scenes: str = ""
     part: int | None = None
 
-    def read(self, result: Any) -> Any:
+    def read(self, result: WithScene) -> Any:
         """Return the values with the result's own type, or None if the scene defines no value."""
         value = attrgetter(self.path)(result)
         if self.part is not None and value is not None:
@@ -54,7 +62,7 @@ class Column(NamedTuple):
             value = np.asarray(value)[..., self.part] if vectors else None
         return value if value is None or self.factor == 1.0 else value * self.factor
 
-    def of(self, result: Any) -> NDArray[np.float64]:
+    def of(self, result: WithScene) -> NDArray[np.float64]:
         """Return the values as an array of the scene's shape, NaN if the scene defines no value.
 
         Of vectors the length is returned.
@@ -174,7 +182,7 @@ def columns_of(scene: Scene) -> tuple[Column, ...]:
     return tuple(column for column in COLUMNS if column.of_scenes not in others)
 
 
-def columns(result: Any) -> list[tuple[str, str, Any]]:
+def columns(result: WithScene) -> list[tuple[str, str, Any]]:
     """Return name, unit and values of every column; entries that vary and are none come first."""
     scene, table = result.scene, []
     for column in columns_of(scene):
@@ -189,7 +197,7 @@ def columns(result: Any) -> list[tuple[str, str, Any]]:
     return varied + table
 
 
-def components(name: str, values: Any, shape: tuple[int, ...]) -> list[tuple[str, Any]]:
+def components(name: str, values: object, shape: tuple[int, ...]) -> list[tuple[str, Any]]:
     """Return the components of vectors and matrices, each under a name: ``"psi1_2"``."""
     array = np.asarray(values)
     ends = array.shape[len(shape) :] if array.shape[: len(shape)] == shape else ()
@@ -210,21 +218,6 @@ def unit_in(unit: str, scene: Scene) -> str:
 def csv_heading(name: str, unit: str, scene: Scene) -> str:
     """Return the heading of a CSV column: name and unit, or name alone for words."""
     return f"{name} ({unit_in(unit, scene)})" if unit else name
-
-
-def scaled_forces(result: Any) -> tuple[Any, Any, Any]:
-    """Return t/duration, F/(mu P_max) and P/P_max of an impact with a history, from first touch.
-
-    In space F is the length of the force.
-    """
-    scene, history = result.scene, result.history
-    peak = float(result.motion.maximum_force)
-    time = np.concatenate([[0.0], history.time / result.motion.duration])
-    force = history.tangential_force
-    force = np.linalg.norm(force, axis=-1) if force.ndim > history.time.ndim else force
-    tangential = force / (scene.friction_coefficient * peak)
-    normal = history.normal_force / peak
-    return time, np.concatenate([[0.0], tangential]), np.concatenate([[0.0], normal])
 
 
 def json_value(value: Any) -> Any:

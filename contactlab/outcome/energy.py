@@ -124,7 +124,7 @@ def balanced(motion: Motion, scene: Scene, bound: Real, *, together: bool = Fals
     return _with_unbalanced(motion, scene, bound, alone)
 
 
-def _balances(motion: Motion, scene: Scene, bound: Any) -> bool:
+def _balances(motion: Motion, scene: Scene, bound: Real) -> bool:
     """Return whether the books of one impact balance: ``_with_unbalanced`` in a few floats.
 
     A spin about the normal that does not change the energy has no part in them.
@@ -142,7 +142,7 @@ def _balances(motion: Motion, scene: Scene, bound: Any) -> bool:
 
 
 @np.errstate(all="ignore")
-def _with_unbalanced(motion: Motion, scene: Scene, bound: Any, alone: Any) -> Motion:
+def _with_unbalanced(motion: Motion, scene: Scene, bound: Real, alone: Mask) -> Motion:
     """Return ``motion`` with the status of each impact whose books do not balance.
 
     ``alone`` marks impacts whose slip alone friction changed.
@@ -177,7 +177,7 @@ def _with_unbalanced(motion: Motion, scene: Scene, bound: Any, alone: Any) -> Mo
     return motion
 
 
-def _sentences(sentence: str, *numbers: Any) -> Any:
+def _sentences(sentence: str, *numbers: Real) -> Any:
     """Return the sentence of each impact with its numbers filled in, in the shape of the first."""
     shape = np.shape(numbers[0])
     if not shape:

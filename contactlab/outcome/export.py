@@ -75,7 +75,7 @@ def write_npz(result: ImpactResult, path: str | Path) -> None:
 WRITERS = {".json": write_json, ".csv": write_csv, ".npz": write_npz}
 
 
-def _flat(value: Any, shape: tuple[int, ...]) -> Any:
+def _flat(value: object, shape: tuple[int, ...]) -> Any:
     """Return a column as a flat array of numbers, or of names of statuses."""
     array = np.asarray(math.nan if value is None else value)
     if array.dtype == object:
@@ -83,7 +83,7 @@ def _flat(value: Any, shape: tuple[int, ...]) -> Any:
     return np.broadcast_to(array.astype(np.float64), shape).ravel()
 
 
-def _spread(value: Any, shape: tuple[int, ...]) -> list[Any]:
+def _spread(value: object, shape: tuple[int, ...]) -> list[Any]:
     """Return a column as a list with one item for each impact, statuses by name."""
     items = np.broadcast_to(np.asarray(value, dtype=object), shape).ravel().tolist()
     return [math.nan if item is None else getattr(item, "name", item) for item in items]

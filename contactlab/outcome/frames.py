@@ -3,15 +3,28 @@
 from __future__ import annotations
 
 import importlib
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, Protocol
 
 import numpy as np
 
+from contactlab.outcome.columns import WithScene, unit_in
 from contactlab.outcome.columns import columns as all_columns
-from contactlab.outcome.columns import unit_in
 
 
-def to_dataframe(result: Any) -> Any:
+class WithLaws(WithScene, Protocol):
+    """A result that has statuses and names of laws, beside columns."""
+
+    @property
+    def status(self) -> Any:
+        """Status of each impact."""
+
+    @property
+    def laws(self) -> Mapping[str, str]:
+        """Names of the laws."""
+
+
+def to_dataframe(result: WithLaws) -> Any:
     """Return a ``pandas.DataFrame``, one row for each impact: ``ImpactResult.to_dataframe``."""
     pandas = _needed("pandas", "to_dataframe")
     columns, axes, units = _labelled(result)
@@ -24,7 +37,7 @@ def to_dataframe(result: Any) -> Any:
     return frame
 
 
-def to_xarray(result: Any) -> Any:
+def to_xarray(result: WithLaws) -> Any:
     """Return an ``xarray.Dataset``, one dimension for each axis: ``ImpactResult.to_xarray``.
 
     A batch that is not a grid has the dimension ``impact``, or ``impact_0``, ``impact_1``, ...
@@ -47,7 +60,7 @@ def to_xarray(result: Any) -> Any:
     )
 
 
-def _labelled(result: Any) -> tuple[dict[str, Any], dict[str, Any], dict[str, str]]:
+def _labelled(result: WithLaws) -> tuple[dict[str, Any], dict[str, Any], dict[str, str]]:
     """Return the columns that a scene defines, of its shape, the axes of a grid, and all units."""
     scene = result.scene
     axes = dict(scene.axes)

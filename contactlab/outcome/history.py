@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.contracts.tangential_motion import Sample
+from contactlab.impact.scene import Scene
 from contactlab.numeric.names import attributes_told
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Index
 from contactlab.outcome.columns import components
+from contactlab.outcome.motion import Motion
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,7 +57,7 @@ class History:
         column = name if name in _names() else name.rpartition("_")[0]
         return str(getattr(attrs.fields(History), column).metadata["unit"])
 
-    def part(self, index: Any) -> History:
+    def part(self, index: Index) -> History:
         """Return the history of some impacts of a batch."""
         columns = {name: getattr(self, name)[:, index] for name in _names()}
         fields = {name: field[:, index] for name, field in self.fields.items()}
@@ -110,6 +113,37 @@ def _names() -> list[str]:
     return [item.name for item in attrs.fields(History) if item.name != "fields"]
 
 
+class WithHistory(Protocol):
+    """A result with a history."""
+
+    @property
+    def scene(self) -> Scene:
+        """The scene."""
+
+    @property
+    def motion(self) -> Motion:
+        """Its motion, with the duration and the greatest force."""
+
+    @property
+    def history(self) -> History | NoHistory:
+        """The history."""
+
+
+def scaled_forces(result: WithHistory) -> tuple[Array, Array, Array]:
+    """Return t/duration, F/(mu P_max) and P/P_max of an impact with a history, from first touch.
+
+    In space F is the length of the force.
+    """
+    scene, history = result.scene, result.history
+    peak = float(result.motion.maximum_force)
+    time = np.concatenate([[0.0], history.time / result.motion.duration])
+    force = history.tangential_force
+    force = np.linalg.norm(force, axis=-1) if force.ndim > history.time.ndim else force
+    tangential = force / (scene.friction_coefficient * peak)
+    normal = history.normal_force / peak
+    return time, np.concatenate([[0.0], tangential]), np.concatenate([[0.0], normal])
+
+
 class Recorder:
     """An observer that keeps every sample of a flat batch, with fields if ``with_fields``.
 
@@ -124,7 +158,7 @@ class Recorder:
         self._rows: list[tuple[Any, ...]] = []
         self._fields: list[dict[str, Any]] = []
 
-    def __call__(self, sample: Any) -> None:
+    def __call__(self, sample: Sample) -> None:
         """Keep the sample of one instant."""
         time, approach, rate, contact, slip_velocity, force, *_ = sample
         row = (time, approach, rate, contact.force, contact.radius, slip_velocity, force)

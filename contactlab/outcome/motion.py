@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from operator import attrgetter
 from typing import Any, Self
 
@@ -15,6 +16,7 @@ from contactlab.contracts.status import Status
 from contactlab.contracts.tangential_motion import TangentialMotion
 from contactlab.numeric.arrays import are_zeros, locked, spread, zeros
 from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Array
 
 #: Entries of ``Motion`` by the name of their source in a normal motion.
 ENDS = {
@@ -56,7 +58,7 @@ class Motion(TangentialMotion):
     exchange: Real = 0.0
     compressions: Real = 1.0
 
-    def turned(self, along: Any) -> Self:
+    def turned(self, along: Array) -> Self:
         """Return the motion with its slip along unit vectors of the tangent plane, (..., 2)."""
         change = np.asarray(self.slip_velocity_change)[..., None] * along
         return attrs.evolve(self, slip_velocity_change=locked(change))
@@ -103,8 +105,8 @@ class Motion(TangentialMotion):
 
 
 def _coupled(
-    normal: NormalMotion, tangential: TangentialMotion, entries: dict[str, Any]
-) -> dict[str, Any]:
+    normal: NormalMotion, tangential: TangentialMotion, entries: Mapping[str, Real]
+) -> Mapping[str, Real]:
     """Return the entries of the normal motion that came of the friction, and the exchange."""
     scene, own = normal.scene, Ends.of(tangential.normal)
     alone = np.isnan(own.final_rate)

@@ -2,20 +2,34 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from contactlab.contracts.error_model import COARSE, range_of
 from contactlab.numeric.arrays import for_share
-from contactlab.outcome.plan import NORMAL_SPIN, WITHOUT_SPIN
+from contactlab.numeric.types import Array, Real
+from contactlab.outcome.columns import WithScene
+from contactlab.outcome.plan import NORMAL_SPIN, WITHOUT_SPIN, Plan
 
 #: Ratio of estimated to declared error above which the declaration is false. Estimates are mostly
 #: within a factor of three of the true error.
 CONTRADICTS = 10.0
 
 
-def error_words(result: Any) -> str:
+class WithPlan(WithScene, Protocol):
+    """A result that has a plan with declared errors, and may have an estimate."""
+
+    @property
+    def plan(self) -> Plan:
+        """The plan."""
+
+    @property
+    def psi2_error_estimate(self) -> Real | None:
+        """Estimate of the error of psi2; None if there is none."""
+
+
+def error_words(result: WithPlan) -> str:
     """Return the numerical error of psi2 in words, estimated and declared."""
     estimate, declared = _errors(result)
     parts = []
@@ -34,7 +48,7 @@ def error_words(result: Any) -> str:
     return "; ".join(parts)
 
 
-def error_cautions(result: Any) -> list[str]:
+def error_cautions(result: WithPlan) -> list[str]:
     """Return cautions about a false declared error and about coarse answers."""
     estimate, declared = _errors(result)
     with np.errstate(all="ignore"):
@@ -58,7 +72,7 @@ def error_cautions(result: Any) -> list[str]:
     return cautions
 
 
-def _errors(result: Any) -> tuple[Any, Any]:
+def _errors(result: WithPlan) -> tuple[Array, Array]:
     """Return estimated and declared error in the batch shape, NaN where there is none."""
     shape = result.scene.shape
     estimate: Any = np.nan if result.psi2_error_estimate is None else result.psi2_error_estimate
@@ -66,12 +80,12 @@ def _errors(result: Any) -> tuple[Any, Any]:
     return np.broadcast_to(np.asarray(estimate, dtype=np.float64), shape), declared
 
 
-def _largest(error: Any, word: str) -> str:
+def _largest(error: Array, word: str) -> str:
     """Return the largest error of a batch with ``word`` before it."""
     return f"{word} {np.nanmax(error):.1g}"
 
 
-def _missing(error: Any) -> str:
+def _missing(error: Array) -> str:
     """Return the share of impacts with an error in words, empty if all have one."""
     finite = np.isfinite(error)
     return "" if finite.all() else for_share(finite)

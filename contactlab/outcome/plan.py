@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from contactlab.numeric.arrays import consecutive, every, merged, share, some, taken
 from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Index
 from contactlab.outcome.columns import json_value
 
 Mask = NDArray[np.bool_]
@@ -98,7 +99,7 @@ class PlanColumns(NamedTuple):
         psi2_error, restitution_error = errors
         return cls(merged(codes, shape, np.int16), psi2_error, reasons, restitution_error)
 
-    def take(self, part: Any) -> PlanColumns:
+    def take(self, part: Index) -> PlanColumns:
         """Return the columns of some impacts of a batch."""
         psi2, restitution = (
             taken(error, self.code.shape, part)
@@ -164,7 +165,7 @@ class Clause(NamedTuple):
         head, colon, tail = self.words.partition(": ")
         return f"{head} ({share(self.where)}){colon}{tail}"
 
-    def take(self, part: Any) -> Clause:
+    def take(self, part: Index) -> Clause:
         """Return the clause for some of the impacts."""
         values = self.values
         if values is not None:
@@ -197,10 +198,11 @@ class Plan:
     @property
     def words(self) -> Words:
         """The clauses of the three kinds."""
-        if callable(self._words):
-            object.__setattr__(self, "_words", self._words())
-        words: Any = self._words
-        return words  # type: ignore[no-any-return]
+        words = self._words
+        if callable(words):
+            words = words()
+            object.__setattr__(self, "_words", words)
+        return words
 
     @property
     def marched(self) -> Mask:
@@ -240,19 +242,30 @@ class Plan:
         """Doubts about the model or its numbers; each says which of the two."""
         return self.words[2]
 
-    def changed(self, **entries: Any) -> Plan:
+    def changed(
+        self,
+        *,
+        computed: Clauses | None = None,
+        left_out: Clauses | None = None,
+        cautions: Clauses | None = None,
+        psi2_error: Real | None = None,
+    ) -> Plan:
         """Return the plan with other clauses of a kind, or another ``psi2_error``.
 
         Parameters
         ----------
-        **entries
-            New values of ``computed``, ``left_out``, ``cautions`` or ``psi2_error``.
+        computed, left_out, cautions : tuple of Clause, optional
+        psi2_error : float or array, optional
         """
-        columns = self.columns
-        if "psi2_error" in entries:
-            columns = columns._replace(psi2_error=entries.pop("psi2_error"))
-        words: Any = tuple((dict(zip(KINDS, self.words, strict=True)) | entries).values())
-        return Plan(columns, words)
+        columns, words = self.columns, self.words
+        if psi2_error is not None:
+            columns = columns._replace(psi2_error=psi2_error)
+        new = (
+            words[0] if computed is None else computed,
+            words[1] if left_out is None else left_out,
+            words[2] if cautions is None else cautions,
+        )
+        return Plan(columns, new)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return how a copy is made: with the clauses as they are when read."""
@@ -275,7 +288,7 @@ class Plan:
         errors = ("psi2_error", "restitution_error")
         return {**words, **{name: json_value(getattr(self, name)) for name in errors}}
 
-    def __getitem__(self, index: Any) -> Plan:
+    def __getitem__(self, index: Index) -> Plan:
         """Return the plan of some impacts of a batch: the clauses that hold for any of them."""
         parts = (tuple(clause.take(index) for clause in kind) for kind in self.words)
         words: Any = tuple(tuple(part for part in kind if some(part.where)) for kind in parts)
@@ -304,7 +317,7 @@ def _merged(parts: Parts[Clauses], shape: tuple[int, ...]) -> Clauses:
     return tuple(same.values())
 
 
-def _largest(value: Any, where: Mask) -> float:
+def _largest(value: Real, where: Mask) -> float:
     """Return the largest entry of an array among the impacts; a plain number as it is."""
     if isinstance(value, float):
         return value

@@ -399,7 +399,7 @@ class ImpactResult(Answer):
         return (self[index] for index in range(len(self)))
 
 
-def _numbers_told(value: Any) -> str:
+def _numbers_told(value: Real) -> str:
     """Return a number, or the numbers of a vector or tensor."""
     return (
         f"{value:.6g}" if np.ndim(value) == 0 else np.array2string(np.asarray(value), precision=6)

@@ -63,13 +63,30 @@ class About(NamedTuple):
 
 
 def about_of(
-    result: ImpactResult, units: Mapping[str, str], counts: Mapping[str, int], **place: Any
+    result: ImpactResult,
+    units: Mapping[str, str],
+    counts: Mapping[str, int],
+    *,
+    first: int,
+    stop: int,
+    sweep: str,
+    scene: str,
 ) -> About:
-    """Return what the chunk of a result tells; ``place`` has its impacts and fingerprints."""
-    first, error = place["first"], float(np.max(result.plan.psi2_error))
+    """Return what the chunk of a result tells.
+
+    Parameters
+    ----------
+    result : ImpactResult
+    units, counts, first, stop, sweep, scene
+        As of ``About``.
+    """
+    error = float(np.max(result.plan.psi2_error))
     failures = result.failures if [*counts] != [Status.SUCCESS.name] else {}
     return About(
-        **place,
+        first=first,
+        stop=stop,
+        sweep=sweep,
+        scene=scene,
         units=units,
         counts=counts,
         failures={str(first + index): words for index, words in failures.items()},

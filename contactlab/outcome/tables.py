@@ -12,6 +12,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.hertz import semi_axes
 from contactlab.impact.scene import Scene, entry_unit
+from contactlab.numeric.types import Array, Real
 from contactlab.outcome.columns import (
     QUANTITIES,
     SWEEP_TABLE,
@@ -42,7 +43,7 @@ class Section(NamedTuple):
     rows: Sequence[Row]
 
 
-def number(value: Any, *, digits: int = 6) -> str:
+def number(value: object, *, digits: int = 6) -> str:
     """Return a number as text with ``digits`` significant digits, a dash if undefined."""
     if value is None or (isinstance(value, float | np.floating) and np.isnan(value)):
         return "-"
@@ -99,7 +100,7 @@ def _body(name: str, body: Sphere | HalfSpace) -> list[Row]:
     ]
 
 
-def _range(value: Any) -> str:
+def _range(value: Real) -> str:
     """Return the least and the greatest value, or the single value of all impacts."""
     low, high = float(np.min(value)), float(np.max(value))
     return number(low) if low == high else f"{number(low)} to {number(high)}"
@@ -115,7 +116,7 @@ def sections(result: ImpactResult) -> list[Section]:
 
 
 def sweep_section(
-    result: ImpactResult, varied: Mapping[str, tuple[str, Any]], *, most: int | None = None
+    result: ImpactResult, varied: Mapping[str, tuple[str, Array]], *, most: int | None = None
 ) -> Section:
     """Return one row for each impact: entries that vary, by name and unit, quantities, status.
 
@@ -234,15 +235,15 @@ def _velocities(result: ImpactResult) -> list[Row]:
     return rows
 
 
-def _pairs(name: str, before: Any, after: Any, unit: str) -> list[Row]:
+def _pairs(name: str, before: Real, after: Real, unit: str) -> list[Row]:
     """Return a row of a number before and after, or one for each component of a vector."""
     if np.ndim(before) == 0:
         return [[name, before, after, unit]]
-    pairs = enumerate(zip(before, after, strict=True), start=1)
+    pairs = enumerate(zip(np.ravel(before), np.ravel(after), strict=True), start=1)
     return [[f"{name} along t{place}", one, other, unit] for place, (one, other) in pairs]
 
 
-def _each(name: str, value: Any) -> list[tuple[str, Any]]:
+def _each(name: str, value: Real) -> list[tuple[str, Any]]:
     """Return a number, or the components of a vector or tensor, by name."""
     return [(part, float(each)) for part, each in components(name, value, ())]
 

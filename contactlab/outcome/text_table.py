@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Sequence
-from typing import Any
 
 from contactlab.outcome.tables import number
 
@@ -13,7 +12,7 @@ from contactlab.outcome.tables import number
 WIDTH, LEAST_TEXT = 100, 30
 
 
-def table(headings: Sequence[str], rows: Sequence[Sequence[Any]], *, digits: int = 6) -> str:
+def table(headings: Sequence[str], rows: Sequence[Sequence[object]], *, digits: int = 6) -> str:
     """Return a table as text: headings, a rule, rows.
 
     In a table wider than ``WIDTH`` the headings and a last column of text are wrapped.

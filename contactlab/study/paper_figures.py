@@ -19,7 +19,7 @@ from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 from contactlab.numeric.types import Array
-from contactlab.outcome.columns import scaled_forces
+from contactlab.outcome.history import scaled_forces
 
 #: chi of a solid homogeneous sphere of Poisson's ratio 0.3, eq. (38): the paper's 1.4412.
 SOLID_CHI = 0.7 / 1.7 * 3.5
