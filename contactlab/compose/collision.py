@@ -7,7 +7,6 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.compose import impulses
 from contactlab.compose.collision_plan import collision_plan
@@ -20,13 +19,12 @@ from contactlab.impact.encounter import Encounter
 from contactlab.numeric.arrays import filled
 from contactlab.numeric.checks import Real, refuse
 from contactlab.numeric.names import attributes_told
+from contactlab.numeric.types import Array
 from contactlab.outcome.answer import Answer
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.energy import EnergyLedger, books
 from contactlab.outcome.plan import Plan, PlanColumns
 from contactlab.outcome.result import ImpactResult
-
-Array = NDArray[np.float64]
 
 #: Vectors after a collision, name and unit.
 VECTORS_AFTER = (

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.compose.rebound import rebound
 from contactlab.impact.bodies import Pair, Sphere, inverse_turning_mass
@@ -14,9 +13,8 @@ from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import LEAST_IMPULSE
 from contactlab.numeric.arrays import chosen, every, locked
 from contactlab.numeric.checks import Real, refuse
+from contactlab.numeric.types import Array
 from contactlab.numeric.vectors import LEAST, components, three
-
-Array = NDArray[np.float64]
 
 #: Velocities and spins of both bodies.
 VELOCITIES = ("velocity", "spin", "target_velocity", "target_spin")

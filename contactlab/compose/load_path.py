@@ -20,9 +20,8 @@ from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import Rule, real, refuse
+from contactlab.numeric.types import Array
 from contactlab.outcome.answer import Answer
-
-Array = NDArray[np.float64]
 
 #: Columns of a path that the laws return.
 COLUMNS = ("normal_force", "friction_force", "friction_load", "contact_radius", "friction_work")

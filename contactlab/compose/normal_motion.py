@@ -18,8 +18,8 @@ from contactlab.impact.scene import NoIndexError, Scene
 from contactlab.numeric.checks import shown
 from contactlab.numeric.lobatto import lobatto, rows
 from contactlab.numeric.runge_kutta import attempt
+from contactlab.numeric.types import Array
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 #: Error of approach, rate and load impulse in a step, over their scales: far below the default

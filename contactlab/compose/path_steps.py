@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.contracts import faults
 from contactlab.contracts.contact import NormalContact
@@ -17,8 +16,7 @@ from contactlab.contracts.tangential import Increment, Sampled, SteppedTangentia
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import shown
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 
 class Points(NamedTuple):

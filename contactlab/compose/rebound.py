@@ -16,12 +16,12 @@ from contactlab.compose.names import BLOCK_VARIABLE
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.numeric.checks import FINITE, POSITIVE, Real, Rule, paired, real, refuse
 from contactlab.numeric.labels import library_of
+from contactlab.numeric.types import Array
 
 if TYPE_CHECKING:
     from contactlab.compose.simulation import Simulation
     from contactlab.contracts.whole_impact import Tabulated
 
-Array = NDArray[np.float64]
 #: Numbers without labels; of arrays with labels the answer has their type.
 Numbers: TypeAlias = float | np.number[Any] | NDArray[Any] | Sequence[Any]
 

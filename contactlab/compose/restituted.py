@@ -6,7 +6,6 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.compose.collision_plan import by_rebound
 from contactlab.compose.normal_spin_words import with_normal_spin
@@ -21,8 +20,6 @@ from contactlab.numeric.checks import Real, refuse
 from contactlab.outcome.motion import ENDS, Motion
 from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult
-
-Array = NDArray[np.float64]
 
 #: Different restitutions beyond which a plan has one statement, and the cautions of the least, for
 #: all impacts with loss.

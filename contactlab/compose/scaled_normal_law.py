@@ -6,7 +6,6 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.contracts import faults
 from contactlab.contracts.contact import NormalContact
@@ -16,8 +15,7 @@ from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat, locked
 from contactlab.numeric.checks import shown
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: Types of an entry of a contact that are always well formed.
 PLAIN = (float, np.float64, type(None))

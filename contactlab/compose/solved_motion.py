@@ -18,8 +18,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Real
 from contactlab.numeric.lobatto import lobatto, rows
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: Declared relative error of the load impulse: the sum of the errors of all steps, each within
 #: the ``TOLERANCE`` of ``contactlab.compose.normal_motion``.

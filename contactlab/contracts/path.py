@@ -17,13 +17,11 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar
 
-import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts.motion import ClosedFormMotion, ScaledContact
 from contactlab.contracts.tangential import TangentialLaw
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 
 class LostPathError(ArithmeticError):

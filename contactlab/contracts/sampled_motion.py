@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
@@ -15,8 +14,7 @@ from contactlab.contracts.motion import NormalMotion, NormalSample
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import merged, spread
 from contactlab.numeric.checks import Real
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 
 class SampledMotion(NormalMotion):

@@ -7,7 +7,6 @@ from abc import abstractmethod
 from collections.abc import Mapping
 from typing import Any, ClassVar, NamedTuple
 
-import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts.contact import NormalContact
@@ -18,8 +17,7 @@ from contactlab.contracts.whole_impact import WholeImpact, no_force
 from contactlab.impact.coupling import coupling
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Mask, Real
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 
 class Sampled(NamedTuple):

@@ -19,7 +19,8 @@ from contactlab.numeric.checks import (
     real,
     refuse,
 )
-from contactlab.numeric.names import arguments_told
+from contactlab.numeric.names import arguments_stated
+from contactlab.numeric.types import Numbers
 
 #: K of a solid homogeneous sphere: K² = 2/5.
 SOLID_SPHERE_GYRATION_RATIO = math.sqrt(0.4)
@@ -32,8 +33,8 @@ def _material() -> Any:
     )
 
 
-@arguments_told
-@attrs.frozen
+@arguments_stated
+@attrs.frozen(init=False)
 class Sphere:
     """An elastic sphere.
 
@@ -61,6 +62,15 @@ class Sphere:
         "1", rule=GYRATION, default=SOLID_SPHERE_GYRATION_RATIO, kw_only=True
     )
 
+    def __init__(
+        self,
+        radius: Numbers,
+        material: Material,
+        *,
+        mass: Numbers | None = None,
+        gyration_ratio: Numbers = SOLID_SPHERE_GYRATION_RATIO,
+    ) -> None: ...
+
     # That of all numbers takes longer than a collision; equal spheres have equal masses.
     def __hash__(self) -> int:
         mass = self.mass
@@ -81,8 +91,8 @@ class Sphere:
         object.__setattr__(self, "mass", real("mass", solid, rule=POSITIVE, empty=True))
 
 
-@arguments_told
-@attrs.frozen
+@arguments_stated
+@attrs.frozen(init=False)
 class HalfSpace:
     """An elastic body with a plane surface, so large that no impact changes its motion.
 
@@ -93,6 +103,8 @@ class HalfSpace:
     """
 
     material: Material = _material()
+
+    def __init__(self, material: Material) -> None: ...
 
     def __hash__(self) -> int:
         modulus = self.material.shear_modulus

@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.impact import inverse_mass
 from contactlab.impact.bodies import (
@@ -23,9 +22,8 @@ from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import chosen, some
 from contactlab.numeric.checks import refuse
+from contactlab.numeric.types import Array
 from contactlab.numeric.vectors import components, cross, moving, solved
-
-Array = NDArray[np.float64]
 
 #: Difference of principal curvatures over their sum that is a circle's rounding.
 ROUND = 1e-9

@@ -7,12 +7,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.impact.scene import Scene
 from contactlab.impact.table import between_nodes, read_rows
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: Shift of psi2 by one-way coupling, to 0.002, by the half-space law; its builder is
 #: ``python -m table_builders coupling build``. The nodes are psi1, chi, nu, and Lambda.

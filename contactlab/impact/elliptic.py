@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ellipkm1, elliprd
 
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: Steps of Newton's method for ln(b/a): five reach rounding for ratios of curvatures to 1e100.
 STEPS = 6

@@ -10,7 +10,6 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
 from contactlab.impact.body_contact import (
@@ -25,7 +24,8 @@ from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import NON_NEGATIVE, Real, first_of, instance, quantity, refuse
-from contactlab.numeric.names import arguments_told
+from contactlab.numeric.names import arguments_stated
+from contactlab.numeric.types import Array, Numbers
 from contactlab.numeric.vectors import (
     LEAST,
     NOTHING,
@@ -36,8 +36,6 @@ from contactlab.numeric.vectors import (
     square_root,
     vector,
 )
-
-Array = NDArray[np.float64]
 
 #: Encounters computed at a time: arrays of this length stay in the processor's cache.
 ENCOUNTERS_AT_A_TIME = 1 << 14
@@ -52,8 +50,8 @@ _DIMENSIONS = attrgetter(*(f"{name}.ndim" for name in GIVEN))
 _pair_of = lru_cache(maxsize=16)(Pair.of)
 
 
-@arguments_told
-@attrs.frozen
+@arguments_stated
+@attrs.frozen(init=False)
 class Encounter:
     """Two bodies at first touch, or a batch of such pairs, by vectors in SI units.
 
@@ -107,6 +105,21 @@ class Encounter:
     target_contact: Array = vector("m", default=NOTHING)
     #: Batch shape: () for one encounter.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
+
+    def __init__(
+        self,
+        body: Sphere | RigidBody,
+        target: Sphere | HalfSpace | RigidBody,
+        friction_coefficient: Numbers,
+        *,
+        normal: Numbers,
+        velocity: Numbers,
+        spin: Numbers = NOTHING,
+        target_velocity: Numbers = NOTHING,
+        target_spin: Numbers = NOTHING,
+        contact: Numbers = NOTHING,
+        target_contact: Numbers = NOTHING,
+    ) -> None: ...
 
     def __attrs_post_init__(self) -> None:
         paths, numbers = _numbers(*map(type, (self.body, self.target)))

@@ -8,13 +8,12 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.numeric.checks import real, refuse
+from contactlab.numeric.types import Array
 
 #: Largest number of impacts of a grid; a typing error must not fill the memory.
 MOST_IMPACTS = 10_000_000
-Array = NDArray[np.float64]
 
 
 def axes_of(entries: Mapping[str, Any]) -> dict[str, Array]:

@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.impact.bodies import Pair
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import NON_NEGATIVE, POISSON, POSITIVE, Rule, real, refuse
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: E* that makes C = 1 in eq. (9), where R = M_n = v1 = 1.
 MODULUS = 15.0 / 16.0

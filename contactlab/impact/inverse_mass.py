@@ -6,11 +6,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.numeric.checks import refuse
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: Smallest over largest eigenvalue of an inverse mass, scaled to ones on the diagonal, that is
 #: told from zero.

@@ -14,6 +14,7 @@ import numpy as np
 
 from contactlab.numeric.checks import POISSON, POSITIVE, Real, quantity, real, refuse
 from contactlab.numeric.names import arguments_told, nearest
+from contactlab.numeric.types import Numbers
 
 OWN = "or give your own: Material(young_modulus=..., poisson_ratio=..., density=...)"
 #: Names in common use, with the name in the collection.
@@ -56,11 +57,11 @@ class Material:
     def __init__(
         self,
         *,
-        shear_modulus: object = None,
-        young_modulus: object = None,
-        poisson_ratio: object,
-        density: Any = None,
-        yield_stress: Any = None,
+        shear_modulus: Numbers | None = None,
+        young_modulus: Numbers | None = None,
+        poisson_ratio: Numbers,
+        density: Numbers | None = None,
+        yield_stress: Numbers | None = None,
     ) -> None:
         if (shear_modulus is None) == (young_modulus is None):
             raise refuse(
@@ -81,9 +82,8 @@ class Material:
                 )
             shear_modulus = young / (2.0 * (1.0 + ratio))
         shear = real("shear_modulus", shear_modulus, rule=POSITIVE, remedy="give it in Pa")
-        self.__attrs_init__(
-            shear_modulus=shear, poisson_ratio=ratio, density=density, yield_stress=yield_stress
-        )
+        others: Any = {"density": density, "yield_stress": yield_stress}
+        self.__attrs_init__(shear_modulus=shear, poisson_ratio=ratio, **others)
 
     @classmethod
     def named(cls, name: str) -> Material:

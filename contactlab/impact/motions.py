@@ -11,9 +11,9 @@ import numpy as np
 
 from contactlab.impact import inverse_mass
 from contactlab.impact.bodies import Pair, size_ratio
-from contactlab.impact.grid import Array
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Array
 
 #: Groups of theory §14, where friction changes the approach.
 COUPLED = ("lam", "eta", "rho")

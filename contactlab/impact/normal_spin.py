@@ -8,15 +8,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.impact.body_contact import spin_about, turning_compliance
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.impact.table import between_nodes, read_rows
+from contactlab.numeric.types import Array
 from contactlab.numeric.vectors import components
-
-Array = NDArray[np.float64]
 
 #: psi2 and loss of spin by two programs that solve the half-space with slip and spin together.
 FILE = Path(__file__).with_name("normal_spin.csv")

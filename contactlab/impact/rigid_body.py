@@ -8,14 +8,12 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.impact.material import Material
 from contactlab.numeric.arrays import common_shape, known, taken
 from contactlab.numeric.checks import POSITIVE, Real, Rule, instance, key, quantity, real, refuse
-from contactlab.numeric.names import arguments_told
-
-Array = NDArray[np.float64]
+from contactlab.numeric.names import arguments_stated
+from contactlab.numeric.types import Array, Numbers
 
 #: Asymmetry of an inertia, and excess of a principal moment over the sum of the other two, that
 #: count as rounding, over the largest moment.
@@ -90,8 +88,8 @@ def _curved(**default: Any) -> Any:
     return attrs.field(**default, converter=converter, eq=key, metadata=metadata)
 
 
-@arguments_told
-@attrs.frozen(kw_only=True)
+@arguments_stated
+@attrs.frozen(kw_only=True, init=False)
 class RigidBody:
     """A body of any shape that is elastic at its contact only.
 
@@ -148,6 +146,20 @@ class RigidBody:
     inertia: Any = attrs.field(init=False, eq=False, repr=False)
     #: Batch shape of mass, inertia and curvature together.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
+
+    def __init__(
+        self,
+        *,
+        mass: Numbers,
+        inertia: Numbers | None = None,
+        material: Material,
+        curvature_radius: Numbers,
+        principal: Numbers | None = None,
+        axes: Numbers | None = None,
+        cross_radius: Numbers | None = None,
+        curvature_axis: Numbers | None = None,
+        bending_period: Numbers | None = None,
+    ) -> None: ...
 
     def __attrs_post_init__(self) -> None:
         if (self._inertia is None) == (self.principal is None):

@@ -12,7 +12,7 @@ import numpy as np
 
 from contactlab.impact import groups, inverse_mass
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
-from contactlab.impact.grid import Array, GridParts, axes_of, product
+from contactlab.impact.grid import GridParts, axes_of, product
 from contactlab.impact.material import Material
 from contactlab.impact.motions import Motions
 from contactlab.numeric import arrays as batch
@@ -29,7 +29,8 @@ from contactlab.numeric.checks import (
     refuse,
     whole,
 )
-from contactlab.numeric.names import arguments_told
+from contactlab.numeric.names import arguments_stated
+from contactlab.numeric.types import Array, Numbers
 
 #: Least kinetic energy of the normal motion, in J, and least tangential velocity, in m/s. Numbers
 #: computed from smaller values would have fewer than sixteen digits.
@@ -53,8 +54,8 @@ class NoIndexError(LookupError):
     """A law asked for the index of a scene that stands for many impacts."""
 
 
-@arguments_told
-@attrs.frozen
+@arguments_stated
+@attrs.frozen(init=False)
 class Scene(Motions):
     """One oblique impact, or a batch of them, in SI units.
 
@@ -139,6 +140,24 @@ class Scene(Motions):
     _varied: tuple[tuple[str, Array], ...] = attrs.field(
         init=False, eq=False, repr=False, default=()
     )
+
+    def __init__(
+        self,
+        sphere: Sphere | None,
+        target: Sphere | HalfSpace | None,
+        friction_coefficient: Numbers,
+        normal_speed: Numbers,
+        tangential_velocity: Numbers = 0.0,
+        spin: Numbers = 0.0,
+        *,
+        normal_spin: Numbers = 0.0,
+        pair: Pair | None = None,
+        unit_friction: bool = False,
+        encounter: object = None,
+        frame: Array | None = None,
+        inverse_mass: Numbers | None = None,
+        planar: bool = True,
+    ) -> None: ...
 
     def __attrs_post_init__(self) -> None:
         if self.sphere is not None and self.target is not None:

@@ -15,16 +15,15 @@ from typing import Any, TypeVar
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.impact.material import Material
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.checks import POSITIVE, real, refuse
 from contactlab.numeric.names import SHAPES, function_told
+from contactlab.numeric.types import Array
 
 __all__ = ["box", "disc", "ellipsoid", "rod"]
 
-Array = NDArray[np.float64]
 Maker = TypeVar("Maker", bound=Callable[..., tuple[RigidBody, Array]])
 
 #: Arguments of a pose, and how many dimensions each has for one.

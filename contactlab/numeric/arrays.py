@@ -15,6 +15,9 @@ from typing import Any
 
 import attrs
 import numpy as np
+from numpy.typing import ArrayLike
+
+from contactlab.numeric.types import Array, Index, Mask, Real, Tree
 
 #: Numbers in the array that ``keep_freed_memory`` releases: 8 MB, the tables of most batches.
 RELEASED = 1_000_000
@@ -28,7 +31,7 @@ def keep_freed_memory() -> None:
     np.empty(RELEASED)
 
 
-def locked(value: Any) -> Any:
+def locked(value: Tree) -> Tree:
     """Return ``value``; an array is made read-only."""
     if isinstance(value, np.ndarray):
         value.setflags(write=False)
@@ -70,7 +73,7 @@ def stacked(items: Sequence[Any]) -> Any:
     return np.array(items, dtype=np.float64)
 
 
-def taken(tree: Any, shape: tuple[int, ...], part: Any) -> Any:
+def taken(tree: Any, shape: tuple[int, ...], part: Index) -> Any:
     """Return the tree of the impacts that ``part`` indexes; plain numbers stay plain.
 
     An array with more axes than ``shape`` begins with those of the batch.
@@ -92,7 +95,7 @@ def taken(tree: Any, shape: tuple[int, ...], part: Any) -> Any:
     return tree
 
 
-def known(value: Any) -> Any:
+def known(value: object) -> Any:
     """Return a value; None for NaN, which stands for None in arrays."""
     return None if isinstance(value, float) and value != value else value
 
@@ -115,9 +118,9 @@ def equal(one: Any, other: Any) -> bool:
 
 
 def merged(
-    parts: Sequence[tuple[Any, Any]],
+    parts: Sequence[tuple[Index, ArrayLike]],
     shape: tuple[int, ...],
-    kind: Any = float,
+    kind: type | np.dtype[np.generic] = float,
     ends: tuple[int, ...] = (),
 ) -> Any:
     """Return an array of ``shape`` from pairs of a place and its values; later pairs overwrite.
@@ -139,7 +142,7 @@ def consecutive(sizes: Iterable[int]) -> list[slice]:
     return [slice(*pair) for pair in itertools.pairwise(ends)]
 
 
-def spread(value: Any, shape: tuple[int, ...]) -> Any:
+def spread(value: Real, shape: tuple[int, ...]) -> Any:
     """Return ``value`` as a float for one impact, or as an array of ``shape`` for a batch."""
     if not shape:
         return float(value)
@@ -153,47 +156,47 @@ def zeros(shape: tuple[int, ...]) -> Any:
     return np.broadcast_to(0.0, shape) if shape else 0.0
 
 
-def are_zeros(value: Any) -> bool:
+def are_zeros(value: Real) -> bool:
     """Return whether a value is the number 0, or what ``zeros`` returned."""
     if isinstance(value, np.ndarray):
         return not any(value.strides) and value.size > 0 and not value.flat[0]
     return bool(value == 0.0)
 
 
-def flat(value: Any, shape: tuple[int, ...]) -> Any:
+def flat(value: Real, shape: tuple[int, ...]) -> Array:
     """Return ``value``, of ``shape`` or broadcast to it, as an array of one axis, maybe a view."""
     array = np.asarray(value, dtype=np.float64)
     same = array.shape == shape  # broadcasting takes longer than a small step
     return (array if same else np.broadcast_to(array, shape)).reshape(-1)
 
 
-def filled(value: Any, shape: tuple[int, ...]) -> Any:
+def filled(value: object, shape: tuple[int, ...]) -> Any:
     """Return ``value`` for one impact, or an object array of ``shape`` filled with it."""
     return np.full(shape, value, dtype=object) if shape else value
 
 
-def some(mask: Any) -> bool:
+def some(mask: Mask) -> bool:
     """Return whether a mask is True for at least one impact."""
     return mask if isinstance(mask, bool) else bool(mask.any() if mask.ndim else mask)
 
 
-def every(mask: Any) -> bool:
+def every(mask: Mask) -> bool:
     """Return whether a mask is True for all impacts."""
     return mask if isinstance(mask, bool) else bool(mask.all() if mask.ndim else mask)
 
 
-def chosen(condition: Any, if_true: Any, if_false: Any) -> Any:
+def chosen(condition: Mask, if_true: Real, if_false: Real) -> Any:
     """Return ``np.where`` for arrays; a plain condition is decided by ``if``, ten times as fast."""
     if isinstance(condition, np.ndarray):
         return np.where(condition, if_true, if_false)
     return if_true if condition else if_false
 
 
-def share(where: Any) -> str:
+def share(where: Mask) -> str:
     """Return "3 of 10 impacts": how many impacts ``where`` marks."""
     return f"{int(np.sum(where))} of {np.size(where)} impacts"
 
 
-def for_share(where: Any) -> str:
+def for_share(where: Mask) -> str:
     """Return " for 3 of 10 impacts"; empty for a single impact."""
     return f" for {share(where)}" if np.ndim(where) else ""

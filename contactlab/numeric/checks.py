@@ -7,14 +7,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import attrs
 import numpy as np
 
 from contactlab.numeric.labels import misplaced
 from contactlab.numeric.types import Mask as Mask  # until all take them from there
+from contactlab.numeric.types import Numbers, Places
 from contactlab.numeric.types import Real as Real
+
+T = TypeVar("T")
 
 
 class Rule(NamedTuple):
@@ -114,7 +117,7 @@ def check_place(argument: str, value: object) -> None:
         raise refuse(argument, value, *why)
 
 
-def first_of(where: Any) -> str:
+def first_of(where: Places) -> str:
     """Return " (the first of 3 has index [0])" for indices ``where``; empty for one number."""
     return f" (the first of {len(where)} has index {where[0].tolist()})" if where.shape[1] else ""
 
@@ -152,7 +155,7 @@ def unit_remedy(unit: str) -> str:
     return "it has no unit" if unit == "1" else f"give it in {unit}"
 
 
-def _checked(value: object, owner: object, field: attrs.Attribute[Any]) -> Real | None:
+def _checked(value: Numbers | None, owner: object, field: attrs.Attribute[object]) -> Real | None:
     """Return the checked value of a field of ``owner``, the object that is being made."""
     if value is None and field.default is None:
         return None
@@ -182,7 +185,7 @@ def quantity(
     unit: str,
     *,
     rule: Rule = FINITE,
-    default: Any = attrs.NOTHING,
+    default: object = attrs.NOTHING,
     kw_only: bool = False,
     empty: bool = False,
     unknown: bool = False,
@@ -227,20 +230,25 @@ def instance(*kinds: type, remedy: str = "", optional: bool = False, **field: An
     """Return an attrs field that accepts objects of the classes ``kinds``; None too if optional."""
     rule = f"must be a {' or a '.join(kind.__name__ for kind in kinds)}"
 
-    def validate(_: object, field: attrs.Attribute[Any], value: object) -> None:
+    def validate(_: object, field: attrs.Attribute[object], value: object) -> None:
         if not (isinstance(value, kinds) or (optional and value is None)):
             raise refuse(field.name, value, rule, remedy)
 
     return attrs.field(validator=validate, **field)
 
 
-def _option(checked: Callable[[str, object], Any], default: Any, **metadata: Any) -> Any:
-    """Return an attrs field with the converter ``checked(name, value)``."""
+def _option(
+    kind: type[T], checked: Callable[[str, object], T], default: object, **metadata: object
+) -> Any:
+    """Return an attrs field of ``kind`` with the converter ``checked(name, value)``."""
+
+    def convert(value: object, field: attrs.Attribute[object]) -> T:
+        return checked(field.name, value)
+
+    convert.__annotations__["value"] = kind.__name__  # what signatures show
     return attrs.field(
         default=default,
-        converter=attrs.Converter(
-            lambda value, field: checked(field.name, value), takes_field=True
-        ),
+        converter=attrs.Converter(convert, takes_field=True),
         metadata={"unit": "", **metadata},
     )
 
@@ -262,7 +270,7 @@ def choice(*words: str, default: str) -> Any:
             raise refuse(name, value, rule)
         return value
 
-    return _option(checked, default, range=rule, words=words)
+    return _option(str, checked, default, range=rule, words=words)
 
 
 def flag(*, default: bool) -> Any:
@@ -280,10 +288,10 @@ def flag(*, default: bool) -> Any:
             raise refuse(name, value, rule)
         return value
 
-    return _option(checked, default, range=rule)
+    return _option(bool, checked, default, range=rule)
 
 
-def count(*, default: Any = attrs.NOTHING, least: int = 1, most: int = 10_000_000) -> Any:
+def count(*, default: object = attrs.NOTHING, least: int = 1, most: int = 10_000_000) -> Any:
     """Return an attrs field for a checked whole number.
 
     Parameters
@@ -298,4 +306,4 @@ def count(*, default: Any = attrs.NOTHING, least: int = 1, most: int = 10_000_00
         return whole(name, value, least=least, most=most)
 
     rule = f"must be a whole number from {least} to {most}"
-    return _option(checked, default, range=rule, unit="1")
+    return _option(int, checked, default, range=rule, unit="1")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sized
 from functools import cache
 from typing import Any
 
@@ -34,7 +35,7 @@ def is_traced(value: object) -> bool:
     return library_of(value) == "jax" and isinstance(value, sys.modules["jax"].core.Tracer)
 
 
-def numbered(index: Any) -> bool:
+def numbered(index: Sized) -> bool:
     """Return whether an index of pandas counts 0, 1, 2, ...: then position and label are one."""
     return bool(np.array_equal(np.asarray(index), np.arange(len(index))))
 

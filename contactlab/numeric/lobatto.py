@@ -7,9 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: Added to distances from nodes so that none is zero; no other distance changes.
 ON_NODE = 1e-290

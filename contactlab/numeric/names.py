@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import functools
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib import import_module
 from typing import Any, TypeVar
 
 Class = TypeVar("Class", bound=type)
 Function = TypeVar("Function", bound=Callable[..., Any])
+T = TypeVar("T")
 
 #: Names in this package for symbols and names that users try. The first two that are accepted
 #: where the symbol was used are suggested.
@@ -88,10 +89,24 @@ def arguments_told(made: Class) -> Class:
 
     The text ``_remedy`` of a class tells where arguments belong that it does not have.
     """
+    return _telling(made, vars(made)["__init__"])
+
+
+def arguments_stated(made: Class) -> Class:
+    """Return a class of ``arguments_told`` whose ``__init__`` states arguments only.
+
+    Type checkers and readers see that method, attrs takes the arguments: no checker sees what the
+    converters of attrs accept, and a call between the two would take as long as a small object.
+    """
+    return _telling(made, functools.wraps(vars(made)["__init__"])(vars(made)["__attrs_init__"]))
+
+
+def _telling(made: Class, call: Callable[..., None]) -> Class:
+    """Return a class whose ``call``, in place of ``__init__``, and class methods tell."""
     for name, each in [*vars(made).items()]:
         if isinstance(each, classmethod):
             setattr(made, name, classmethod(_told(made, each.__func__)))
-    made.__init__ = _told(made, vars(made)["__init__"])  # type: ignore[misc]
+    made.__init__ = _told(made, call)  # type: ignore[misc]
     return made
 
 
@@ -99,7 +114,7 @@ def function_told(call: Function) -> Function:
     """Return a function whose wrong arguments are refused with the nearest, and all names."""
 
     @functools.wraps(call)
-    def told(*values: Any, **named: Any) -> Any:
+    def told(*values: object, **named: object) -> object:
         try:
             return call(*values, **named)
         except TypeError:
@@ -113,7 +128,7 @@ def function_told(call: Function) -> Function:
 def attributes_told(made: Class) -> Class:
     """Return a class of results that refuses a wrong attribute with the nearest, or all names."""
 
-    def __getattr__(self: Any, name: str) -> Any:  # noqa: N807
+    def __getattr__(self: object, name: str) -> Any:  # noqa: N807
         if name.startswith("_") or hasattr(made, name):
             return object.__getattribute__(self, name)  # an error in a property is its own
         public = [each for each in dir(self) if not each.startswith("_")]
@@ -125,11 +140,11 @@ def attributes_told(made: Class) -> Class:
     return made
 
 
-def _told(made: Any, call: Callable[..., Any]) -> Callable[..., Any]:
+def _told(made: type, call: Callable[..., T]) -> Callable[..., T]:
     """Return a method that says which of its arguments are wrong."""
 
     @functools.wraps(call)
-    def told(*values: Any, **named: Any) -> Any:
+    def told(*values: object, **named: object) -> T:
         try:
             return call(*values, **named)
         except TypeError:
@@ -140,7 +155,14 @@ def _told(made: Any, call: Callable[..., Any]) -> Callable[..., Any]:
     return told
 
 
-def _unfit(call: Any, values: Any, named: Mapping[str, Any], remedy: str, *, own: int = 1) -> str:
+def _unfit(
+    call: Callable[..., object],
+    values: Sequence[object],
+    named: Mapping[str, object],
+    remedy: str,
+    *,
+    own: int = 1,
+) -> str:
     """Return why arguments do not fit a method, and what would; empty if they fit.
 
     ``values`` begin with the object; a function has ``own`` = 0 arguments of this kind.
@@ -200,6 +222,7 @@ def imported_on_use(
 
     def __dir__() -> list[str]:  # noqa: N807
         """Return the public names, those that are not imported yet among them."""
-        return sorted({*vars(sys.modules[package]), *modules})
+        names = vars(sys.modules[package])
+        return sorted({*names["__all__"], *modules, *({"__version__"} & names.keys())})
 
     return __getattr__, __dir__

@@ -7,9 +7,8 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array
 
 #: Weight of the third-order error in the error of a step (Hairer, Nørsett & Wanner, §II.10).
 LOWER = 0.01

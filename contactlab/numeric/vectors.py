@@ -8,11 +8,9 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.numeric.checks import Rule, first_of, key, real, refuse
-
-Array = NDArray[np.float64]
+from contactlab.numeric.types import Array, Kind, Numbers
 
 NOTHING = (0.0, 0.0, 0.0)
 _ROLLED = [1, 2, 0]
@@ -30,7 +28,7 @@ def solved(matrices: Array, columns: Array) -> Array:
     return np.asarray(np.linalg.solve(matrices, whole))
 
 
-def vector(unit: str, *, default: Any = attrs.NOTHING) -> Any:
+def vector(unit: str, *, default: object = attrs.NOTHING) -> Any:
     """Return an attrs field for checked vectors."""
     return attrs.field(
         default=default,
@@ -41,7 +39,7 @@ def vector(unit: str, *, default: Any = attrs.NOTHING) -> Any:
     )
 
 
-def _checked(value: object, field: attrs.Attribute[Any]) -> Array:
+def _checked(value: Numbers, field: attrs.Attribute[object]) -> Array:
     """Return vectors, shape (..., 3), as a read-only copy."""
     if value is NOTHING:
         return ZERO
@@ -65,7 +63,7 @@ def three(x: float, y: float, z: float) -> Array:
 ZERO = three(*NOTHING)
 
 
-def _many(value: Any, field: attrs.Attribute[Any]) -> Array:
+def _many(value: Any, field: attrs.Attribute[object]) -> Array:
     """Return ``value`` as a new array of shape (..., 3), or refuse it."""
     remedy = f"give three numbers in {field.metadata['unit']}, or an array of shape (..., 3)"
     if field.metadata["unit"] == "1":
@@ -103,12 +101,12 @@ def moving(vectors: Array) -> bool:
     return vectors is not ZERO and bool(vectors.any())
 
 
-def square_root(square: Any) -> Any:
+def square_root(square: Kind) -> Kind:
     """Return the square root of an array, or of a float as a float."""
     return math.sqrt(square) if isinstance(square, float) else np.sqrt(square)
 
 
-def cross(one: Any, other: Any) -> Array:
+def cross(one: Array, other: Array) -> Array:
     """Return the products of vectors, shape (..., 3); ``np.cross`` takes several times as long."""
     rolled = one * other[..., _ROLLED] - one[..., _ROLLED] * other
     return np.asarray(rolled[..., _ROLLED])

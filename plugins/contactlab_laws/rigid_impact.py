@@ -15,7 +15,7 @@ import numpy as np
 from contactlab.contracts import Ends, NormalMotion, Scene, TangentialMotion
 from contactlab.contracts.status import Status
 from contactlab.numeric.arrays import filled, spread
-from contactlab.numeric.lobatto import Array
+from contactlab.numeric.types import Array
 
 #: Tolerance of Keller's equations; slip below this part of the speed has stopped.
 TOLERANCE, STOPPED = 1e-11, 1e-10

@@ -19,7 +19,7 @@ def test_the_package_is_the_command(monkeypatch, capsys):
 def test_names_that_are_not_imported_yet_are_listed():
     listed = dir(contactlab)
     assert listed == sorted(listed)
-    assert {*contactlab.__all__, *contactlab.MODULES, "create", "__version__"} <= set(listed)
+    assert set(listed) == {*contactlab.__all__, *contactlab.MODULES, "__version__"}
     for name in contactlab.__all__:
         assert getattr(contactlab, name) is not None
     for package in ("contracts", "figures", "fitting", "study", "testing", "materials"):

@@ -18,7 +18,8 @@ from contactlab.contracts import (
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
-from contactlab.numeric.lobatto import Array, lobatto, rows
+from contactlab.numeric.lobatto import lobatto, rows
+from contactlab.numeric.types import Array
 from contactlab_laws.dashpot.oscillator import Oscillator
 
 #: Edges of the panels over which time is summed, and nodes in each panel. Panels are even, then

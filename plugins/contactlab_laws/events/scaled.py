@@ -22,7 +22,7 @@ from contactlab.contracts import (
     faults,
 )
 from contactlab.contracts.status import Status
-from contactlab.numeric.lobatto import Array
+from contactlab.numeric.types import Array
 
 #: Below this friction may stop no slip at all, however slow, and nothing is scaled.
 LEAST_INERTIA = 1e-99
