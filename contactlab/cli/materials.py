@@ -35,9 +35,12 @@ def execute(arguments: argparse.Namespace) -> int:
         content = {"materials": [attrs.asdict(entry) for entry in entries]}
         shared.print_json(content | {"references": materials.references()})
         return shared.OK
-    headings = ["material", "E (GPa)", "nu", "density (kg/m³)"]
+    headings = ["material", "E (GPa)", "nu", "density (kg/m³)", "yield stress (MPa)"]
     rows = [
-        [entry.name, entry.young_modulus / 1e9, entry.poisson_ratio, entry.density]
+        [
+            *(entry.name, entry.young_modulus / 1e9, entry.poisson_ratio, entry.density),
+            "-" if entry.yield_stress is None else entry.yield_stress / 1e6,
+        ]
         for entry in entries
     ]
     print(table(headings, rows))

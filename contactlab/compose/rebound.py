@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from collections.abc import Callable, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, overload
@@ -46,6 +47,9 @@ CHI = Rule(
 )
 #: Range of chi in the table of elastic impacts.
 ELASTIC_CHI = (math.ulp(0.0), TABULATED_CHI)
+#: Two single numbers are probably exchanged if the first is a chi of solid spheres, and the second
+#: a psi1 that is common and a chi that only a dense core makes.
+LIKE_CHI, LIKE_PSI1 = (0.8, 1.75), (4.0, 20.0)
 #: From this psi1 on every impact with chi in range slips throughout, and psi falls by 4 chi.
 SLIPS_THROUGHOUT = 1e5
 
@@ -148,6 +152,11 @@ def rebound(
         chi is at most 2.5, and 0.3 to 3 with a restitution; in float32 to 2e-6. Where numbers out
         of these ranges are traced, psi2 is NaN. ``derivatives`` are those that JAX takes.
 
+    Warns
+    -----
+    UserWarning
+        If two single numbers look exchanged: psi1 from 0.8 to 1.75, chi from 4 to 20.
+
     Raises
     ------
     ValueError
@@ -198,6 +207,8 @@ def rebound(
     e = real("restitution", restitution, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
     three = derivatives and restitution is not ELASTIC
     velocity, ratio = paired("psi1", "chi", (incidence, inertia))
+    if type(psi1) in (float, int) and type(chi) in (float, int):  # typed, not out of an array
+        _warn_if_exchanged(float(incidence), float(inertia))
     if not isinstance(e, float):
         velocity, each = paired("psi1", "restitution", (velocity, e))
         velocity, ratio = paired("psi1", "chi", (velocity, ratio))
@@ -217,6 +228,14 @@ def rebound(
     arrays = [each.reshape(velocity.shape) for each in (psi2, *slopes)]
     answers: tuple[Real, ...] = (*(arrays if velocity.ndim else map(float, arrays)),)
     return answers if derivatives else answers[0]
+
+
+def _warn_if_exchanged(psi1: float, chi: float) -> None:
+    """Warn of two numbers that look exchanged."""
+    if LIKE_CHI[0] <= psi1 <= LIKE_CHI[1] and LIKE_PSI1[0] <= chi <= LIKE_PSI1[1]:
+        told = f"psi1 = {psi1:g} and chi = {chi:g} look exchanged: no solid sphere has such a chi"
+        remedy = f"was rebound({chi:g}, {psi1:g}) meant? psi1 stands first"
+        warnings.warn(f"{told}; {remedy}", UserWarning, stacklevel=3)
 
 
 def _tolerance(value: Any) -> float:

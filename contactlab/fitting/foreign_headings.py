@@ -34,6 +34,7 @@ VOCABULARY = AFTER | BEFORE | TANGENTIAL | NORMAL | SPEEDS | ANGLES | SPINS | {"
 #: Names for whole headings, as patterns. A launch monitor tells sizes: struck from above the
 #: contact, a ball leaves with the spin that is negative here.
 WHOLE = {
+    r"side_?spin": "",  # after the impact, about an axis that no scene of a plane has
     r"spin_loft": "angle_deg",
     r"attack_angle|angle_of_attack": "angle_deg",
     r"club(head)?_speed": "speed",

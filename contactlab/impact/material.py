@@ -124,7 +124,7 @@ class Entry:
     elastic_source, density_source : str
         Source of the numbers: a work and a place in it.
     yield_stress : float, optional
-        Y in Pa, if the entry is one alloy in one condition.
+        Y in Pa, if the entry is one alloy in one condition, or its range is narrow.
     yield_source : str
         Source of the yield stress; empty without yield stress.
     note : str

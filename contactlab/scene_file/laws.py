@@ -30,6 +30,7 @@ from contactlab.scene_file.table import Table, flattened, nearest_of
 
 #: e = 1 - c v^(1/5) in words without blanks.
 FIFTH_ROOT = re.compile(r"1-(\d*\.?\d+(?:e[+-]?\d+)?)v\^\(?(?:1/5|0?\.2)\)?")
+OF_SPEED_IN_TOML = "[[0.5, 0.95], [2, 0.9]], e over the speed in m/s"
 OPTION_REMEDY = "write tangential.annuli = 50, or tangential.annulus.annuli = 50 for one law only"
 
 
@@ -195,7 +196,7 @@ def _of_speed(restitution: object) -> tuple[str, Any]:
             ]
     rule = "is neither a number, nor a function or a table of the speed"
     remedy = "write 0.9, 1 - 0.02 v^(1/5), or 0.5:0.95,2:0.9 (speed in m/s and e)"
-    raise refuse("restitution", restitution, rule, f"{remedy}; in TOML [[0.5, 0.95], [2, 0.9]]")
+    raise refuse("restitution", restitution, rule, f"{remedy}; in TOML {OF_SPEED_IN_TOML}")
 
 
 def _laws_with(option: str) -> str:
@@ -244,7 +245,8 @@ def read_laws(content: object, folder: Path, *, allow_code: bool) -> LawChoice:
         if isinstance(value, str | list):
             choice = table.make(choice.restituted, restitution=value)
         else:
-            number = table.number("restitution", remedy="leave it out for 1")
+            remedy = f"or {OF_SPEED_IN_TOML}; leave it out for 1"
+            number = table.number("restitution", remedy=remedy)
             choice = choice.restituted(number)
     if not table.has("options"):
         return choice

@@ -1,6 +1,6 @@
 """contactlab.rebound in JAX: it takes arrays of JAX, under jit, vmap, grad and hessian.
 
-Run with ``pip install contactlab[recipes]``: ``python rebound_in_jax.py``.
+Run with ``pip install ".[recipes]"`` in the clone: ``python rebound_in_jax.py``.
 """
 
 import jax

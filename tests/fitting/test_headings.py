@@ -259,14 +259,22 @@ LAUNCH_MONITOR = (
     "Carry (yds);Total (yds);Side (ft);Height (ft);Hang Time (s);Landing Angle (deg);"
     "Last Data;Tags;Quality"
 )
+#: Of another make: the spin by its parts and by its axis.
+ANOTHER_MONITOR = LAUNCH_MONITOR.replace(
+    "Backspin (rpm);Sidespin (rpm)", "Spin Rate (rpm);Side Spin (rpm)"
+)
 
 
-def test_the_headings_of_a_launch_monitor(tmp_path):
+@pytest.mark.parametrize(
+    ("monitor", "spin"),
+    [(LAUNCH_MONITOR, "Backspin (rpm)"), (ANOTHER_MONITOR, "Spin Rate (rpm)")],
+)
+def test_the_headings_of_a_launch_monitor(monitor, spin, tmp_path):
     """Spin loft is the angle between the path of the club and the normal of its face."""
     path = tmp_path / "shots.csv"
-    headings = LAUNCH_MONITOR.split(";")
+    headings = monitor.split(";")
     rows = [";".join("1" if "(" in heading else "x" for heading in headings)] * 2
-    path.write_text("\n".join([LAUNCH_MONITOR, *rows]), encoding="utf-8")
+    path.write_text("\n".join([monitor, *rows]), encoding="utf-8")
     with pytest.raises(ValueError, match="look like other words") as caught:
         read_measurements(path)
     told = str(caught.value)
@@ -274,7 +282,7 @@ def test_the_headings_of_a_launch_monitor(tmp_path):
     assert len(told) < 1200
     names = dict(word.rsplit("=", 1) for word in shlex.split(told.partition("add ")[2])[1::2])
     assert names == {"Club Speed (mph)": "speed (mph)", "Spin Loft (deg)": "angle_deg",
-                     "Backspin (rpm)": "-rebound_spin (rpm)"}  # fmt: skip
+                     spin: "-rebound_spin (rpm)"}  # fmt: skip
     found = read_measurements(path, columns=names)
     assert found.given["speed"].tolist() == pytest.approx([0.44704, 0.44704])
     assert found.measured["rebound_spin"] == pytest.approx(-TURN / 60.0)

@@ -77,6 +77,11 @@ def test_in_python(typed, words):
             "[simulation]\nrestitution = 'high'\n[impact]",
             "simulation.restitution = 'high': is neither a number, nor",
         ),
+        (
+            "[impact]",
+            "[simulation]\nrestitution = { v = [1.0], e = [0.9] }\n[impact]",
+            "or [[0.5, 0.95], [2, 0.9]], e over the speed in m/s",
+        ),
         ("0.01", "0,01", "write numbers with a point: radius = 0.01"),
         ("0.01", ".01", "write radius = 0.01"),
         ('"steel"', "steel", 'put words in quotes: material = "steel"'),
@@ -105,6 +110,11 @@ def test_on_the_command_line(line, words, tmp_path, monkeypatch, capsys):
     (tmp_path / "drops.csv").write_text("angle,psi2\n1,2\n", encoding="utf-8")
     assert main(line.split()) == 2
     assert words in capsys.readouterr().err
+
+
+def test_exchanged_arguments_of_a_rebound_are_told():
+    with pytest.warns(UserWarning, match="exchanged"):
+        contactlab.rebound(1.44, 6.0)
 
 
 @pytest.mark.slow

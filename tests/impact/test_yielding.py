@@ -42,6 +42,17 @@ def test_the_peak_pressure_is_the_closed_form():
     assert float(peak_pressure(given)) == pytest.approx(elastic, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("name", "yields"),
+    [("mild steel", True), ("hardened steel", True), ("pmma", True), ("nylon", True),
+     ("steel", False), ("alumina", False), ("rubber", False)],
+)  # fmt: skip
+def test_named_materials_of_one_condition_have_the_caution(name, yields):
+    """At 5 m/s; steel at large is any alloy, ceramics crack, and rubber does neither."""
+    solid = Material.named(name)
+    assert bool(said("hertz", Scene(Sphere(0.01, solid), HalfSpace(solid), 0.2, 5.0))) == yields
+
+
 def test_without_a_yield_stress_there_is_no_caution():
     assert said("hertz", scene(None)) == []
     assert said("hertz", Scene.nondimensional(psi1=1.0, chi=1.44)) == []
