@@ -7,6 +7,7 @@ Examples
   contactlab sweep examples/sweep.toml --out sweep.npz
   contactlab sweep --psi1 0:7:100000 --chi 1.4412 --workers 2 --out sweep.npz --resume
   contactlab sweep --psi1 0:7:100000 --chi 0.5:2:1000 --out sweep/
+  contactlab sweep --psi1 0:7:100000 --chi 0.5:2:1000 --out sweep.parquet/
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.impact.grid import GridParts
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
+from contactlab.outcome.chunk_forms import form_of
 from contactlab.outcome.columns import components, csv_heading
 from contactlab.outcome.export import WRITERS
 from contactlab.outcome.files import unwritable
@@ -67,7 +69,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     form.add_argument("--csv", action="store_true", help="print psi1, chi, psi2 as CSV")
     words = (
         f"{', '.join(WRITERS)}; or a folder/ for more impacts than memory holds, which goes on "
-        "from a stopped sweep"
+        "from a stopped sweep: files of NumPy, or in a folder.parquet/ of Parquet"
     )
     parser.add_argument("--out", type=_output, metavar="FILE or FOLDER/", help=words)
     words = "keep finished impacts in a folder beside --out, and continue a stopped sweep"
@@ -144,6 +146,10 @@ def _output(text: str) -> Path:
         raise argparse.ArgumentTypeError(f"{text!r}: a folder must not end as a file does")
     if why_not := unwritable(path.absolute().parent / "file"):
         raise argparse.ArgumentTypeError(f"{text!r}: {why_not}")
+    try:
+        form_of(path)
+    except ImportError as error:
+        raise argparse.ArgumentTypeError(f"{text!r}: {error}") from None
     return path
 
 
@@ -209,7 +215,7 @@ def _done(folder: Path) -> int:
     """Return the number of impacts that an earlier run finished."""
     from contactlab.compose.kept import count
 
-    return count(folder)
+    return count("--resume", folder)
 
 
 def _clear(folder: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,27 +12,25 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from contactlab.compose.composition import Laws
-from contactlab.compose.kept import TRIED_AGAIN, fingerprint, name_of, opened, refuse_file
-from contactlab.compose.kept import write_piece as write_arrays
-from contactlab.compose.pieces import Chunk, Part, Piece
+from contactlab.compose.kept import TRIED_AGAIN, fingerprint, opened, written_piece
+from contactlab.compose.pieces import Part, Piece
 from contactlab.compose.sweep import WHOLE_IMPACTS, block_for, cut, one_axis, solved_parts
 from contactlab.contracts.status import Status, succeeded
 from contactlab.impact.grid import GridParts
 from contactlab.impact.scene import IMPACTS_AT_A_TIME, Scene
 from contactlab.numeric.checks import refuse, whole
+from contactlab.outcome.chunk_files import (
+    chunks_in,
+    name_of,
+    read_about,
+    refuse_file,
+    refuse_place,
+)
+from contactlab.outcome.chunk_forms import COLUMN_OF_STATUS, NPZ, Chunk, form_of
 from contactlab.outcome.columns import columns, unit_in
 from contactlab.outcome.files import written
 from contactlab.outcome.result import ImpactResult
-from contactlab.outcome.sweep_folder import (
-    CHUNKS,
-    COLUMN_OF_STATUS,
-    FINISHED,
-    FORM,
-    STATUSES,
-    SweepFolder,
-    about_of,
-    read_about,
-)
+from contactlab.outcome.sweep_folder import KIND, STATUSES, SweepFolder, about_of
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -42,16 +41,18 @@ MARCHED_AT_A_TIME = 1000
 AHEAD = 32
 #: Codes of statuses; that of success is 0.
 CODES = {status: code for code, status in enumerate(Status)}
+NAMES = [status.name for status in Status]
 
 
 class _Into:
     """A folder that a sweep is written into."""
 
     def __init__(self, folder: str | Path, laws: Laws) -> None:
-        more = {"form": FORM, STATUSES: " ".join(status.name for status in Status)}
-        self.folder, self.sweep = opened("into", folder, laws, more)
+        self.form = form_of(Path(folder)) if isinstance(folder, str | os.PathLike) else NPZ
+        more = {"form": KIND, STATUSES: " ".join(NAMES)}
+        self.folder, self.sweep = opened("into", folder, laws, more, self.form)
         self.units: dict[str, str] | None = None
-        self.found = sorted(map(_place, self.folder.glob(CHUNKS)))
+        self.found = dict(chunks_in("into", self.folder, self.form))
 
     def holds(self, chunk: Chunk, scene: str) -> bool:
         """Return whether a chunk is written; refuse a chunk of another scene or size."""
@@ -59,12 +60,14 @@ class _Into:
             if other != chunk and other.first < chunk.stop and chunk.first < other.stop:
                 rule = f"is of chunks of another size than impacts {chunk.first} to {chunk.stop}"
                 remedy = "give scenes and chunk as before, or name another folder"
-                raise refuse_file("into", self.folder / name_of(other), rule, remedy)
+                raise refuse_file("into", self.found[other], rule, remedy)
         if chunk not in self.found:
             return False
-        path = self.folder / name_of(chunk)
-        about = read_about(path)
-        if about.sweep != self.sweep or (about.first, about.stop) != chunk:
+        path = self.found[chunk]
+        about = read_about(path, self.form)
+        if about.chunk != chunk:
+            raise refuse_place("into", path, about.chunk, self.form)
+        if about.sweep != self.sweep:
             raise refuse_file("into", path, "holds impacts of another sweep", "delete this file")
         if about.scene != scene:
             remedy = "give the scenes as before, or name another folder"
@@ -98,8 +101,8 @@ class _Into:
             sweep=self.sweep,
             scene=scene,
         )
-        arrays["about"] = np.array(json.dumps(about._asdict()))
-        write_arrays("into", self.folder, chunk, arrays, "impacts")
+        with written_piece("into", self.folder, chunk, "impacts", self.form) as stream:
+            self.form.write(stream, arrays, about, NAMES)
 
     def _same_columns(self, units: dict[str, str], chunk: Chunk) -> None:
         """Refuse a scene with other columns than those before."""
@@ -108,16 +111,18 @@ class _Into:
         if units != self.units:
             first = next(iter({*units.items()} ^ {*self.units.items()}))[0]
             rule = f"impacts {chunk.first} to {chunk.stop} have other columns: {first}"
-            raise refuse("scenes", name_of(chunk), rule, "sweep them into another folder")
+            raise refuse(
+                "scenes", name_of(chunk, self.form), rule, "sweep them into another folder"
+            )
 
     def finish(self, impacts: int) -> None:
         """Write the number of impacts; refuse chunks beyond it."""
-        for chunk in self.found:
+        for chunk, path in self.found.items():
             if chunk.stop > impacts:
                 rule = f"lies beyond the last of {impacts} impacts"
                 remedy = "give the scenes as before, or name another folder"
-                raise refuse_file("into", self.folder / name_of(chunk), rule, remedy)
-        with written(self.folder / FINISHED) as stream:
+                raise refuse_file("into", path, rule, remedy)
+        with written(self.folder / self.form.finished) as stream:
             stream.write(json.dumps({"impacts": impacts}) + "\n")
 
 
@@ -213,13 +218,3 @@ def _codes(statuses: Any) -> Any:
     if succeeded(statuses):  # a look at each takes longer than the impacts
         return np.zeros(statuses.shape, dtype=np.uint8)
     return np.array([CODES[status] for status in statuses.tolist()], dtype=np.uint8)
-
-
-def _place(path: Path) -> Chunk:
-    """Return the impacts of a file by its name."""
-    try:
-        first, stop = path.stem.split("-")[1:]
-        return Chunk(int(first), int(stop))
-    except ValueError:
-        rule = "is not the name of a chunk, impacts-FIRST-STOP.npz"
-        raise refuse_file("into", path, rule, "move this file") from None

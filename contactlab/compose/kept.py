@@ -7,12 +7,11 @@ import hashlib
 import json
 import os
 import pickle
-import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from enum import Enum
 from importlib import metadata
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import attrs
 import numpy as np
@@ -20,15 +19,16 @@ import numpy as np
 from contactlab.compose import sources
 from contactlab.compose.composition import Laws
 from contactlab.compose.names import PROJECT
-from contactlab.compose.pieces import Chunk, Piece
+from contactlab.compose.pieces import Piece
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts.law import Law
 from contactlab.contracts.status import Status
 from contactlab.numeric.checks import refuse
+from contactlab.outcome.chunk_files import DAMAGED, chunks_in, name_of, refuse_file, refuse_place
+from contactlab.outcome.chunk_forms import NPZ, Chunk, Form
 from contactlab.outcome.files import written
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import PlanColumns
-from contactlab.outcome.sweep_folder import ABOUT, CHUNKS
 
 #: Distributions that every number comes from.
 NUMBERS_FROM = (PROJECT, "numpy", "scipy")
@@ -51,14 +51,17 @@ class Kept:
             return
         arrays = _arrays(piece) | {"sweep": np.array(self.sweep)}
         arrays["checksum"] = np.array(_checksum(arrays))
-        write_piece("keep", self.folder, piece.chunk, arrays, f"of {self.impacts} impacts")
+        with written_piece(
+            "keep", self.folder, piece.chunk, f"of {self.impacts} impacts"
+        ) as stream:
+            np.savez(stream, **arrays)
 
     def pieces(self) -> list[Piece]:
         """Return the pieces in the folder, no impact in two of them; refuse other files."""
         pieces: list[Piece] = []
-        for path in sorted(self.folder.glob(CHUNKS), key=_first):
+        for chunk, path in chunks_in("keep", self.folder):
             # Two runs at the same time, with different chunks, may have written impacts twice.
-            if pieces and _first(path) < pieces[-1].chunk.stop:
+            if pieces and chunk.first < pieces[-1].chunk.stop:
                 continue
             try:
                 with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as content:
@@ -66,15 +69,13 @@ class Kept:
                     if str(arrays.pop("checksum")) != _checksum(arrays):
                         raise ValueError("its numbers are not those that were written")
                     piece, sweep = _piece(arrays), str(arrays["sweep"])
-            except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile) as error:
+            except DAMAGED as error:
                 rule = f"is damaged: {error}"
                 raise refuse_file("keep", path, rule, "delete this file") from error
-            first, stop = piece.chunk
-            if path.name != name_of(piece.chunk):
-                rule = f"contains impacts {first} to {stop}, which are not those of its name"
-                remedy = f"rename it to {name_of(piece.chunk)}, or delete this file"
-                raise refuse_file("keep", path, rule, remedy)
+            if piece.chunk != chunk:
+                raise refuse_place("keep", path, piece.chunk)
             if sweep != self.sweep:
+                first, stop = chunk
                 rule = f"holds impacts {first} to {stop} of another sweep"
                 raise refuse_file("keep", path, rule, "delete this file")
             pieces.append(piece)
@@ -82,7 +83,7 @@ class Kept:
 
 
 def opened(
-    argument: str, folder: str | Path, laws: Laws, more: Mapping[str, Any]
+    argument: str, folder: str | Path, laws: Laws, more: Mapping[str, Any], form: Form = NPZ
 ) -> tuple[Path, str]:
     """Return the folder of a sweep, made if there is none, and the sweep's fingerprint.
 
@@ -109,14 +110,14 @@ def opened(
         "options": fingerprint(by_kind),
         **{name: metadata.version(name) for name in NUMBERS_FROM},
     }
-    _check(argument, Path(folder), about)
+    _check(argument, Path(folder), about, form)
     return Path(folder), fingerprint(about)
 
 
-def _check(argument: str, folder: Path, about: Mapping[str, Any]) -> None:
+def _check(argument: str, folder: Path, about: Mapping[str, Any], form: Form) -> None:
     """Make the folder if there is none, or refuse a folder of another sweep."""
     remedy = "delete the folder, or name another for this sweep"
-    path = folder / ABOUT
+    path = folder / form.about
     if not path.exists():
         if folder.exists() and any(folder.glob("[!.]*")):
             rule = "is not empty, and holds no sweep"
@@ -128,7 +129,7 @@ def _check(argument: str, folder: Path, about: Mapping[str, Any]) -> None:
     try:
         before = dict(json.loads(path.read_text(encoding="utf-8")))
     except (ValueError, TypeError) as error:
-        rule = f"{ABOUT} in it cannot be read: {error}"
+        rule = f"{form.about} in it cannot be read: {error}"
         raise refuse(argument, str(folder), rule, remedy) from error
     # What both have comes first: another law has other code.
     for name in (*(name for name in about if name in before), *about, *before):
@@ -138,41 +139,35 @@ def _check(argument: str, folder: Path, about: Mapping[str, Any]) -> None:
             raise refuse(argument, str(folder), rule, remedy)
 
 
-def write_piece(
-    argument: str, folder: Path, chunk: Chunk, arrays: Mapping[str, Any], of: str
-) -> None:
-    """Write the arrays of a chunk; ``of`` ends "holds 80 of 150 impacts" in an error."""
+@contextlib.contextmanager
+def written_piece(
+    argument: str, folder: Path, chunk: Chunk, of: str, form: Form = NPZ
+) -> Iterator[IO[bytes]]:
+    """Return a stream of a chunk's file; ``of`` ends "holds 80 of 150 impacts" in an error."""
     try:
-        with written(folder / name_of(chunk), binary=True) as stream:
-            np.savez(stream, **arrays)
+        with written(folder / name_of(chunk, form), binary=True) as stream:
+            yield stream
     except OSError as error:
         first, stop = chunk
+        done = count(argument, folder, form)
         words = (
             f"{argument} = {str(folder)!r}: impacts {first} to {stop} are not written: "
-            f"{error.strerror or error}; {folder} holds {count(folder)} {of}; "
+            f"{error.strerror or error}; {folder} holds {done} {of}; "
             "the same sweep goes on from them"
         )
         raise OSError(*filter(None, (error.errno, words))) from error
 
 
-def refuse_file(argument: str, path: Path, rule: str, remedy: str) -> ValueError:
-    """Return the refusal of a file, with its whole path."""
-    return ValueError(f"{argument} = {str(path)!r}: {rule}; {remedy}")
-
-
-def count(folder: Path) -> int:
+def count(argument: str, folder: Path, form: Form = NPZ) -> int:
     """Return the number of impacts in the pieces of a folder; 0 if there is no folder."""
-    ends = (path.stem.split("-")[1:] for path in folder.glob(CHUNKS))
-    return sum(
-        int(end[1]) - int(end[0]) for end in ends if len(end) == 2 and all(map(str.isdigit, end))
-    )
+    return sum(chunk.size for chunk, _ in chunks_in(argument, folder, form))
 
 
 def remove(folder: Path) -> None:
     """Delete the pieces of a sweep, and their folder if it is empty then."""
-    for pattern in (CHUNKS, ".contactlab-*.part", ABOUT):
-        for path in folder.glob(pattern):
-            path.unlink(missing_ok=True)
+    own = [path for _, path in chunks_in("keep", folder)]
+    for path in (*own, *folder.glob(".contactlab-*.part"), folder / NPZ.about):
+        path.unlink(missing_ok=True)
     with contextlib.suppress(OSError):
         folder.rmdir()
 
@@ -237,17 +232,6 @@ def _arrays(piece: Piece) -> dict[str, Any]:
     arrays["counters"] = np.array(json.dumps(dict(motion.counters)))
     arrays |= columns.to_arrays()
     return arrays
-
-
-def _first(path: Path) -> int:
-    """Return the first impact of a piece from its file name; 0 if there is no number in it."""
-    first = path.stem.split("-")[1]
-    return int(first) if first.isdigit() else 0
-
-
-def name_of(chunk: Chunk) -> str:
-    """Return the name of a chunk's file."""
-    return CHUNKS.replace("*", f"{chunk.first}-{chunk.stop}")
 
 
 def _piece(content: Mapping[str, Any]) -> Piece:

@@ -6,20 +6,9 @@ from typing import NamedTuple
 
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
+from contactlab.outcome.chunk_forms import Chunk
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import PlanColumns
-
-
-class Chunk(NamedTuple):
-    """The impacts from ``first`` up to, but not including, ``stop``: whole blocks of a sweep."""
-
-    first: int
-    stop: int
-
-    @property
-    def size(self) -> int:
-        """Number of impacts."""
-        return self.stop - self.first
 
 
 class Part(NamedTuple):

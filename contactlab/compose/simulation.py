@@ -227,7 +227,8 @@ class Simulation:
         into : str or Path, optional
             A folder for more impacts than memory holds, instead of a result. The columns of each
             chunk are written as soon as it is finished; memory is that of two chunks, with an
-            executor of 32. The same sweep resumes as with ``keep``.
+            executor of 32. The same sweep resumes as with ``keep``. Files are NPZ, or Parquet where
+            the name of the folder ends with ``.parquet``, which needs pyarrow.
 
         Returns
         -------
@@ -242,6 +243,8 @@ class Simulation:
             scenes of psi1 and chi; if a law cannot be sent to ``executor``; if ``keep`` or ``into``
             holds another sweep, or a law's class is in no file, as in a notebook; if both are
             given.
+        ImportError
+            If ``into`` is a folder of Parquet, and pyarrow is not installed.
         OSError
             If a chunk cannot be written into ``keep`` or ``into``. Those before stay there, and the
             same sweep resumes from them.

@@ -13,7 +13,7 @@ from contactlab.compose import together
 from contactlab.compose.answers import Answer, answers, show
 from contactlab.compose.composition import Laws
 from contactlab.compose.normal_motion import normal_or_failed
-from contactlab.compose.pieces import Chunk, Piece
+from contactlab.compose.pieces import Piece
 from contactlab.compose.planning import columns_of
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.solved_motion import FailedMotion
@@ -26,6 +26,7 @@ from contactlab.impact.inverse_mass import along
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import are_zeros, consecutive, every, some, zeros
 from contactlab.numeric.checks import refuse
+from contactlab.outcome.chunk_forms import Chunk
 from contactlab.outcome.energy import balanced
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion, sound

@@ -9,13 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from contactlab.compose.composition import Laws
-from contactlab.compose.pieces import Chunk, Part, Piece, unsolved
+from contactlab.compose.pieces import Part, Piece, unsolved
 from contactlab.compose.solve import solved
 from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import WholeImpactTangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse, whole
+from contactlab.outcome.chunk_forms import Chunk
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import PlanColumns
 

@@ -21,11 +21,12 @@ import numpy as np
 
 from contactlab.compose.composition import Laws, versions
 from contactlab.compose.hooks import short
-from contactlab.compose.pieces import Chunk, Part, Piece, unsolved
+from contactlab.compose.pieces import Part, Piece, unsolved
 from contactlab.compose.solve import solved
 from contactlab.contracts.status import Status
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import refuse, whole
+from contactlab.outcome.chunk_forms import Chunk
 
 #: Most processes: more than any machine has processors.
 MOST_PROCESSES = 1024

@@ -26,8 +26,8 @@ class ImpactError(RuntimeError):
         return str(self.args[0])
 
 
-class Answer:
-    """Base of results: of one impact or a batch, of collisions, and along paths."""
+class Checked:
+    """Base of what tells failures and cautions, and raises them on demand."""
 
     __slots__ = ()
 
@@ -35,6 +35,67 @@ class Answer:
     @abstractmethod
     def cautions(self) -> list[str]:
         """Doubts about the numbers, in sentences."""
+
+    @property
+    @abstractmethod
+    def failures(self) -> dict[int, str]:
+        """A sentence for each impact that failed, by its index in C order."""
+
+    @property
+    @abstractmethod
+    def _of_many(self) -> bool:
+        """Whether this is the answer of a batch."""
+
+    @abstractmethod
+    def _status_at(self, index: int) -> Status:
+        """Return the status of an impact by its index in C order."""
+
+    def _unfinished(self) -> str:
+        """Return what was not computed, and how to go on; empty if all was."""
+        return ""
+
+    def check(self, *, cautions: bool = False) -> Self:
+        """Return this result if every impact succeeded; with ``cautions`` only if there is none.
+
+        Parameters
+        ----------
+        cautions : bool
+            Raise the first caution too.
+
+        Raises
+        ------
+        ImpactError
+            With the sentence of the first impact that failed, of those that are missing in a
+            folder, or of the first caution.
+        """
+        for index, sentence in self.failures.items():
+            where = f"impact {index}: " if self._of_many else ""
+            raise ImpactError(where + sentence, self._status_at(index))
+        if missing := self._unfinished():
+            raise ImpactError(missing, Status.INTERRUPTED)
+        for sentence in self.cautions if cautions else ():
+            raise ImpactError(f"caution: {sentence}", Status.SUCCESS)
+        return self
+
+    def _first_lines(self) -> list[str]:
+        """Return what ``str`` begins with."""
+        return [repr(self)]
+
+    def __str__(self) -> str:
+        """Return ``repr``, the first failure, what is missing and every caution, in lines."""
+        lines, failures = self._first_lines(), self.failures
+        for index in [*failures][:1]:
+            where = f" (impact {index}; {len(failures)} in all)" if self._of_many else ""
+            lines.append(f"failed{where}: {failures[index]}")
+        if missing := self._unfinished():
+            lines.append(missing)
+        return "\n".join([*lines, *(f"caution: {text}" for text in self.cautions)])
+
+
+class Answer(Checked):
+    """Base of results in memory: of one impact or a batch, of collisions, and along paths."""
+
+    __slots__ = ()
 
     @abstractmethod
     def _ends(self) -> tuple[Any, Any]:
@@ -50,39 +111,13 @@ class Answer:
             if status is not Status.SUCCESS
         }
 
-    def check(self, *, cautions: bool = False) -> Self:
-        """Return this result if every impact succeeded; with ``cautions`` only if there is none.
+    @property
+    def _of_many(self) -> bool:
+        return bool(np.ndim(self._ends()[0]))
 
-        Parameters
-        ----------
-        cautions : bool
-            Raise the first caution too.
-
-        Raises
-        ------
-        ImpactError
-            With the sentence of the first impact that failed, or of the first caution.
-        """
-        statuses = np.array(self._ends()[0], dtype=object)
-        for index, sentence in self.failures.items():
-            where = f"impact {index}: " if statuses.ndim else ""
-            raise ImpactError(where + sentence, np.ravel(statuses)[index])
-        for sentence in self.cautions if cautions else ():
-            raise ImpactError(f"caution: {sentence}", Status.SUCCESS)
-        return self
-
-    def _first_lines(self) -> list[str]:
-        """Return what ``str`` begins with."""
-        return [repr(self)]
-
-    def __str__(self) -> str:
-        """Return ``repr``, the first failure and every caution, in lines."""
-        lines, failures = self._first_lines(), self.failures
-        for index in [*failures][:1]:
-            batch = np.ndim(self._ends()[0])
-            where = f" (impact {index}; {len(failures)} in all)" if batch else ""
-            lines.append(f"failed{where}: {failures[index]}")
-        return "\n".join([*lines, *(f"caution: {text}" for text in self.cautions)])
+    def _status_at(self, index: int) -> Status:
+        status: Status = np.ravel(np.array(self._ends()[0], dtype=object))[index]
+        return status
 
 
 def statuses_told(statuses: object) -> str:

@@ -26,7 +26,7 @@ class WithLaws(WithScene, Protocol):
 
 def to_dataframe(result: WithLaws) -> Any:
     """Return a ``pandas.DataFrame``, one row for each impact: ``ImpactResult.to_dataframe``."""
-    pandas = _needed("pandas", "to_dataframe")
+    pandas = needed("pandas", "to_dataframe")
     columns, axes, units = _labelled(result)
     if axes:
         index = pandas.MultiIndex.from_product(list(axes.values()), names=list(axes))
@@ -42,7 +42,7 @@ def to_xarray(result: WithLaws) -> Any:
 
     A batch that is not a grid has the dimension ``impact``, or ``impact_0``, ``impact_1``, ...
     """
-    xarray = _needed("xarray", "to_xarray")
+    xarray = needed("xarray", "to_xarray")
     columns, axes, units = _labelled(result)
     dimensions, shape = tuple(axes), tuple(map(np.size, axes.values()))
     if not axes:
@@ -77,7 +77,7 @@ def _labelled(result: WithLaws) -> tuple[dict[str, Any], dict[str, Any], dict[st
     return columns, axes, units
 
 
-def _needed(module: str, method: str) -> Any:
+def needed(module: str, method: str) -> Any:
     """Return an optional module, or raise ``ImportError`` with the command that installs it."""
     try:
         return importlib.import_module(module)

@@ -2,64 +2,30 @@
 
 from __future__ import annotations
 
-import contextlib
 import itertools
 import json
 import math
 import re
-import zipfile
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple, Self
+from typing import Any
 
 import numpy as np
 
 from contactlab.contracts.status import Status
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import attributes_told, nearest
-from contactlab.outcome.answer import ImpactError
+from contactlab.outcome.answer import Checked
+from contactlab.outcome.chunk_files import abouts_in, columns_of
+from contactlab.outcome.chunk_forms import COLUMN_OF_STATUS, FORMS, NPZ, About
 from contactlab.outcome.result import ImpactResult
 
-#: Files of a folder: what it is a sweep of, its chunks, and the number of impacts in the end.
-ABOUT, CHUNKS, FINISHED = "sweep.json", "impacts-*.npz", "finished.json"
 #: What ``sweep.json`` says of a folder of this kind, and of the codes of its statuses.
-FORM, STATUSES = "columns of results", "statuses"
-COLUMN_OF_STATUS = "status"
+KIND, STATUSES = "columns of results", "statuses"
 #: A number in a sentence.
 NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?")
-
-
-class About(NamedTuple):
-    """What a chunk tells beside its columns.
-
-    Attributes
-    ----------
-    first, stop : int
-        Its impacts.
-    sweep, scene : str
-        Fingerprints of the laws and of the scene.
-    units : mapping of str to str
-        The unit of each column, empty for the status.
-    counts : mapping of str to int
-        Number of impacts of each status.
-    failures : mapping of str to str
-        A sentence for each impact that failed, by its index in the sweep.
-    cautions : sequence of str
-    psi2_error : float or None
-        Largest declared bound of the numerical error of psi2; None where it is not declared.
-    """
-
-    first: int
-    stop: int
-    sweep: str
-    scene: str
-    units: Mapping[str, str]
-    counts: Mapping[str, int]
-    failures: Mapping[str, str]
-    cautions: Sequence[str]
-    psi2_error: float | None
 
 
 def about_of(
@@ -95,22 +61,6 @@ def about_of(
     )
 
 
-def read_about(path: Path) -> About:
-    """Return what a chunk tells, or refuse a damaged file."""
-    with _arrays(path) as content:
-        return About(**json.loads(str(content["about"])))
-
-
-@contextlib.contextmanager
-def _arrays(path: Path) -> Iterator[Any]:
-    """Yield the arrays of a file, each read when it is asked for; a damaged file is refused."""
-    try:
-        with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as content:
-            yield content
-    except (OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile) as error:
-        raise ValueError(f"{path}: is damaged: {error}; delete this file") from error
-
-
 def _told(same: list[tuple[list[float], str, About]], total: int) -> str:
     """Return one sentence for those of several chunks, which differ in numbers only."""
     _, sentence, about = max(same, key=lambda each: each[0])
@@ -121,7 +71,7 @@ def _told(same: list[tuple[list[float], str, About]], total: int) -> str:
 
 
 @attributes_told
-class SweepFolder:
+class SweepFolder(Checked):
     """The finished chunks of ``sweep(..., into=folder)``, read by columns and chunks.
 
     ``folder["psi2"]`` is a column of all impacts. ``folder.chunks("psi1", "psi2")`` reads a chunk
@@ -146,12 +96,14 @@ class SweepFolder:
 
     def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
+        there = (form for form in FORMS if (self.path / form.about).exists())
+        self._form = next(there, NPZ)
         try:
-            about = dict(json.loads((self.path / ABOUT).read_text(encoding="utf-8")))
+            about = dict(json.loads((self.path / self._form.about).read_text(encoding="utf-8")))
         except (OSError, ValueError, TypeError) as error:
-            rule = f"holds no sweep: {ABOUT} in it cannot be read: {error}"
+            rule = f"holds no sweep: {self._form.about} in it cannot be read: {error}"
             raise refuse("path", str(path), rule, "make one: sweep(scenes, into=folder)") from error
-        if about.get("form") != FORM:
+        if about.get("form") != KIND:
             remedy = "the same sweep with keep=folder returns the result"
             raise refuse("path", str(path), "is a folder of keep=, without columns", remedy)
         self.laws = {kind: about[kind] for kind in ("normal", "tangential", "integrator")}
@@ -160,13 +112,12 @@ class SweepFolder:
     @cached_property
     def _abouts(self) -> list[tuple[Path, About]]:
         """The finished chunks in order."""
-        found = [(path, read_about(path)) for path in self.path.glob(CHUNKS)]
-        return sorted(found, key=lambda each: each[1].first)
+        return abouts_in(self.path, self._form)
 
     @cached_property
     def impacts(self) -> int | None:
         """The number of impacts of the whole sweep; None until it is finished."""
-        path = self.path / FINISHED
+        path = self.path / self._form.finished
         return int(json.loads(path.read_text("utf-8"))["impacts"]) if path.exists() else None
 
     @property
@@ -192,7 +143,7 @@ class SweepFolder:
 
     def __len__(self) -> int:
         """Return the number of impacts in finished chunks."""
-        return sum(about.stop - about.first for _, about in self._abouts)
+        return sum(about.chunk.size for _, about in self._abouts)
 
     def chunks(self, *names: str) -> Iterator[tuple[slice, dict[str, Any]]]:
         """Yield the place of each finished chunk in the sweep, and its columns by name.
@@ -213,13 +164,13 @@ class SweepFolder:
                 remedy = f"{nearest(name, self.units)}known: {', '.join(self.units)}"
                 raise refuse("column", name, "is not a column of the sweep", remedy)
         for path, about in self._abouts:
-            with _arrays(path) as content:
-                columns = {name: content[name] for name in wanted}
+            with columns_of(path, self._form, self._names) as content:
+                columns = {
+                    name: np.broadcast_to(content[name], about.chunk.size) for name in wanted
+                }
             if COLUMN_OF_STATUS in columns:
                 columns[COLUMN_OF_STATUS] = np.array(self._names)[columns[COLUMN_OF_STATUS]]
-            shape = (about.stop - about.first,)
-            columns = {name: np.broadcast_to(each, shape) for name, each in columns.items()}
-            yield slice(about.first, about.stop), columns
+            yield slice(*about.chunk), columns
 
     def __getitem__(self, name: str) -> Any:
         """Return a column of the sweep up to its last chunk, shape (n,); no chunk may be missing.
@@ -273,38 +224,21 @@ class SweepFolder:
         total = len(self._abouts)
         return [_told(same, total) for same in said.values()]
 
-    def check(self, *, cautions: bool = False) -> Self:
-        """Return this folder if all impacts are computed and none failed.
+    @property
+    def _of_many(self) -> bool:
+        return True
 
-        Parameters
-        ----------
-        cautions : bool
-            Raise the first caution too.
-
-        Raises
-        ------
-        ImpactError
-            With the sentence of the first impact that failed, is missing, or of the first caution.
-        """
-        for index, words in self.failures.items():
-            raise ImpactError(f"impact {index}: {words}", self._status(index))
-        if not self.complete:
-            raise ImpactError(self._unfinished(), Status.INTERRUPTED)
-        for words in self.cautions if cautions else ():
-            raise ImpactError(f"caution: {words}", Status.SUCCESS)
-        return self
-
-    def _status(self, impact: int) -> Status:
-        """Return the status of a computed impact."""
+    def _status_at(self, index: int) -> Status:
         names = (
-            columns[COLUMN_OF_STATUS][impact - place.start]
+            columns[COLUMN_OF_STATUS][index - place.start]
             for place, columns in self.chunks(COLUMN_OF_STATUS)
-            if place.start <= impact < place.stop
+            if place.start <= index < place.stop
         )
         return Status[next(names)]
 
     def _unfinished(self) -> str:
-        """Return what is missing, and how to go on."""
+        if self.complete:
+            return ""
         gaps = ", ".join(f"{first} to {stop}" for first, stop in self.missing)
         what = f"impacts {gaps} are missing" if gaps else f"it stopped after impact {len(self) - 1}"
         return f"{self.path}: is not complete: {what}; the same sweep into this folder goes on"
@@ -314,13 +248,3 @@ class SweepFolder:
         counts = ", ".join(f"{count} {name}" for name, count in self.statuses.items())
         state = "" if self.complete else "; not complete"
         return f"SweepFolder({str(self.path)!r}; {len(self)} impacts; {counts or 'none'}{state})"
-
-    def __str__(self) -> str:
-        """Return ``repr``, the first failure, what is missing and every caution, in lines."""
-        lines = [repr(self)]
-        if failures := self.failures:
-            index = next(iter(failures))
-            lines.append(f"failed (impact {index}; {len(failures)} in all): {failures[index]}")
-        if not self.complete:
-            lines.append(self._unfinished())
-        return "\n".join([*lines, *(f"caution: {words}" for words in self.cautions)])

@@ -257,9 +257,33 @@ def test_a_damaged_file_is_told(tmp_path):
     with pytest.raises(ImpactError, match="impacts 40 to 80 are missing"):
         folder.check()
     assert simulation.sweep(parts(), into=target).check().missing == []
-    (target / "impacts-mine.npz").write_bytes(sound)
-    with pytest.raises(ValueError, match=r"not the name of a chunk"):
-        simulation.sweep(parts(), into=target)
+    for name, words in (
+        ("impacts-mine.npz", "not the name of a chunk"),
+        ("impacts-80-40.npz", "not the name of a chunk"),
+        ("impacts-040-80.npz", "not the name of a chunk"),
+        ("impacts-200-240.npz", "contains impacts 40 to 80, which are not those of its name"),
+    ):
+        (target / name).write_bytes(sound)
+        with pytest.raises(ValueError, match=rf"{name}.*{words}.*; (move|rename)"):
+            SweepFolder(target)["psi2"]
+        if "name of a chunk" in words:
+            with pytest.raises(ValueError, match=rf"into = .*{name}.*{words}"):
+                simulation.sweep(parts(), into=target)
+        (target / name).unlink()
+
+
+def test_files_of_two_sweeps_are_not_read_as_one(tmp_path):
+    simulation = Simulation(**RIGID)
+    simulation.sweep(parts(), into=tmp_path / "one")
+    for other, each, name in (
+        (Simulation(tangential="frictionless"), 40, "impacts-120-150.npz"),
+        (simulation, 60, "impacts-60-120.npz"),
+    ):
+        other.sweep(parts(each=each), into=tmp_path / f"of {each}")
+        mixed = shutil.copytree(tmp_path / "one", tmp_path / f"mixed {each}")
+        shutil.copy(tmp_path / f"of {each}" / name, mixed)
+        with pytest.raises(ValueError, match=r"impacts-.*\.npz.*another s.*; move this file"):
+            len(SweepFolder(mixed))
 
 
 def test_failures_and_cautions_are_those_of_the_result(tmp_path):

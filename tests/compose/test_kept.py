@@ -146,6 +146,9 @@ def test_damaged_files_are_refused(tmp_path):
     piece.rename(piece.with_name("impacts-40-90.npz"))
     with pytest.raises(ValueError, match=r"not those of its name.*, or delete this file"):
         simulation.sweep(scene(), keep=folder)
+    piece.with_name("impacts-40-90.npz").rename(piece.with_name("impacts-mine.npz"))
+    with pytest.raises(ValueError, match=r"keep = .*impacts-mine.npz.*not the name.*; move this"):
+        simulation.sweep(scene(), keep=folder)
     (folder / "sweep.json").write_text("[")
     with pytest.raises(ValueError, match="cannot be read"):
         simulation.sweep(scene(), keep=folder)

@@ -1,0 +1,95 @@
+"""Files of the chunks of a sweep in a folder, in order; other files are refused."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import json
+import re
+import tokenize
+import zipfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from contactlab.outcome.chunk_forms import NPZ, About, Chunk, Form
+
+#: What reading a damaged file raises.
+DAMAGED = (
+    OSError, EOFError, KeyError, TypeError, ValueError, RuntimeError,
+    zipfile.BadZipFile, tokenize.TokenError,
+)  # fmt: skip
+
+
+def name_of(chunk: Chunk, form: Form = NPZ) -> str:
+    """Return the name of a chunk's file."""
+    first, stop = (str(impact).zfill(form.digits) for impact in chunk)
+    return f"impacts-{first}-{stop}.{form.suffix}"
+
+
+def chunks_in(argument: str, folder: Path, form: Form = NPZ) -> list[tuple[Chunk, Path]]:
+    """Return the chunks of a folder by their names, with their files, in order.
+
+    Raises
+    ------
+    ValueError
+        If the name of a file is not that of a chunk.
+    """
+    found = []
+    for path in folder.glob(f"impacts-*.{form.suffix}"):
+        numbers = re.fullmatch("impacts-([0-9]+)-([0-9]+)", path.stem)
+        chunk = Chunk(*map(int, numbers.groups())) if numbers else Chunk(0, 0)
+        if chunk.size <= 0 or path.name != name_of(chunk, form):
+            rule = f"is not the name of a chunk, impacts-FIRST-STOP.{form.suffix}"
+            raise refuse_file(argument, path, rule, "move this file")
+        found.append((chunk, path))
+    return sorted(found)
+
+
+def refuse_file(argument: str, path: Path, rule: str, remedy: str) -> ValueError:
+    """Return the refusal of a file, with its whole path."""
+    return ValueError(f"{argument} = {str(path)!r}: {rule}; {remedy}")
+
+
+def refuse_place(argument: str, path: Path, chunk: Chunk, form: Form = NPZ) -> ValueError:
+    """Return the refusal of a file whose name has other impacts than its ``chunk``."""
+    rule = f"contains impacts {chunk.first} to {chunk.stop}, which are not those of its name"
+    remedy = f"rename it to {name_of(chunk, form)}, or delete this file"
+    return refuse_file(argument, path, rule, remedy)
+
+
+@contextlib.contextmanager
+def columns_of(path: Path, form: Form, names: Sequence[str] = ()) -> Iterator[Any]:
+    """Yield the columns of a chunk by name; a damaged file is refused."""
+    try:
+        with form.read(path, names) as content:
+            yield content
+    except DAMAGED as error:
+        raise ValueError(f"{path}: is damaged: {error}; delete this file") from error
+
+
+def read_about(path: Path, form: Form) -> About:
+    """Return what a chunk tells, or refuse a damaged file."""
+    with columns_of(path, form) as content:
+        return About(**json.loads(str(content["about"])))
+
+
+def abouts_in(folder: Path, form: Form) -> list[tuple[Path, About]]:
+    """Return the files of a folder, in order, with what each tells.
+
+    Raises
+    ------
+    ValueError
+        If a file is damaged, or files are not of one sweep.
+    """
+    found = []
+    for chunk, path in chunks_in("path", folder, form):
+        about = read_about(path, form)
+        if about.chunk != chunk:
+            raise refuse_place("path", path, about.chunk, form)
+        found.append((path, about))
+    for (_, before), (path, after) in itertools.pairwise(found):
+        if before.sweep != after.sweep or before.stop > after.first:
+            rule = "holds impacts of another sweep, or of chunks of another size"
+            raise refuse_file("path", path, rule, "move this file")
+    return found

@@ -1,0 +1,188 @@
+"""Columns of a chunk of a sweep as a file of NumPy, or of Parquet by pyarrow."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import json
+import zlib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import IO, Any, NamedTuple
+
+import numpy as np
+
+from contactlab.outcome.frames import needed
+
+COLUMN_OF_STATUS = "status"
+#: In the metadata of a Parquet file: what the chunk tells, and the check sum of these words.
+TOLD, SUM = b"contactlab", b"contactlab crc32"
+
+
+class Chunk(NamedTuple):
+    """The impacts from ``first`` up to, but not including, ``stop``: whole blocks of a sweep."""
+
+    first: int
+    stop: int
+
+    @property
+    def size(self) -> int:
+        """Number of impacts."""
+        return self.stop - self.first
+
+
+class About(NamedTuple):
+    """What a chunk tells beside its columns.
+
+    Attributes
+    ----------
+    first, stop : int
+        Its impacts.
+    sweep, scene : str
+        Fingerprints of the laws and of the scene.
+    units : mapping of str to str
+        The unit of each column, empty for the status.
+    counts : mapping of str to int
+        Number of impacts of each status.
+    failures : mapping of str to str
+        A sentence for each impact that failed, by its index in the sweep.
+    cautions : sequence of str
+    psi2_error : float or None
+        Largest declared bound of the numerical error of psi2; None where it is not declared.
+    """
+
+    first: int
+    stop: int
+    sweep: str
+    scene: str
+    units: Mapping[str, str]
+    counts: Mapping[str, int]
+    failures: Mapping[str, str]
+    cautions: Sequence[str]
+    psi2_error: float | None
+
+    @property
+    def chunk(self) -> Chunk:
+        """Its impacts."""
+        return Chunk(self.first, self.stop)
+
+    def to_json(self) -> str:
+        """Return the text from which ``About(**json.loads(text))`` is made."""
+        return json.dumps(self._asdict())
+
+
+class Form(NamedTuple):
+    """How the chunks of a folder are named, written and read.
+
+    Attributes
+    ----------
+    suffix : str
+        Of the files, without a dot.
+    digits : int
+        Least digits of a number in a name.
+    about, finished : str
+        Names of the files that tell the sweep, and the number of its impacts.
+    write : callable
+        Writes columns into a stream, with ``About`` and the names of statuses. A column is one
+        number where all are equal; the column of statuses has places among the names.
+    read : callable
+        Returns a context with the columns of a path by name, each read when it is asked for, and
+        ``"about"``; takes the names of statuses too.
+    """
+
+    suffix: str
+    digits: int
+    about: str
+    finished: str
+    write: Callable[[IO[bytes], Mapping[str, Any], About, Sequence[str]], None]
+    read: Callable[[Path, Sequence[str]], contextlib.AbstractContextManager[Any]]
+
+
+def _write_npz(
+    stream: IO[bytes], columns: Mapping[str, Any], about: About, _: Sequence[str]
+) -> None:
+    np.savez(stream, **columns, about=np.array(about.to_json()))
+
+
+@contextlib.contextmanager
+def _read_npz(path: Path, _: Sequence[str]) -> Iterator[Any]:
+    with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as content:
+        yield content
+
+
+def _write_parquet(
+    stream: IO[bytes], columns: Mapping[str, Any], about: About, names: Sequence[str]
+) -> None:
+    """Write statuses by name, and units as metadata of the columns."""
+    pyarrow, parquet = _arrow()
+    fields, arrays = [], []
+    for name, values in columns.items():
+        array = pyarrow.array(np.broadcast_to(values, about.chunk.size))
+        if name == COLUMN_OF_STATUS:
+            array = pyarrow.DictionaryArray.from_arrays(array, [*names]).dictionary_decode()
+        arrays.append(array)
+        unit = {"unit": about.units[name]}
+        fields.append(pyarrow.field(name, array.type, nullable=False, metadata=unit))
+    told = about.to_json().encode()
+    schema = pyarrow.schema(fields, {TOLD: told, SUM: str(zlib.crc32(told)).encode()})
+    few = [name for name, values in columns.items() if not np.ndim(values)]
+    parquet.write_table(
+        pyarrow.Table.from_arrays(arrays, schema=schema),
+        stream,
+        row_group_size=about.chunk.size,
+        use_dictionary=[*few, COLUMN_OF_STATUS],  # other columns hardly repeat a number
+        write_page_checksum=True,
+    )
+
+
+@contextlib.contextmanager
+def _read_parquet(path: Path, names: Sequence[str]) -> Iterator[Any]:
+    pyarrow, parquet = _arrow()
+    try:
+        with parquet.ParquetFile(path, page_checksum_verification=True) as file:
+            yield _ParquetColumns(file, names)
+    except pyarrow.ArrowException as error:
+        raise ValueError(str(error)) from error
+
+
+class _ParquetColumns:
+    """The columns of a file of Parquet by name, and what the chunk tells."""
+
+    def __init__(self, file: Any, names: Sequence[str]) -> None:
+        self.file, self.names = file, names
+
+    def __getitem__(self, name: str) -> Any:
+        if name == "about":
+            told = self.file.schema_arrow.metadata
+            if str(zlib.crc32(told[TOLD])).encode() != told[SUM]:
+                raise ValueError("its words are not those that were written")
+            return told[TOLD].decode()
+        column = self.file.read([name], use_threads=False).column(name).combine_chunks()
+        if name != COLUMN_OF_STATUS:
+            values = column.to_numpy()
+            if values.dtype != np.float64:
+                raise ValueError(f"{name} is of {values.dtype}, not float64")
+            return values
+        coded = column.dictionary_encode()
+        codes = [self.names.index(each) for each in coded.dictionary.to_pylist()]
+        return np.array(codes, dtype=np.uint8)[coded.indices.to_numpy()]
+
+
+def _arrow() -> tuple[Any, Any]:
+    """Return the modules ``pyarrow`` and ``pyarrow.parquet``."""
+    return needed("pyarrow", "Parquet"), importlib.import_module("pyarrow.parquet")
+
+
+NPZ = Form("npz", 1, "sweep.json", "finished.json", _write_npz, _read_npz)
+#: Programs that read a folder of Parquet take its files in the order of their names, and pass over
+#: names that begin with an underscore.
+PARQUET = Form("parquet", 12, "_sweep.json", "_finished.json", _write_parquet, _read_parquet)
+FORMS = (NPZ, PARQUET)
+
+
+def form_of(folder: Path) -> Form:
+    """Return the form of a folder to write: Parquet by a name that ends with it, else NPZ."""
+    if folder.suffix.lower() != f".{PARQUET.suffix}":
+        return NPZ
+    _arrow()
+    return PARQUET
