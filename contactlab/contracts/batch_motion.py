@@ -14,6 +14,7 @@ import numpy as np
 from contactlab.contracts.status import Status
 from contactlab.numeric.arrays import are_zeros, consecutive, filled, merged, zeros
 from contactlab.numeric.checks import Mask
+from contactlab.numeric.types import Column, Real
 
 #: Entries of motions that are no numbers.
 NO_NUMBERS = ("status", "detail", "counters", "normal")
@@ -74,7 +75,7 @@ class BatchMotion:
         return cls.merged(list(zip(places, motions, strict=True)), shape)
 
     @classmethod
-    def merged(cls, parts: Sequence[tuple[Any, Self]], shape: tuple[int, ...]) -> Self:
+    def merged(cls, parts: Sequence[tuple[slice | Mask, Self]], shape: tuple[int, ...]) -> Self:
         """Return one motion of ``shape`` from pairs of a place and the motion of its impacts.
 
         An impact in several parts has the motion of the last of these parts.
@@ -136,7 +137,7 @@ class BatchMotion:
             detail=detail if isinstance(detail, str) else np.array(detail, dtype=object),
         )
 
-    def failing(self, where: Mask, status: Status, detail: Any) -> Self:
+    def failing(self, where: Mask, status: Status, detail: str | Column) -> Self:
         """Return this motion with another status for the successful impacts that ``where`` marks.
 
         Parameters
@@ -161,8 +162,8 @@ class BatchMotion:
 
 
 def _vectors_alike(
-    columns: list[tuple[Any, Any]], axes: list[int]
-) -> tuple[list[tuple[Any, Any]], tuple[int, ...]]:
+    columns: list[tuple[slice | Mask, Real]], axes: list[int]
+) -> tuple[list[tuple[slice | Mask, Real]], tuple[int, ...]]:
     """Return places and values, vectors if any is one, and the axes of each value."""
     longer = [np.ndim(value) > batch for (_, value), batch in zip(columns, axes, strict=True)]
     if not any(longer):

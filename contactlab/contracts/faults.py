@@ -6,12 +6,11 @@ is not a plain float.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from contactlab.contracts.law import Law
 from contactlab.contracts.status import Status
+from contactlab.numeric.types import Real
 
 
 class LawFaultError(Exception):
@@ -54,7 +53,7 @@ class blaming:  # noqa: N801 a context manager with a lower-case name, as in con
         raise LawFaultError(Status.LAW_RAISED, detail) from error
 
 
-def malformed(value: Any, shape: tuple[int, ...]) -> bool:
+def malformed(value: object, shape: tuple[int, ...]) -> bool:
     """Return True unless ``value`` is real numbers that broadcast to the batch ``shape``."""
     if isinstance(value, np.ndarray):
         if value.dtype.kind not in "fiu":
@@ -63,7 +62,7 @@ def malformed(value: Any, shape: tuple[int, ...]) -> bool:
     return isinstance(value, bool) or not isinstance(value, float | int | np.floating | np.integer)
 
 
-def sentence(law: Law, what: str, step: int, time: Any = None) -> str:
+def sentence(law: Law, what: str, step: int, time: Real | None = None) -> str:
     """Return the sentence that describes a fault: step, time, event, and the law.
 
     Parameters

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from contactlab.contracts.status import Status
 from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Index
 
 if TYPE_CHECKING:
     from contactlab.contracts.contact import NormalContact
@@ -105,7 +106,7 @@ class NormalMotion(ABC):
         """Claims of the normal law."""
         return self.law.offers
 
-    def once(self, key: Any, make: Callable[[], T]) -> T:
+    def once(self, key: Hashable, make: Callable[[], T]) -> T:
         """Return ``make()``, or what it returned before for this key and an equal motion.
 
         Parameters
@@ -141,7 +142,7 @@ class NormalMotion(ABC):
         """
 
     @abstractmethod
-    def take(self, part: Any) -> NormalMotion:
+    def take(self, part: Index) -> NormalMotion:
         """Return the motion of the impacts that ``part`` indexes."""
 
 

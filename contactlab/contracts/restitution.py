@@ -22,7 +22,7 @@ RESTITUTIONS = Rule(
 )
 
 
-def restitution(*, default: Any) -> Any:
+def restitution(*, default: float | None) -> Any:
     """Return an attrs field for a coefficient of normal restitution, from 0.01 to 1.
 
     Parameters
@@ -40,7 +40,7 @@ def root(function: Callable[[float], float], low: float, high: float) -> float:
     return high
 
 
-def one_of_two(law: Any, first: str, second: str, *, default: float) -> None:
+def one_of_two(law: object, first: str, second: str, *, default: float) -> None:
     """Refuse a law that sets both of two equivalent options; if it sets neither, set ``first``."""
     values = getattr(law, first), getattr(law, second)
     given = [value is not None for value in values]  # no comparison: a value may be an array

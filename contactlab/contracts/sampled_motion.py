@@ -14,7 +14,7 @@ from contactlab.contracts.motion import NormalMotion, NormalSample
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import merged, spread
 from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Index, Mask
 
 
 class SampledMotion(NormalMotion):
@@ -37,7 +37,14 @@ class SampledMotion(NormalMotion):
     """
 
     def __init__(
-        self, law: Law, scene: Scene, *, time: Any, approach: Any, rate: Any, contact: NormalContact
+        self,
+        law: Law,
+        scene: Scene,
+        *,
+        time: Array,
+        approach: Array,
+        rate: Array,
+        contact: NormalContact,
     ) -> None:
         self.law, self.scene = law, scene
         shape = scene.shape
@@ -45,7 +52,7 @@ class SampledMotion(NormalMotion):
         zero = np.zeros((1, *shape))
         column = (len(np.asarray(time)), *shape)
 
-        def all_of(first: Any, rest: Any) -> Array:
+        def all_of(first: Real, rest: Real) -> Array:
             return np.concatenate((first, np.broadcast_to(rest, column)))
 
         self._time = all_of(zero, time)
@@ -86,7 +93,7 @@ class SampledMotion(NormalMotion):
         """Return pi times the fraction."""
         return math.pi * np.asarray(fraction)
 
-    def take(self, part: Any) -> SampledMotion:
+    def take(self, part: Index) -> SampledMotion:
         """Return the motion of some impacts."""
         index = (slice(1, None), *(part if isinstance(part, tuple) else (part,)))
         time = self._time[index]
@@ -147,7 +154,9 @@ class Ends(NamedTuple):
 
     @classmethod
     def merged(
-        cls, parts: Sequence[tuple[Any, NormalMotion | Ends | None]], shape: tuple[int, ...]
+        cls,
+        parts: Sequence[tuple[slice | Mask, NormalMotion | Ends | None]],
+        shape: tuple[int, ...],
     ) -> Ends:
         """Return the ends of a batch of ``shape`` from places and the motions of parts.
 

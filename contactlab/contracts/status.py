@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 from enum import Enum
-from typing import Any
+from typing import TYPE_CHECKING, TypeAlias
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 
 class Status(Enum):
@@ -26,9 +30,13 @@ class Status(Enum):
         return self is Status.SUCCESS
 
 
-def succeeded(statuses: Any) -> bool:
+#: The status of one impact, or those of a batch.
+Statuses: TypeAlias = "Status | NDArray[np.object_]"
+
+
+def succeeded(statuses: Statuses) -> bool:
     """Return whether a status is ``SUCCESS``, or every status of an array."""
     if isinstance(statuses, Status):
         return statuses is Status.SUCCESS
     # a comparison of objects takes three times as long as a count
-    return statuses.ravel().tolist().count(Status.SUCCESS) == statuses.size  # type: ignore[no-any-return]
+    return statuses.ravel().tolist().count(Status.SUCCESS) == statuses.size

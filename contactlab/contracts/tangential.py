@@ -7,8 +7,6 @@ from abc import abstractmethod
 from collections.abc import Mapping
 from typing import Any, ClassVar, NamedTuple
 
-from numpy.typing import NDArray
-
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
@@ -17,7 +15,7 @@ from contactlab.contracts.whole_impact import WholeImpact, no_force
 from contactlab.impact.coupling import coupling
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Mask, Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Column
 
 
 class Sampled(NamedTuple):
@@ -215,7 +213,7 @@ class TangentialLaw(Law):
         """
         return False
 
-    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:
+    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Real) -> Real:
         """Return the declared bound of the numerical error of psi2, of the batch shape.
 
         Parameters
@@ -225,7 +223,7 @@ class TangentialLaw(Law):
         """
         return math.nan
 
-    def errors_in_steps(self, scene: Scene, normal: NormalMotion, steps: Any) -> tuple[Real, Real]:
+    def errors_in_steps(self, scene: Scene, normal: NormalMotion, steps: Real) -> tuple[Real, Real]:
         """Return declared bounds of the numerical errors of psi2 and of the normal restitution.
 
         They hold where friction changes the approach and an integrator marches both motions. NaN,
@@ -243,7 +241,7 @@ class TangentialLaw(Law):
         """
         return math.nan, math.nan
 
-    def seconds_in_steps(self, scene: Scene, normal: NormalMotion, steps: Any) -> float:
+    def seconds_in_steps(self, scene: Scene, normal: NormalMotion, steps: Real) -> float:
         """Return about how many seconds a march of both motions takes on a computer of 2026.
 
         NaN, the default, means not measured.
@@ -439,7 +437,7 @@ class SteppedTangentialLaw(TangentialLaw):
         """Return one sentence for each doubt about the law along a prescribed path; none here."""
         return ()
 
-    def fields(self, state: Any) -> Mapping[str, NDArray[Any]]:
+    def fields(self, state: Any) -> Mapping[str, Column]:
         """Return named arrays of ``state`` for the history (traction, stuck, ...)."""
         return {}
 

@@ -12,6 +12,7 @@ from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.sampled_motion import Ends
 from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Mask
 
 
 def no_fields() -> Mapping[str, Any]:
@@ -87,7 +88,7 @@ class TangentialMotion(BatchMotion):
     normal: NormalMotion | Ends | None = None
 
     @classmethod
-    def merged(cls, parts: Sequence[tuple[Any, Self]], shape: tuple[int, ...]) -> Self:
+    def merged(cls, parts: Sequence[tuple[slice | Mask, Self]], shape: tuple[int, ...]) -> Self:
         """Return one motion of ``shape``, with the ends of the normal motions of the parts.
 
         Parameters

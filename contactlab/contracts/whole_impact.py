@@ -15,6 +15,7 @@ from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Mask, Real
+from contactlab.numeric.types import Array
 
 
 @attrs.frozen(kw_only=True, eq=False)
@@ -120,7 +121,7 @@ class Tabulated(ABC):
         """
         raise NotImplementedError("this law has no table for arrays of other libraries")
 
-    def solved(self, psi1: Any, chi: Any) -> Any:
+    def solved(self, psi1: Array, chi: Array) -> Any:
         """Return psi2 - psi1 beyond the table; None, the default, where impacts are marched.
 
         Parameters
@@ -196,7 +197,7 @@ def sliding(
     slip: Any = scene.slip_velocity
     speed: Any = abs(slip)
 
-    def after(impulse: Any, lesser: Any) -> tuple[Any, Any]:
+    def after(impulse: Real, lesser: Any) -> tuple[Any, Any]:
         """Return the speed lost in m/s, and the friction work in J, after ``impulse`` in N s."""
         lost = impulse / mass
         if stops:
@@ -213,7 +214,7 @@ def sliding(
         sense = float((slip > 0.0) - (slip < 0.0))
         lost, work = after(friction * float(normal.total_load_impulse), _lesser)
 
-    def course(load_impulse: Any, load: Any) -> tuple[Any, Any]:
+    def course(load_impulse: Real, load: Real) -> tuple[Real, Real]:
         change = friction * load_impulse / mass
         acting: Any = 1.0
         if stops:
@@ -249,7 +250,7 @@ def no_force(scene: Scene, *, where: Mask, reason: str) -> WholeImpact:
         Why these impacts need no march, for the plan.
     """
 
-    def course(load_impulse: Any, load: Any) -> tuple[Any, Any]:
+    def course(load_impulse: Real, load: Real) -> tuple[Real, Real]:
         zero = 0.0 * (scene.slip_velocity + load_impulse + load)
         return zero, zero
 

@@ -182,7 +182,7 @@ class Pair:
         """
         return 2.0 * self.effective_shear_modulus * radius
 
-    def energies(self, speed: Any, slip: Any, rate: Any, change: Any) -> tuple[Any, Any, Any]:
+    def energies(self, speed: Real, slip: Real, rate: Real, change: Real) -> tuple[Any, Any, Any]:
         """Return the energy at the start, and what approach and slip lose of it, in J.
 
         Parameters
@@ -258,7 +258,7 @@ def _inverse_tangential_mass(sphere: Sphere) -> Real:
     return (1.0 + 1.0 / sphere.gyration_ratio**2) / sphere.mass
 
 
-def inverse_turning_mass(sphere: Sphere, radius: Any) -> Any:
+def inverse_turning_mass(sphere: Sphere, radius: Real) -> Any:
     """Return radius²/J of a sphere, in 1/kg; J of a tiny sphere would underflow."""
     share: Any = radius / (sphere.gyration_ratio * sphere.radius)
     return share * share / sphere.mass

@@ -13,6 +13,7 @@ from contactlab.impact.encounter import Encounter
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.rigid_body import FLAT, RigidBody
 from contactlab.impact.scene import Scene
+from contactlab.numeric.types import Real
 
 #: Mass over that of a solid sphere below which it is a shell, with a wall below a fifth of R; and
 #: above which the unit of the mass is suspect.
@@ -121,5 +122,5 @@ def _curvature(body: RigidBody) -> float:
     return float(finite.max()) if finite.size else 0.0
 
 
-def _most(value: Any) -> float:
+def _most(value: Real) -> float:
     return float(np.max(value))

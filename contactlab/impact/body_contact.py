@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple, Protocol
 
 import attrs
 import numpy as np
@@ -22,7 +23,7 @@ from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import chosen, some
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Mask, Real
 from contactlab.numeric.vectors import components, cross, moving, solved
 
 #: Difference of principal curvatures over their sum that is a circle's rounding.
@@ -31,6 +32,33 @@ ROUND = 1e-9
 LINE = 1e-12
 #: Spin about the normal over the whole spin of both bodies below which it is rounding.
 TURNING = 1e-12
+
+
+class _Meeting(Protocol):
+    """An encounter, which imports this module: two bodies and their vectors."""
+
+    @property
+    def body(self) -> Sphere | RigidBody: ...
+    @property
+    def target(self) -> Sphere | HalfSpace | RigidBody: ...
+    @property
+    def friction_coefficient(self) -> Real: ...
+    @property
+    def shape(self) -> tuple[int, ...]: ...
+    @property
+    def normal(self) -> Array: ...
+    @property
+    def velocity(self) -> Array: ...
+    @property
+    def spin(self) -> Array: ...
+    @property
+    def target_velocity(self) -> Array: ...
+    @property
+    def target_spin(self) -> Array: ...
+    @property
+    def contact(self) -> Array: ...
+    @property
+    def target_contact(self) -> Array: ...
 
 
 class Contact(NamedTuple):
@@ -88,7 +116,7 @@ class Frame(NamedTuple):
     gap: Gap
 
 
-def arms(encounter: Any, normal: Array) -> tuple[Array, Array]:
+def arms(encounter: _Meeting, normal: Array) -> tuple[Array, Array]:
     """Return the vectors in m from the centres of mass to the contact, zero for a half-space."""
     found = []
     sides = (
@@ -105,7 +133,7 @@ def arms(encounter: Any, normal: Array) -> tuple[Array, Array]:
     return found[0], found[1]
 
 
-def turned(body: Any, moment: Array) -> Array:
+def turned(body: Sphere | HalfSpace | RigidBody, moment: Array) -> Array:
     """Return J⁻¹ times a moment about the centre of mass, shape (..., 3); 0 for a half-space."""
     if isinstance(body, RigidBody):
         return np.asarray(solved(body.inertia, moment[..., None])[..., 0])
@@ -127,7 +155,7 @@ def _crossing(vectors: Array) -> Array:
     return matrix - np.swapaxes(matrix, -1, -2)
 
 
-def inverse_mass_of(encounter: Any, normal: Array) -> Array:
+def inverse_mass_of(encounter: _Meeting, normal: Array) -> Array:
     """Return W in the frame of the encounter, shape (..., 3, 3), in 1/kg."""
     total: Any = np.zeros((3, 3))
     for body, arm in zip((encounter.body, encounter.target), arms(encounter, normal), strict=True):
@@ -143,14 +171,14 @@ def inverse_mass_of(encounter: Any, normal: Array) -> Array:
     return np.asarray(0.5 * (total + np.swapaxes(total, -1, -2)))
 
 
-def relative_velocity(encounter: Any, normal: Array) -> Array:
+def relative_velocity(encounter: _Meeting, normal: Array) -> Array:
     """Return the velocity in m/s of the first body over the target at the contact."""
     first, second = arms(encounter, normal)
     velocity = encounter.velocity + cross(encounter.spin, first)
     return np.asarray(velocity - encounter.target_velocity - cross(encounter.target_spin, second))
 
 
-def spin_about(encounter: Any, normal: tuple[Any, Any, Any]) -> Any:
+def spin_about(encounter: _Meeting, normal: Sequence[Real]) -> Any:
     """Return the spin about the normal of the first body over the target, in rad/s."""
     if encounter.shape and not (moving(encounter.spin) or moving(encounter.target_spin)):
         return 0.0  # of one encounter three products take less
@@ -165,7 +193,7 @@ def spin_about(encounter: Any, normal: tuple[Any, Any, Any]) -> Any:
     return np.broadcast_to(omega, encounter.shape) if encounter.shape else omega
 
 
-def _spin_alone(encounter: Any, n: Array, round_: Any) -> Any:
+def _spin_alone(encounter: _Meeting, n: Array, round_: Mask) -> Any:
     """Return the spin about the normal that a couple alone moves; ``round_`` where it may.
 
     It is 0 where a body is off centre, or the normal is no principal axis of its inertia.
@@ -182,7 +210,7 @@ def _spin_alone(encounter: Any, n: Array, round_: Any) -> Any:
     return spin if encounter.shape else float(spin)
 
 
-def turning_compliance(encounter: Any, normal: Array, radius: Any) -> Any:
+def turning_compliance(encounter: _Meeting, normal: Array, radius: Real) -> Any:
     """Return radius² n·J⁻¹·n of both bodies, in 1/kg."""
     total: Any = 0.0
     for body in (encounter.body, encounter.target):
@@ -194,7 +222,7 @@ def turning_compliance(encounter: Any, normal: Array, radius: Any) -> Any:
     return total
 
 
-def meeting_of_bodies(encounter: Any, normal: tuple[Any, Any, Any]) -> Contact:
+def meeting_of_bodies(encounter: _Meeting, normal: tuple[Real, Real, Real]) -> Contact:
     """Return directions and speeds at the contact of bodies that are no spheres."""
     n = np.stack(np.broadcast_arrays(*normal), axis=-1)
     velocity = relative_velocity(encounter, n)
@@ -206,7 +234,7 @@ def meeting_of_bodies(encounter: Any, normal: tuple[Any, Any, Any]) -> Contact:
     return Contact(normal, (x, y, z), approach, size)
 
 
-def frame(encounter: Any) -> Frame:
+def frame(encounter: _Meeting) -> Frame:
     """Return the frame with t1 along W_nt, or along the slip without coupling.
 
     For an ellipse t1 is the axis that holds both, or else the major one.
@@ -248,7 +276,7 @@ def frame(encounter: Any) -> Frame:
     )
 
 
-def gap_of(encounter: Any, t1: Array, t2: Array) -> Gap:
+def gap_of(encounter: _Meeting, t1: Array, t2: Array) -> Gap:
     """Return the curvatures of the gap between the bodies, the sum of both (theory §16).
 
     Raises
@@ -285,7 +313,7 @@ def gap_of(encounter: Any, t1: Array, t2: Array) -> Gap:
     return Gap(least, most, major, elliptic)
 
 
-def _curvatures(body: Any, t1: Array, t2: Array) -> tuple[Any, Any, Any]:
+def _curvatures(body: Sphere | HalfSpace | RigidBody, t1: Array, t2: Array) -> tuple[Any, Any, Any]:
     """Return both principal curvatures of a body in 1/m, and the direction of the first."""
     if isinstance(body, RigidBody):
         return body.curvatures(t1, t2)
@@ -293,7 +321,7 @@ def _curvatures(body: Any, t1: Array, t2: Array) -> tuple[Any, Any, Any]:
     return np.asarray(curvature), np.asarray(curvature), np.asarray(1.0 + 0.0j)
 
 
-def _refuse_gap(encounter: Any, rule: str, what: str) -> None:
+def _refuse_gap(encounter: _Meeting, rule: str, what: str) -> None:
     """Refuse bodies that touch along a line or a face."""
     given = tuple(
         getattr(body, "curvature_radius", getattr(body, "radius", math.inf))
@@ -311,7 +339,9 @@ def _refuse_gap(encounter: Any, rule: str, what: str) -> None:
     raise refuse("curvature_radius", given, rule, remedy)
 
 
-def _along_an_axis(gap: Gap, t1: Array, t2: Array, holds: Any) -> tuple[Array, Gap]:
+def _along_an_axis(
+    gap: Gap, t1: Array, t2: Array, holds: Sequence[tuple[Array, Real]]
+) -> tuple[Array, Gap]:
     """Return t1 along the axis of the ellipse that holds coupling and slip, and the gap there."""
     parts = []
     for vector, rounding in holds:
@@ -331,7 +361,7 @@ def _along_an_axis(gap: Gap, t1: Array, t2: Array, holds: Any) -> tuple[Array, G
     return first.real * t1 + first.imag * t2, gap._replace(minor=minor)
 
 
-def scene_of_bodies(encounter: Any) -> Scene:
+def scene_of_bodies(encounter: _Meeting) -> Scene:
     """Return the scene in numbers; it keeps the inverse mass if any impact needs it."""
     axes, W, velocity, gap = frame(encounter)
     pair = pair_of_bodies(encounter, W, gap)
@@ -356,7 +386,7 @@ def scene_of_bodies(encounter: Any) -> Scene:
     return Scene(None, None, friction, number(speed), along, pair=pair, **where, **entries)
 
 
-def pair_of_bodies(encounter: Any, inverse: Array, gap: Gap) -> Pair:
+def pair_of_bodies(encounter: _Meeting, inverse: Array, gap: Gap) -> Pair:
     """Return the numbers of two bodies that laws need; ``inverse`` is W in the contact's frame."""
     W = inverse
     first, second = encounter.body.material, encounter.target.material
@@ -398,7 +428,9 @@ def in_space(axes: Array, vectors: Array) -> Array:
     return np.asarray(np.einsum("...ia,...i->...a", axes, vectors))
 
 
-def pushed(encounter: Any, axes: Array, impulse: Array, couple: Any = 0.0) -> dict[str, Array]:
+def pushed(
+    encounter: _Meeting, axes: Array, impulse: Array, couple: Real = 0.0
+) -> dict[str, Array]:
     """Return velocities and spins after an impulse in N s on the target, and its opposite.
 
     ``impulse`` has components along n, t1 and t2, the rows of ``axes``, shape (..., 3). ``couple``

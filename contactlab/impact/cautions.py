@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.impact.bodies import Sphere
+from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.body_cautions import shells, units_of_bodies
 from contactlab.impact.body_contact import arms, gap_of
 from contactlab.impact.encounter import Encounter
@@ -63,7 +63,7 @@ def large_contact(ratio: float) -> tuple[str, ...]:
     )
 
 
-def size_of_contact(scene: Scene, radius: Any) -> float:
+def size_of_contact(scene: Scene, radius: Real) -> float:
     """Return the largest contact radius over R, for contact radii in m.
 
     Between bodies that are no spheres: of the minor semi-axis over the least radius of curvature,
@@ -265,7 +265,7 @@ def unit_slips(scene: Scene) -> list[str]:
     return slips
 
 
-def _modulus(name: str, body: Any) -> str:
+def _modulus(name: str, body: Sphere | HalfSpace) -> str:
     """Return the shear modulus of a body in words."""
     modulus = _least(body.material.shear_modulus)
     young = 2.0 * (1.0 + _least(body.material.poisson_ratio)) * modulus
@@ -319,7 +319,7 @@ def three_numbers(scene: Scene) -> tuple[str, ...]:
     )
 
 
-def _least(value: Any) -> float:
+def _least(value: Real) -> float:
     """Return the smallest number of a batch, or the number itself."""
     return value if isinstance(value, float) else float(np.nanmin(value))
 

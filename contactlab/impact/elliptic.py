@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.special import ellipkm1, elliprd
 
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 #: Steps of Newton's method for ln(b/a): five reach rounding for ratios of curvatures to 1e100.
 STEPS = 6
@@ -40,7 +40,7 @@ class Ellipse(NamedTuple):
     weight_minor: Array
 
 
-def ellipse(ratio: Any) -> Ellipse:
+def ellipse(ratio: Real) -> Ellipse:
     """Return the ellipse of a gap with principal curvatures of this ratio, above 0 and at most 1.
 
     The ratio A/B of the curvatures is k² D/N, k = b/a (Johnson, Contact Mechanics, 1985, §4.2, in
@@ -60,7 +60,7 @@ def ellipse(ratio: Any) -> Ellipse:
     return of_axes(np.exp(log_k))
 
 
-def of_axes(axis_ratio: Any) -> Ellipse:
+def of_axes(axis_ratio: Real) -> Ellipse:
     """Return the ellipse of semi-axes in this ratio b/a, above 0 and at most 1."""
     k = np.asarray(axis_ratio, dtype=float)
     square = k * k

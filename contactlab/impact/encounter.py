@@ -25,7 +25,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import NON_NEGATIVE, Real, first_of, instance, quantity, refuse
 from contactlab.numeric.names import arguments_stated
-from contactlab.numeric.types import Array, Numbers
+from contactlab.numeric.types import Array, Index, Numbers
 from contactlab.numeric.vectors import (
     LEAST,
     NOTHING,
@@ -177,7 +177,7 @@ class Encounter:
                 told = None if value is ZERO else value.tolist()
                 raise refuse(name, told, rule, "contactlab.shapes has those of common bodies")
 
-    def take(self, part: Any) -> Encounter:
+    def take(self, part: Index) -> Encounter:
         """Return the encounters that ``part`` indexes.
 
         Parameters
@@ -330,7 +330,7 @@ class Encounter:
 
 
 @cache
-def _numbers(body: Any, target: Any) -> tuple[list[str], Callable[[Encounter], Any]]:
+def _numbers(body: type, target: type) -> tuple[list[str], Callable[[Encounter], Any]]:
     """Return the path of every number of an encounter, and the function that returns them all."""
     paths = ["friction_coefficient"]
     parts: dict[str, Any] = {"body": body, "body.material": Material}

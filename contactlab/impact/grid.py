@@ -10,15 +10,16 @@ import attrs
 import numpy as np
 
 from contactlab.numeric.checks import real, refuse
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Numbers, Real
 
 #: Largest number of impacts of a grid; a typing error must not fill the memory.
 MOST_IMPACTS = 10_000_000
 
 
-def axes_of(entries: Mapping[str, Any]) -> dict[str, Array]:
+def axes_of(entries: Mapping[str, Numbers]) -> dict[str, Array]:
     """Return the entries that are lists, as arrays of one dimension; at least one must be."""
     axes: dict[str, Any] = {}
+    values: Any
     for name, values in entries.items():
         if np.ndim(values):
             axes[name] = real(name, values)
@@ -73,7 +74,7 @@ class GridParts:
             yield self._make({name: values[place] for (name, values), place in each})
 
 
-def product(axes: Mapping[str, Any]) -> dict[str, Array]:
+def product(axes: Mapping[str, Real]) -> dict[str, Array]:
     """Return the values of each axis in all combinations, flat, the last varying fastest."""
     size = math.prod(np.size(values) for values in axes.values())
     if size > MOST_IMPACTS:

@@ -9,7 +9,7 @@ import numpy as np
 from contactlab.impact.bodies import Pair
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import NON_NEGATIVE, POISSON, POSITIVE, Rule, real, refuse
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Numbers, Real
 
 #: E* that makes C = 1 in eq. (9), where R = M_n = v1 = 1.
 MODULUS = 15.0 / 16.0
@@ -24,17 +24,17 @@ ALIKE = 1e-9
 
 def entries(
     *,
-    psi1: Any,
-    chi: Any,
-    lam: Any,
-    eta: Any,
-    rho: Any,
-    poisson_ratio: Any,
-    coupling_number: Any,
-    friction_coefficient: Any,
-    spin: Any,
-    spin_inertia: Any,
-    cross_stiffness_ratio: Any = 1.0,
+    psi1: Numbers,
+    chi: Numbers,
+    lam: Numbers,
+    eta: Numbers | None,
+    rho: Numbers | None,
+    poisson_ratio: Numbers | None,
+    coupling_number: Numbers | None,
+    friction_coefficient: Numbers | None,
+    spin: Numbers,
+    spin_inertia: Numbers,
+    cross_stiffness_ratio: Numbers = 1.0,
 ) -> dict[str, Any]:
     """Return the entries of ``Scene`` for the groups of ``Scene.nondimensional``."""
     incidence = real(
@@ -101,7 +101,15 @@ def entries(
     }
 
 
-def _rho(inertia: Any, drag: Any, eta: Any, rho: Any, kappa: Any, mu: Any, in_space: bool) -> Any:
+def _rho(
+    inertia: Real,
+    drag: Real,
+    eta: Numbers | None,
+    rho: Numbers | None,
+    kappa: Real | None,
+    mu: Real | None,
+    in_space: bool,
+) -> Real | None:
     """Return rho = mu²/kappa of a scene that couples; None of one that does not."""
     if eta is not None and rho is not None:
         raise refuse("eta, rho", (eta, rho), "give one of them: rho = lam/eta = mu²/kappa")
@@ -127,7 +135,7 @@ def _rho(inertia: Any, drag: Any, eta: Any, rho: Any, kappa: Any, mu: Any, in_sp
     return squared
 
 
-def _by_eta(drag: Any, eta: Any) -> Any:
+def _by_eta(drag: Real, eta: Real) -> Any:
     """Return lam/eta; 1 where both are zero."""
     if not np.any(drag):
         if not np.any(eta):
@@ -142,7 +150,9 @@ def _by_eta(drag: Any, eta: Any) -> Any:
     return _number(squared)
 
 
-def _friction_and_stiffness(squared: Any, kappa: Any, mu: Any) -> tuple[Any, Any]:
+def _friction_and_stiffness(
+    squared: Real | None, kappa: Real | None, mu: Real | None
+) -> tuple[Real, Real]:
     """Return mu and kappa, of which rho = mu²/kappa and the caller's numbers determine two."""
     if squared is None:
         return (1.0 if mu is None else mu), (1.0 if kappa is None else kappa)
@@ -153,7 +163,7 @@ def _friction_and_stiffness(squared: Any, kappa: Any, mu: Any) -> tuple[Any, Any
 
 
 def _scaled(
-    mu: Any, kappa: Any, cross: Any, psi1: Any, chi: Any, lam: Any, in_space: bool
+    mu: Real, kappa: Real, cross: Real, psi1: Real, chi: Real, lam: Real, in_space: bool
 ) -> tuple[Any, Array]:
     """Return slip velocity and inverse mass in units with v1 = R = C = 1/W_nn = 1."""
     shapes = {"psi1": np.shape(psi1), "chi": np.shape(chi), "lam": np.shape(lam)}
@@ -189,6 +199,6 @@ def _scaled(
     return _number(np.broadcast_to(psi1 * mu / kappa, shape)), W
 
 
-def _number(value: Any) -> Any:
+def _number(value: Real) -> Any:
     """Return a float for a single number, else the array."""
     return float(value) if np.ndim(value) == 0 else value

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 #: Smallest over largest eigenvalue of an inverse mass, scaled to ones on the diagonal, that is
 #: told from zero.
@@ -30,7 +30,7 @@ def check(inverse: Array) -> None:
         raise refuse("inverse_mass", inverse.tolist(), rule)
 
 
-def ways(inverse: Array, speed: Any, slip: Array, cross_stiffness_ratio: Any = 1.0) -> Any:
+def ways(inverse: Array, speed: Real, slip: Array, cross_stiffness_ratio: Real = 1.0) -> Any:
     """Return the way of each impact: ``CENTRAL``, ``PLANAR`` or ``SPATIAL``.
 
     Parameters

@@ -60,7 +60,7 @@ class Motions:
         spin = self.normal_spin
         return spin != 0.0 if isinstance(spin, float) else bool(spin.any())
 
-    def rim(self, spin: Any) -> Any:
+    def rim(self, spin: Real) -> Any:
         """Return w = kappa omega_n a/(mu v1) of spins about the normal, theory §17, without unit.
 
         It is the speed of the rim of the largest elastic Hertz contact in the unit of psi.
@@ -96,7 +96,7 @@ class Motions:
         with np.errstate(divide="ignore"):
             return np.where(inverse > 0.0, size * size / inverse, 0.0)[()]
 
-    def spin_energies(self, change: Any) -> tuple[Any, Any]:
+    def spin_energies(self, change: Real) -> tuple[Any, Any]:
         """Return the energy ½ J omega_n² at the start, and what it loses, in J.
 
         Parameters
@@ -117,7 +117,7 @@ class Motions:
         """
         return abs(slip) if self.planar else np.hypot(slip[..., 0], slip[..., 1])
 
-    def along_slip(self, velocity: Any) -> Any:
+    def along_slip(self, velocity: Real) -> Any:
         """Return the part of slip velocities along the slip at first touch, of the batch shape.
 
         Parameters
@@ -184,7 +184,7 @@ class Motions:
         rho: Real = mu * mu / self.pair.stiffness_ratio
         return rho
 
-    def coupling(self, factor: Any) -> Any:
+    def coupling(self, factor: Real) -> Any:
         """Return ``factor`` times W_nt/W_nn, as this scene has its slip; 0 for spheres.
 
         Parameters
@@ -198,7 +198,7 @@ class Motions:
             vectors = np.asarray(factor)[..., None] * W[..., 0, 1:] / W[..., :1, 0]
         return self.tangent(vectors)
 
-    def tangent(self, vectors: Any) -> Any:
+    def tangent(self, vectors: Array) -> Any:
         """Return vectors of the tangent plane, (..., 2), as this scene has its slip.
 
         Parameters
@@ -247,7 +247,7 @@ class Motions:
         slip = batch.spread(self.slip_speed if not self.planar else self.slip_velocity, self.shape)
         return self._with(tangential_velocity=slip, pair=pair, inverse_mass=None, planar=True)
 
-    def _with(self, **entries: Any) -> Self:
+    def _with(self, **entries: object) -> Self:
         """Return this scene with other entries, of numbers that were checked before."""
         scene = copy.copy(self)
         for name, value in entries.items():
@@ -296,7 +296,7 @@ class Motions:
         slip = batch.spread(self.slip_velocity[..., 0], self.shape)
         return self._with(tangential_velocity=slip, pair=pair, planar=True)
 
-    def impulse(self, rate: Any, change: Any) -> Array:
+    def impulse(self, rate: Real, change: Real) -> Array:
         """Return the impulse on the target along n, t1 and t2, shape (..., 3), in N s.
 
         Parameters
@@ -312,7 +312,7 @@ class Motions:
             self.inverse_mass, self._vectors(rate - self.normal_speed, change)
         )
 
-    def energies(self, rate: Any, change: Any) -> tuple[Any, Any, Any]:
+    def energies(self, rate: Real, change: Real) -> tuple[Any, Any, Any]:
         """Return the energy at the start, and what approach and slip lose of it, in J.
 
         Parameters
@@ -337,7 +337,7 @@ class Motions:
         """Approach and slip at first touch along n, t1 and t2, shape (..., 3), in m/s."""
         return self._vectors(self.normal_speed, self.slip_velocity)
 
-    def _vectors(self, approach: Any, slip: Any) -> Array:
+    def _vectors(self, approach: Real, slip: Real) -> Array:
         """Return rates along n and slip velocities as vectors of shape (..., 3)."""
         vectors = np.zeros((*self.shape, 3))
         vectors[..., 0] = approach

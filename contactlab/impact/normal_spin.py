@@ -13,7 +13,7 @@ from contactlab.impact.body_contact import spin_about, turning_compliance
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.impact.table import between_nodes, read_rows
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Mask, Real
 from contactlab.numeric.vectors import components
 
 #: psi2 and loss of spin by two programs that solve the half-space with slip and spin together.
@@ -64,7 +64,7 @@ def nodes() -> Nodes:
     return Nodes((psi1, chi, w), psi2, loss)
 
 
-def shift_and_loss(psi1: Any, chi: Any, w: Any, chi_w: Any) -> tuple[Any, Any]:
+def shift_and_loss(psi1: Real, chi: Real, w: Real, chi_w: Real) -> tuple[Any, Any]:
     """Return the shift of psi2 by spin about the normal, and the loss of w; both without unit.
 
     Both are linear between the nodes of a table of half-space solutions with psi1 up to 7, chi
@@ -107,7 +107,7 @@ def shift_and_loss(psi1: Any, chi: Any, w: Any, chi_w: Any) -> tuple[Any, Any]:
     return np.copysign(1.0, psi1) * shift, np.copysign(1.0, w) * taken
 
 
-def gross_slip(psi1: Any, chi: Any, w: Any) -> tuple[Any, Any]:
+def gross_slip(psi1: Array, chi: Array, w: Array) -> tuple[Any, Any]:
     """Return shift of psi2 and loss of w over chi_w of an impact that slips throughout.
 
     Exact for w far below psi1, psi1 at least 4 chi. There friction is mu P (1 - eps²/10) and its
@@ -128,7 +128,7 @@ def gross_slip(psi1: Any, chi: Any, w: Any) -> tuple[Any, Any]:
     return 1.0 / (5.0 / (chi * shift) + 0.25 / chi), np.minimum(0.4 * loss, ALL_SLIPS)
 
 
-def normal_spin(scene: Scene, *, answered: Any = False) -> NormalSpin | None:
+def normal_spin(scene: Scene, *, answered: Mask = False) -> NormalSpin | None:
     """Return what spin about the normal does in each impact, or None if nothing turns.
 
     Parameters

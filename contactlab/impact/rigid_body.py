@@ -13,7 +13,7 @@ from contactlab.impact.material import Material
 from contactlab.numeric.arrays import common_shape, known, taken
 from contactlab.numeric.checks import POSITIVE, Real, Rule, instance, key, quantity, real, refuse
 from contactlab.numeric.names import arguments_stated
-from contactlab.numeric.types import Array, Numbers
+from contactlab.numeric.types import Array, Index, Numbers
 
 #: Asymmetry of an inertia, and excess of a principal moment over the sum of the other two, that
 #: count as rounding, over the largest moment.
@@ -30,7 +30,7 @@ LOST = 1e-9
 RINGING = 0.2
 
 
-def _tensor(value: Any, field: attrs.Attribute[Any]) -> Array | None:
+def _tensor(value: Numbers | None, field: attrs.Attribute[object]) -> Array | None:
     """Return a read-only array of shape (..., 3, 3), or (..., 3) of principal moments."""
     if value is None:
         return None
@@ -53,7 +53,7 @@ def _array(unit: str, ends: tuple[int, ...]) -> Any:
     )
 
 
-def _radius(value: Any, field: attrs.Attribute[Any]) -> Real | None:
+def _radius(value: Numbers | None, field: attrs.Attribute[object]) -> Real | None:
     """Return a radius of curvature in m: infinite if flat, negative if hollow."""
     if value is None and field.default is None:
         return None
@@ -69,7 +69,7 @@ def _radius(value: Any, field: attrs.Attribute[Any]) -> Real | None:
     return np.where(flat, np.inf, checked) if np.ndim(checked) else np.inf
 
 
-def _flat(value: Any) -> Any:
+def _flat(value: object) -> Any:
     """Return where a number or an array of numbers is infinite; False of anything else."""
     if isinstance(value, float):
         return math.isinf(value)
@@ -81,11 +81,11 @@ def _flat(value: Any) -> Any:
     return np.isinf(array) if known else False
 
 
-def _curved(**default: Any) -> Any:
+def _curved(default: object = attrs.NOTHING) -> Any:
     """Return an attrs field for a radius of curvature."""
     converter = attrs.Converter(_radius, takes_field=True)
     metadata = {"unit": "m", "range": CURVED.sentence}
-    return attrs.field(**default, converter=converter, eq=key, metadata=metadata)
+    return attrs.field(default=default, converter=converter, eq=key, metadata=metadata)
 
 
 @arguments_stated
@@ -253,7 +253,7 @@ class RigidBody:
         told = (f"{name}={value!r}" for name, value in given.items() if value is not None)
         return f"RigidBody({', '.join(told)})"
 
-    def take(self, shape: tuple[int, ...], part: Any) -> RigidBody:
+    def take(self, shape: tuple[int, ...], part: Index) -> RigidBody:
         """Return the bodies of a batch of ``shape`` that ``part`` indexes.
 
         Parameters

@@ -9,6 +9,7 @@ from typing import Any
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.impact import groups, inverse_mass
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
@@ -30,7 +31,7 @@ from contactlab.numeric.checks import (
     whole,
 )
 from contactlab.numeric.names import arguments_stated
-from contactlab.numeric.types import Array, Numbers
+from contactlab.numeric.types import Array, Index, Numbers
 
 #: Least kinetic energy of the normal motion, in J, and least tangential velocity, in m/s. Numbers
 #: computed from smaller values would have fewer than sixteen digits.
@@ -44,7 +45,7 @@ OBLIQUE = Rule(
 )
 
 
-def _tensors(value: Any) -> Array | None:
+def _tensors(value: Numbers | None) -> Array | None:
     """Return a read-only copy as float64; None as it is."""
     check_place("inverse_mass", value)
     return None if value is None else np.asarray(batch.locked(np.array(value, dtype=np.float64)))
@@ -290,12 +291,12 @@ class Scene(Motions):
         cls,
         sphere: Sphere,
         target: Sphere | HalfSpace,
-        friction_coefficient: Real,
+        friction_coefficient: Numbers,
         *,
-        speed: Any,
-        angle_deg: Any,
-        spin: Real = 0.0,
-        normal_spin: Real = 0.0,
+        speed: Numbers,
+        angle_deg: Numbers,
+        spin: Numbers = 0.0,
+        normal_spin: Numbers = 0.0,
     ) -> Scene:
         """Return the scene of a sphere whose centre moves at an angle from the normal.
 
@@ -330,17 +331,17 @@ class Scene(Motions):
     def nondimensional(
         cls,
         *,
-        psi1: Any,
-        chi: Any,
-        lam: Any = 0.0,
-        eta: Any = None,
-        rho: Any = None,
-        poisson_ratio: Any = None,
-        coupling_number: Any = None,
-        friction_coefficient: Any = None,
-        cross_stiffness_ratio: Any = 1.0,
-        spin: Any = 0.0,
-        spin_inertia: Any = 0.0,
+        psi1: Numbers,
+        chi: Numbers,
+        lam: Numbers = 0.0,
+        eta: Numbers | None = None,
+        rho: Numbers | None = None,
+        poisson_ratio: Numbers | None = None,
+        coupling_number: Numbers | None = None,
+        friction_coefficient: Numbers | None = None,
+        cross_stiffness_ratio: Numbers = 1.0,
+        spin: Numbers = 0.0,
+        spin_inertia: Numbers = 0.0,
     ) -> Scene:
         """Return the scene of the paper's two parameters, eqs (29) and (38), and of theory §14.
 
@@ -413,7 +414,7 @@ class Scene(Motions):
         return cls(None, None, **entries)
 
     @classmethod
-    def grid(cls, *bodies: Any, **entries: Any) -> Scene:
+    def grid(cls, *bodies: Sphere | HalfSpace, **entries: Numbers) -> Scene:
         """Return the batch of all combinations of some entries, the last varying fastest.
 
         An example is ``Scene.grid(chi=[1.2, 1.4412], psi1=np.linspace(0, 6, 25))``. A list gives
@@ -438,7 +439,7 @@ class Scene(Motions):
 
     @classmethod
     def grid_in_parts(
-        cls, *bodies: Any, at_a_time: int = IMPACTS_AT_A_TIME, **entries: Any
+        cls, *bodies: Sphere | HalfSpace, at_a_time: int = IMPACTS_AT_A_TIME, **entries: Numbers
     ) -> GridParts:
         """Return the scenes of a grid one after another, for more impacts than memory holds.
 
@@ -465,13 +466,15 @@ class Scene(Motions):
         return GridParts(axes_of(entries), size, part)
 
     @classmethod
-    def _maker(cls, bodies: Sequence[Any], entries: Mapping[str, Any]) -> Callable[..., Scene]:
+    def _maker(
+        cls, bodies: Sequence[object], entries: Mapping[str, object]
+    ) -> Callable[..., Scene]:
         """Return what makes a scene of bodies and entries."""
         if not bodies and {"psi1", "chi", "lam"} & set(entries):
             return cls.nondimensional
         return cls.at_angle if {"speed", "angle_deg"} & set(entries) else cls
 
-    def over(self, axes: Mapping[str, Any]) -> Scene:
+    def over(self, axes: Mapping[str, Numbers]) -> Scene:
         """Return this batch as a grid of ``axes``, whose combinations it must have in order.
 
         Parameters
@@ -482,7 +485,7 @@ class Scene(Motions):
         lines = [(name, np.array(values, dtype=np.float64)) for name, values in axes.items()]
         return self._with(_axes=tuple((name, batch.locked(v)) for name, v in lines))
 
-    def varying(self, entries: Mapping[str, Any]) -> Scene:
+    def varying(self, entries: Mapping[str, Numbers]) -> Scene:
         """Return this batch with the values of the entries that vary in it together.
 
         Parameters
@@ -570,7 +573,7 @@ class Scene(Motions):
             W = np.diag([1.0 / pair.normal_mass, *2 * [1.0 / pair.tangential_mass]])
         return attrs.evolve(self, tangential_velocity=slip, inverse_mass=W, planar=planar)
 
-    def take(self, part: Any) -> Scene:
+    def take(self, part: Index) -> Scene:
         """Return the scene of the impacts that ``part`` indexes.
 
         Numbers that all impacts share stay plain numbers, which are faster. Each impact keeps its
@@ -612,7 +615,7 @@ class Scene(Motions):
         """Return this scene without ``index``: a law that asks for it raises ``NoIndexError``."""
         return self._with(_index=None)
 
-    def numbered(self, index: Any) -> Scene:
+    def numbered(self, index: int | np.integer | Sequence[int] | NDArray[np.integer]) -> Scene:
         """Return this scene with another ``index`` of its impacts in the whole batch.
 
         Parameters
@@ -651,7 +654,7 @@ class Scene(Motions):
             )
         return float(scale) if np.ndim(scale) == 0 else scale
 
-    def psi(self, velocity: Any) -> Any:
+    def psi(self, velocity: Real) -> Any:
         """Return psi of a slip velocity, eq. (29), without unit: (...), or (..., 2) in space.
 
         Parameters

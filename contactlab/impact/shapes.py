@@ -20,7 +20,7 @@ from contactlab.impact.material import Material
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.checks import POSITIVE, real, refuse
 from contactlab.numeric.names import SHAPES, function_told
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Numbers, Real
 
 __all__ = ["box", "disc", "ellipsoid", "rod"]
 
@@ -104,8 +104,8 @@ def rod(
     length: float,
     radius: float,
     material: Material,
-    normal: Any,
-    axis: Any,
+    normal: Numbers,
+    axis: Numbers,
     end_radius: float | None = None,
     mass: float | None = None,
 ) -> tuple[RigidBody, Array]:
@@ -180,8 +180,8 @@ def disc(
     thickness: float,
     rim_radius: float,
     material: Material,
-    normal: Any,
-    axis: Any,
+    normal: Numbers,
+    axis: Numbers,
     crown_radius: float | None = None,
     mass: float | None = None,
 ) -> tuple[RigidBody, Array]:
@@ -249,11 +249,11 @@ def disc(
 @_posed
 def box(
     *,
-    sides: Any,
+    sides: Numbers,
     corner_radius: float,
     material: Material,
-    normal: Any,
-    axes: Any = None,
+    normal: Numbers,
+    axes: Numbers | None = None,
     crown_radius: float | None = None,
     mass: float | None = None,
 ) -> tuple[RigidBody, Array]:
@@ -328,10 +328,10 @@ def box(
 @_posed
 def ellipsoid(
     *,
-    semi_axes: Any,
+    semi_axes: Numbers,
     material: Material,
-    normal: Any,
-    axes: Any = None,
+    normal: Numbers,
+    axes: Numbers | None = None,
     mass: float | None = None,
 ) -> tuple[RigidBody, Array]:
     """Return a solid ellipsoid and its contact vector in m.
@@ -383,7 +383,7 @@ def ellipsoid(
 
 
 def _bending(
-    length: float, gyration: float, material: Material, density: Any, *, number: float = FREE_ENDS
+    length: float, gyration: float, material: Material, density: Real, *, number: float = FREE_ENDS
 ) -> Any:
     """Return the period in s of the first bending of a slender body with free ends.
 
@@ -450,7 +450,7 @@ def _two(radius: float, cross: float, axis: Array) -> dict[str, Any]:
     return {"curvature_radius": radius, "cross_radius": cross, "curvature_axis": axis}
 
 
-def _crown(value: Any, least: float) -> float:
+def _crown(value: float | None, least: float) -> float:
     """Return the radius of a crown in m; infinite of none."""
     if value is None:
         return math.inf
@@ -460,7 +460,7 @@ def _crown(value: Any, least: float) -> float:
     return crown
 
 
-def _size(name: str, value: Any) -> float:
+def _size(name: str, value: object) -> float:
     """Return a positive length in m."""
     checked = real(name, value, rule=POSITIVE, remedy="one number in m")
     if np.ndim(checked):
@@ -468,7 +468,7 @@ def _size(name: str, value: Any) -> float:
     return float(checked)
 
 
-def _three(name: str, value: Any) -> Array:
+def _three(name: str, value: object) -> Array:
     """Return three positive lengths in m."""
     checked = np.asarray(real(name, value, rule=POSITIVE, remedy="three lengths in m"))
     if checked.shape != (3,):
@@ -476,7 +476,7 @@ def _three(name: str, value: Any) -> Array:
     return checked
 
 
-def _unit(name: str, value: Any) -> Array:
+def _unit(name: str, value: object) -> Array:
     """Return a direction as a unit vector."""
     vector = np.asarray(real(name, value, remedy="give a vector of shape (3,)"))
     if vector.shape != (3,) or not vector.any():
@@ -485,7 +485,7 @@ def _unit(name: str, value: Any) -> Array:
     return np.asarray(vector / np.linalg.norm(vector))
 
 
-def _axes(value: Any) -> Array:
+def _axes(value: Numbers | None) -> Array:
     """Return unit vectors at right angles as columns."""
     if hasattr(value, "as_matrix"):
         rule = "must be an array of shape (3, 3): a rotation has it as axes.as_matrix()"
@@ -496,7 +496,7 @@ def _axes(value: Any) -> Array:
     return axes
 
 
-def _mass(mass: Any, material: Material, volume: float) -> float:
+def _mass(mass: Numbers | None, material: Material, volume: float) -> float:
     """Return the mass in kg, by default from the density."""
     if mass is None and material.density is None:
         rule = "is needed where the material has no density"

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 
 def read_rows(file: Path) -> tuple[list[str], Array]:
@@ -25,7 +25,7 @@ def read_rows(file: Path) -> tuple[list[str], Array]:
     return lines[0], np.array([[float(word) for word in line] for line in lines[1:]])
 
 
-def between_nodes(entries: Sequence[Any], axes: Sequence[Array], values: Array) -> Any:
+def between_nodes(entries: Sequence[Real], axes: Sequence[Array], values: Array) -> Any:
     """Return ``values``, shape (nodes of each axis), at ``entries``, linear between nodes.
 
     Parameters
@@ -48,7 +48,7 @@ def between_nodes(entries: Sequence[Any], axes: Sequence[Array], values: Array) 
     return found
 
 
-def _place(entry: Any, axis: Array) -> tuple[Any, Any]:
+def _place(entry: Real, axis: Array) -> tuple[Any, Any]:
     """Return the node below each entry, clipped, and the share of the way on."""
     entry = np.clip(entry, axis[0], axis[-1])
     low = np.clip(np.searchsorted(axis, entry, side="right") - 1, 0, len(axis) - 2)

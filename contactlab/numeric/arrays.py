@@ -118,7 +118,7 @@ def equal(one: Any, other: Any) -> bool:
 
 
 def merged(
-    parts: Sequence[tuple[Index, ArrayLike]],
+    parts: Sequence[tuple[slice | Mask, ArrayLike]],
     shape: tuple[int, ...],
     kind: type | np.dtype[np.generic] = float,
     ends: tuple[int, ...] = (),

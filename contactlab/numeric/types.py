@@ -13,6 +13,7 @@ something is done with it.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from types import EllipsisType
 from typing import TypeAlias, TypeVar
 
 import numpy as np
@@ -26,7 +27,7 @@ Mask: TypeAlias = bool | np.bool_ | NDArray[np.bool_]
 #: Indices in an array.
 Places: TypeAlias = NDArray[np.intp]
 #: What takes a part of a batch.
-Index: TypeAlias = int | slice | tuple[int, ...] | NDArray[np.bool_] | Places
+Index: TypeAlias = int | slice | EllipsisType | tuple[int, ...] | NDArray[np.bool_] | Places
 #: An array of any type of NumPy: numbers, bools, codes, words.
 Column: TypeAlias = NDArray[np.generic]
 

@@ -19,7 +19,7 @@ from contactlab.contracts import (
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 from contactlab.numeric.lobatto import lobatto, rows
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Index
 from contactlab_laws.dashpot.oscillator import Oscillator
 
 #: Edges of the panels over which time is summed, and nodes in each panel. Panels are even, then
@@ -210,7 +210,7 @@ class DashpotMotion(ClosedFormMotion):
             total_load_impulse=(1.0 + e) * momentum,
         )
 
-    def take(self, part: object) -> DashpotMotion:
+    def take(self, part: Index) -> DashpotMotion:
         """Return the motion of some impacts."""
         law: Any = self.law
         taken: DashpotMotion = law.motion(self.scene.take(part))

@@ -20,7 +20,7 @@ from contactlab.contracts import (
 from contactlab.impact.hertz import DURATION_CONSTANT, hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Index
 
 #: Longer tables are not cached: 64 tables of three columns of 8 bytes are 6 MB at most.
 LONGEST_KEPT = 4000
@@ -132,7 +132,7 @@ class HertzMotion(ClosedFormMotion):
             shared=_shared(len(scene.shape), *numbers) if isinstance(scales.force, float) else None,
         )
 
-    def take(self, part: object) -> HertzMotion:
+    def take(self, part: Index) -> HertzMotion:
         """Return the motion of some impacts."""
         return HertzMotion.of(self.law, self.scene.take(part))
 
