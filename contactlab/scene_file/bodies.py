@@ -11,6 +11,7 @@ from contactlab.impact import shapes
 from contactlab.impact.material import Material
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.checks import real, refuse
+from contactlab.numeric.types import Array, Real
 from contactlab.scene_file.entries import (
     RIGID_KEYS,
     SHAPE_KEYS,
@@ -25,7 +26,7 @@ UPRIGHT = (0.0, 0.0, 1.0)
 
 
 def rigid_body(
-    content: Any, path: str, normal: Any, material: Callable[[Table], Material]
+    content: object, path: str, normal: Array, material: Callable[[Table], Material]
 ) -> tuple[RigidBody, Any]:
     """Return the body of a table, and its contact in m; None if the table has no shape.
 
@@ -55,7 +56,7 @@ def rigid_body(
     oriented = "axis" if "axis" in SHAPE_KEYS[shape] else "axes"
     upright = options.pop(oriented, UPRIGHT if oriented == "axis" else np.eye(3))
 
-    def made(**numbers: Any) -> tuple[RigidBody, Any]:
+    def made(**numbers: object) -> tuple[RigidBody, Any]:
         maker: Callable[..., tuple[RigidBody, Any]] = getattr(shapes, shape)
         try:
             turned = _about_y(tilt) @ np.asarray(upright, dtype=float)
@@ -69,7 +70,7 @@ def rigid_body(
     return table.make(made, **options)
 
 
-def _about_y(degrees: Any) -> Any:
+def _about_y(degrees: Real) -> Array:
     """Return the matrix of a turn about y, shape (..., 3, 3)."""
     s, c = np.sin(np.radians(degrees)), np.cos(np.radians(degrees))
     one, none = np.ones_like(s), np.zeros_like(s)

@@ -10,8 +10,10 @@ import numpy as np
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.material import Material
+from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import real, refuse, unit_remedy
+from contactlab.numeric.types import Array
 from contactlab.scene_file.bodies import rigid_body
 from contactlab.scene_file.entries import (
     BODY_SECTIONS,
@@ -29,7 +31,7 @@ from contactlab.scene_file.table import MATERIAL_KEYS, Table
 
 
 def build_scene(
-    document: Mapping[str, Any],
+    document: Mapping[str, object],
 ) -> tuple[Scene, Encounter | None]:
     """Return the scene of a file's tables, and the encounter in space if vectors are sections."""
     sections = [name for name in BODY_SECTIONS if name in document]
@@ -67,7 +69,7 @@ def build_scene(
     return _impact(impact, sphere, target), None
 
 
-def _refuse_speeds(impact: Any) -> None:
+def _refuse_speeds(impact: object) -> None:
     """Refuse speed and angle, which a file of spheres or a fit gives, in place of a vector."""
     for key in IMPACT_KEYS[1:]:
         if key not in VECTOR_KEYS and isinstance(impact, Mapping) and key in impact:
@@ -154,7 +156,12 @@ def _of_bodies(root: Table, impact: Table) -> Encounter:
     return _encounter(impact, *bodies, **vectors)
 
 
-def _encounter(table: Table, sphere: Any, target: Any, **contacts: Any) -> Encounter:
+def _encounter(
+    table: Table,
+    body: Sphere | RigidBody,
+    target: Sphere | HalfSpace | RigidBody,
+    **contacts: Array,
+) -> Encounter:
     """Return the encounter of an impact with velocity and normal as vectors."""
     plane = [key for key in IMPACT_KEYS if key not in ("friction_coefficient", "spin")]
     rivals = [key for key in plane if table.has(key)]
@@ -171,7 +178,7 @@ def _encounter(table: Table, sphere: Any, target: Any, **contacts: Any) -> Encou
             remedy = "beside vectors write [x, y, z]"
             raise refuse(table.at(key), value, "must be a vector of three numbers", remedy)
     numbers = _numbers(table, ("friction_coefficient",))
-    return table.make(Encounter, body=sphere, target=target, **numbers, **vectors, **contacts)
+    return table.make(Encounter, body=body, target=target, **numbers, **vectors, **contacts)
 
 
 def _impact(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Scene:

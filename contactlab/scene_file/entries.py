@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
 
 from contactlab.impact import material as materials
 from contactlab.impact.scene import UNITS as SCENE_UNITS
+from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
 from contactlab.scene_file.table import MATERIAL_KEYS
 
@@ -88,14 +88,20 @@ def entry_path(name: str, *, where: str = "") -> str:
     return ENTRIES[name]
 
 
-def replaced(document: Mapping[str, Any], path: str, value: object) -> dict[str, Any]:
-    """Return a copy of ``document`` with ``value`` at the dotted ``path``."""
+def replaced(
+    document: Mapping[str, object], path: str, value: object, *, within: str = ""
+) -> dict[str, object]:
+    """Return a copy of ``document``, the table at ``within``, with ``value`` at a dotted path."""
     key, _, rest = path.partition(".")
-    inner = document.get(key, {})
-    return {**document, key: replaced(inner, rest, value) if rest else value}
+    if not rest:
+        return {**document, key: value}
+    inner, place = document.get(key, {}), within + key
+    if not isinstance(inner, Mapping):
+        raise refuse(place, inner, "must be a table", f"write it under [{place}]")
+    return {**document, key: replaced(inner, rest, value, within=f"{place}.")}
 
 
-def with_materials(tables: Mapping[str, Any]) -> dict[str, Any]:
+def with_materials(tables: Mapping[str, object]) -> dict[str, object]:
     """Return the tables with the numbers of materials in place of their names."""
     completed = dict(tables)
     for body in ("sphere", "body", "target"):
@@ -110,14 +116,15 @@ def with_materials(tables: Mapping[str, Any]) -> dict[str, Any]:
     return completed
 
 
-def named_materials(tables: Mapping[str, Any]) -> tuple[str, ...]:
+def named_materials(tables: Mapping[str, object]) -> tuple[str, ...]:
     """Return the names of materials in the tables of bodies, each once."""
-    bodies = [tables[name] for name in BODY_SECTIONS if isinstance(tables.get(name), Mapping)]
+    sections = (tables.get(name) for name in BODY_SECTIONS)
+    bodies = [section for section in sections if isinstance(section, Mapping)]
     names = [body["material"] for body in bodies if isinstance(body.get("material"), str)]
     return tuple(dict.fromkeys(names))
 
 
-def without_rivals(tables: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
+def without_rivals(tables: Mapping[str, object], names: Iterable[str]) -> dict[str, object]:
     """Return the tables without the velocities, polar or by components, that ``names`` replace."""
     forms = (("speed", "angle_deg"), ("normal_speed", "tangential_velocity"))
     kept = dict(tables)

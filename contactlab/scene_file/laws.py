@@ -67,7 +67,7 @@ class LawChoice:
         kept = {key: value for key, value in self.options.items() if key not in changed}
         return attrs.evolve(self, **chosen, options=kept)
 
-    def set(self, settings: Mapping[str, Any]) -> LawChoice:
+    def set(self, settings: Mapping[str, object]) -> LawChoice:
         """Return the choice with more options, by dotted path: ``"tangential.annuli"``."""
         options = {key: dict(value) for key, value in self.options.items()}
         for path, value in settings.items():

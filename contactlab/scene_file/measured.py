@@ -8,7 +8,7 @@ import attrs
 import numpy as np
 
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab.outcome.columns import quantity_named
 from contactlab.scene_file.entries import entry_path
 from contactlab.scene_file.table import Table
@@ -109,7 +109,7 @@ def _half_range(group: Array) -> Array:
     return 0.5 * np.ptp(group, axis=0) if len(group) > 1 else np.full(2, np.nan)
 
 
-def _equal_lengths(table: Table, **columns: Any) -> None:
+def _equal_lengths(table: Table, **columns: Real) -> None:
     """Refuse columns of different lengths."""
     lengths = {key: np.size(column) for key, column in columns.items()}
     if len(set(lengths.values())) > 1:

@@ -14,6 +14,7 @@ import attrs
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, real, refuse
+from contactlab.numeric.types import Numbers
 from contactlab.outcome.files import content
 from contactlab.scene_file.build import build_scene
 from contactlab.scene_file.entries import (
@@ -69,7 +70,7 @@ class SceneFile:
     encounter: Encounter | None = None
     measured: tuple[Measured, ...] = ()
     materials: tuple[str, ...] = ()
-    tables: Mapping[str, Any] = attrs.field(factory=dict, repr=False)
+    tables: Mapping[str, object] = attrs.field(factory=dict, repr=False)
 
     @property
     def of_spheres(self) -> Scene:
@@ -87,7 +88,7 @@ class SceneFile:
             )
         return self.scene
 
-    def scene_at(self, **entries: Any) -> Scene:
+    def scene_at(self, **entries: Numbers) -> Scene:
         """Return the file's scene without its sweep, with some entries replaced.
 
         ``scene_at(angle_deg=[5, 10])`` is a batch of two; entries of equal length vary
@@ -99,8 +100,8 @@ class SceneFile:
 def read_scene(
     path: str | Path,
     *,
-    entries: Mapping[str, Any] | None = None,
-    defaults: Mapping[str, Any] | None = None,
+    entries: Mapping[str, Numbers] | None = None,
+    defaults: Mapping[str, float] | None = None,
     allow_code: bool = False,
 ) -> SceneFile:
     """Return scene, sweep, laws and measured values of a TOML file; nothing is imported.
@@ -138,7 +139,8 @@ def read_scene(
             tables = _with_defaults(tables, defaults)
         if entries:
             tables = without_rivals(tables, entries)
-            sweep = Sweep(varied=dict(entries), axes={})
+            given: Any = dict(entries)
+            sweep = Sweep(varied=given, axes={})
         scene, encounter = _scene_with(tables, sweep.varied)
         return SceneFile(
             path=file,
@@ -156,7 +158,7 @@ def read_scene(
 
 
 def _scene_with(
-    tables: Mapping[str, Any], entries: Mapping[str, Any]
+    tables: Mapping[str, object], entries: Mapping[str, Numbers]
 ) -> tuple[Scene, Encounter | None]:
     """Return scene and encounter of the tables with some entries replaced."""
     for name, values in entries.items():
@@ -165,7 +167,9 @@ def _scene_with(
     return build_scene(tables)
 
 
-def _with_defaults(tables: Mapping[str, Any], defaults: Mapping[str, Any]) -> dict[str, Any]:
+def _with_defaults(
+    tables: Mapping[str, object], defaults: Mapping[str, float]
+) -> dict[str, object]:
     """Return the tables with defaults for missing entries; ``[nondimensional]`` takes none."""
     completed = dict(tables)
     if "nondimensional" in completed:
@@ -213,7 +217,7 @@ def _text(file: Path) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def _deep(document: Mapping[str, Any]) -> bool:
+def _deep(document: Mapping[str, object]) -> bool:
     """Return whether tables and lists are nested deeper than ``DEEPEST``."""
     level: list[Any] = [document]
     for _ in range(DEEPEST):

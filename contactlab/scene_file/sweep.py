@@ -7,7 +7,7 @@ the other entries, the last entry varying fastest.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -67,7 +67,7 @@ def read_sweep(content: object) -> Sweep:
     return Sweep(varied, {})
 
 
-def _is_range(value: Mapping[str, Any]) -> bool:
+def _is_range(value: Mapping[str, object]) -> bool:
     """Return whether a table is a range of values, not part of a dotted name."""
     return bool(set(value) & set(RANGE_KEYS))
 

@@ -89,7 +89,7 @@ class Table:
         value = default if missing else self.require(key, remedy)
         return number_list(self.at(key), value, remedy=remedy)
 
-    def make(self, maker: Callable[..., Made], **arguments: Any) -> Made:
+    def make(self, maker: Callable[..., Made], **arguments: object) -> Made:
         """Return ``maker(**arguments)``, with this table's path before its error messages."""
         try:
             return maker(**arguments)
@@ -127,10 +127,10 @@ def number_list(path: str, value: object, *, remedy: str) -> Real:
 
 
 def flattened(
-    content: Mapping[str, Any],
+    content: Mapping[str, object],
     prefix: str = "",
     *,
-    leaf: Callable[[Mapping[str, Any]], bool] = lambda _: False,
+    leaf: Callable[[Mapping[str, object]], bool] = lambda _: False,
 ) -> dict[str, Any]:
     """Return all values by dotted name, such as ``sphere.radius``, however they are nested.
 

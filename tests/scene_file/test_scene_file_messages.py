@@ -119,6 +119,10 @@ def test_what_is_wrong(tmp_path, key, value, words):
         (document() + "[sweep]\nspeed = [[1.0], [2.0]]", "sweep.speed = [[1.0], [2.0]]: must be a "
          "plain list of numbers; not a list of lists"),
         ("sweep = 3", "sweep = 3: must be a table; write it under [sweep]"),
+        ("sphere = 3\nsweep.sphere.radius = [1.0]",
+         "sphere = 3: must be a table; write it under [sphere]"),
+        ("sphere.material = 3\nsweep.sphere.material.density = [1.0]",
+         "sphere.material = 3: must be a table; write it under [sphere.material]"),
         ("measured = 3", "measured = 3: must be a list of tables; write [[measured]]"),
         ("simulation = 3", "simulation = 3: must be a table; write it under [simulation]"),
         ("simulation.options = 3", "simulation.options: must be a table; write tangential.annuli = "
