@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import attrs
 import numpy as np
@@ -39,7 +38,7 @@ from contactlab.fitting.slips import SOME_LOSS, assumed, slips
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import common_shape
 from contactlab.numeric.checks import real, refuse, whole
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Numbers, Real
 from contactlab.outcome.answer import ImpactError
 from contactlab.outcome.result import ImpactResult
 from contactlab.scene_file import SceneFile
@@ -248,7 +247,7 @@ def _drawn(
 
 
 def _solved_again(
-    problem: Problem, changes: Mapping[str, Array], values: Array, scales: Mapping[str, Any]
+    problem: Problem, changes: Mapping[str, Array], values: Array, scales: Mapping[str, Real]
 ) -> Array:
     """Return the best values for the measured numbers plus ``changes``."""
     measured = {name: numbers + changes[name] for name, numbers in problem.measured.items()}
@@ -287,7 +286,9 @@ def _solutions(
     return sorted(minima, key=problem.criterion) if len(minima) > 1 else minima
 
 
-def _impacts(scene: Any, model: Model, values: Array, entries: Mapping[str, Any]) -> ImpactResult:
+def _impacts(
+    scene: object, model: Model, values: Array, entries: Mapping[str, Numbers]
+) -> ImpactResult:
     """Return the impacts of ``entries`` at values of the parameters."""
     columns = {name: np.atleast_1d(real(name, column)) for name, column in entries.items()}
     size = common_shape(
@@ -303,7 +304,7 @@ def _outcome(
     table: Measurements,
     values: Array,
     diagnosis: Diagnosis,
-    impacts: Callable[[Mapping[str, Any]], ImpactResult],
+    impacts: Callable[[Mapping[str, Numbers]], ImpactResult],
 ) -> tuple[Fit, Array]:
     """Return the fit with intervals from the covariance, and their half-widths."""
     from scipy.special import stdtrit  # only a fit needs scipy
@@ -368,12 +369,14 @@ class Ranked:
 
 def rank(
     measurements: object,
-    scene: Any,
+    scene: Scene | SceneFile | str | Path | None,
     simulations: Mapping[str, Simulation | None],
     *,
     progress: Callable[[int, int], object] | None = None,
     parameters: Sequence[str] = ("friction_coefficient",),
-    **options: Any,
+    quantities: Sequence[str] | None = None,
+    bootstrap: int = 0,
+    seed: int = 1976,
 ) -> list[Ranked]:
     """Return laws in the order of Akaike's criterion, the best first, laws without a fit last.
 
@@ -385,7 +388,7 @@ def rank(
         Laws by the names to report; None stands for the exact elastic laws.
     progress : callable, optional
         Called as ``progress(done, total)`` after each law.
-    **options
+    quantities, bootstrap, seed
         As for ``fit``.
 
     Raises
@@ -397,9 +400,17 @@ def rank(
     own = parameters_of(table, scene, simulations, parameters)
     ranked = []
     for done, (name, simulation) in enumerate(simulations.items(), start=1):
-        keywords = options | {"parameters": own[name], "simulation": simulation}
         try:
-            ranked.append(Ranked(name=name, fit=fit(table, scene, **keywords)))
+            fitted = fit(
+                table,
+                scene,
+                parameters=own[name],
+                simulation=simulation,
+                quantities=quantities,
+                bootstrap=bootstrap,
+                seed=seed,
+            )
+            ranked.append(Ranked(name=name, fit=fitted))
         except (ValueError, ImpactError) as error:
             ranked.append(Ranked(name=name, fit=None, refusal=str(error)))
         if progress is not None:
@@ -409,7 +420,7 @@ def rank(
 
 def parameters_of(
     measurements: Measurements,
-    scene: Any,
+    scene: object,
     simulations: Mapping[str, Simulation | None],
     parameters: Sequence[str],
 ) -> dict[str, list[str]]:

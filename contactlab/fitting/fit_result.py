@@ -12,7 +12,7 @@ import numpy as np
 from contactlab.fitting.measurements import Measurements
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import attributes_told
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Numbers
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.result import ImpactResult
 
@@ -85,9 +85,9 @@ class Fit:
     notes: tuple[str, ...] = ()
     cautions: tuple[str, ...] = ()
     samples: int = 0
-    impacts: Callable[[Mapping[str, Any]], ImpactResult]
+    impacts: Callable[[Mapping[str, Numbers]], ImpactResult]
 
-    def predict(self, **entries: Any) -> ImpactResult:
+    def predict(self, **entries: Numbers) -> ImpactResult:
         """Return other impacts of the fitted bodies and laws.
 
         Parameters

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import attrs
 import numpy as np
@@ -93,7 +93,7 @@ def read_flight(content: object, *, columns: Mapping[str, str] | None = None) ->
     """
     names = {text.strip(): name for text, name in (columns or {}).items()}
     source = ""
-    table: Mapping[str, Any]
+    table: Mapping[str, object]
     if isinstance(content, str | Path):
         source = str(content)
         table = read_numbers(read_text(Path(content)), source)
@@ -108,7 +108,7 @@ def read_flight(content: object, *, columns: Mapping[str, str] | None = None) ->
     return attrs.evolve(found, source=source)
 
 
-def _film(table: Mapping[str, Any], names: Mapping[str, str]) -> dict[str, Array]:
+def _film(table: Mapping[str, object], names: Mapping[str, str]) -> dict[str, Array]:
     """Return the columns of a film in SI units, without frames that lack a number."""
     film: dict[str, Array] = {}
     for text, values in table.items():

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import shlex
 from collections.abc import Collection, Mapping
-from typing import Any
 
 import numpy as np
 
@@ -65,7 +64,7 @@ class ForeignHeadingsError(ValueError):
 
 
 def foreign(
-    unknown: Mapping[str, Any], known: Collection[str], refused: list[str]
+    unknown: Mapping[str, object], known: Collection[str], refused: list[str]
 ) -> tuple[str, ...]:
     """Return a sentence on columns that are left out because nothing is known of them.
 
@@ -97,7 +96,7 @@ def foreign(
     return (left_out,) if left_out else ()
 
 
-def _guesses(unknown: Mapping[str, Any], known: Collection[str]) -> dict[str, str]:
+def _guesses(unknown: Mapping[str, object], known: Collection[str]) -> dict[str, str]:
     """Return probable names of columns, each name once."""
     found: dict[str, str] = {}
     taken = {*known}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import attrs
 import numpy as np
@@ -147,7 +146,9 @@ def _from_csv(path: Path, names: Mapping[str, str] | Sequence[str]) -> Measureme
         raise ValueError(f"{path}: {error}") from None
 
 
-def _from_columns(columns: dict[str, Any], names: Mapping[str, str], source: str) -> Measurements:
+def _from_columns(
+    columns: Mapping[str, object], names: Mapping[str, str], source: str
+) -> Measurements:
     """Return measurements of columns by their headings."""
     headings = [str(text) for text in columns]
     stripped = [text.strip() for text in headings]
@@ -156,7 +157,7 @@ def _from_columns(columns: dict[str, Any], names: Mapping[str, str], source: str
             raise refuse("columns", text, "is not a heading", f"had: {', '.join(stripped)}")
     parts: dict[str, dict[str, Array]] = {"given": {}, "measured": {}, "error": {}}
     unused: list[str] = []
-    unknown: dict[str, Any] = {}
+    unknown: dict[str, object] = {}
     refused: list[str] = []
     for text, content in zip(headings, columns.values(), strict=True):
         try:
@@ -195,7 +196,7 @@ def _from_columns(columns: dict[str, Any], names: Mapping[str, str], source: str
     )
 
 
-def _column(text: str, content: Any, *, gaps: bool) -> Array:
+def _column(text: str, content: object, *, gaps: bool) -> Array:
     """Return the numbers of a column, shape (n,); NaN only if it may have gaps."""
     check_place(text, content)
     values = np.atleast_1d(np.asarray(content))

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import attrs
 import numpy as np
 
 from contactlab.fitting.model import Model
 from contactlab.fitting.problem import Problem
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 #: Distance from the best values, in standard errors, of the points that make a polynomial: a 95 %
 #: interval ends at two.
@@ -43,7 +42,7 @@ class Nearby(Model):
         return {name: terms @ self.coefficients[name] for name in quantities}
 
 
-def nearby(problem: Problem, values: Array, scales: Mapping[str, Any]) -> Problem:
+def nearby(problem: Problem, values: Array, scales: Mapping[str, Real]) -> Problem:
     """Return the problem with polynomials about the best values in place of its laws."""
     weighted, slopes = problem.linearised(values, scales)
     square = float(weighted @ weighted) / max(len(weighted) - len(values), 1)
@@ -66,7 +65,7 @@ def nearby(problem: Problem, values: Array, scales: Mapping[str, Any]) -> Proble
 
 
 def faithful(
-    problem: Problem, near: Problem, samples: Array, ends: Array, scales: Mapping[str, Any]
+    problem: Problem, near: Problem, samples: Array, ends: Array, scales: Mapping[str, Real]
 ) -> bool:
     """Return whether samples, shape (m, parameters), by polynomials are those of the laws.
 

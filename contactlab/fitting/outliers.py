@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from contactlab.fitting.f_test import CHANCE, NUMERICAL
 from contactlab.fitting.parameters import in_words
 from contactlab.fitting.problem import Problem, grid, minimum
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 #: Standard deviation of normal scatter over its median absolute deviation.
 NORMAL = 1.4826
@@ -73,7 +73,7 @@ def scatter(problem: Problem, values: Array) -> dict[str, Any]:
     """
     number = sum(problem.counts.values())
     wider = math.sqrt(number / max(number - len(values), 1))
-    scales: dict[str, Any] = {}
+    scales: dict[str, Real] = {}
     sizes = problem.sizes()
     for name, rows in problem.residuals(values[None]).items():
         errors = problem.errors.get(name, np.ones(rows.shape[1]))
@@ -82,7 +82,7 @@ def scatter(problem: Problem, values: Array) -> dict[str, Any]:
     return scales
 
 
-def outliers(problem: Problem, values: Array, scales: Mapping[str, Any]) -> Outliers:
+def outliers(problem: Problem, values: Array, scales: Mapping[str, Real]) -> Outliers:
     """Return the numbers whose removal improves the fit beyond chance.
 
     Notes
@@ -153,7 +153,7 @@ def described(problem: Problem, far: Outliers) -> list[str]:
     return sentences
 
 
-def _square(problem: Problem, values: Array, scales: Mapping[str, Any]) -> float:
+def _square(problem: Problem, values: Array, scales: Mapping[str, Real]) -> float:
     """Return the sum of squares of residuals over the scatter."""
     weighted = problem.weighted(values[None], scales)[0]
     return float(weighted @ weighted)

@@ -17,6 +17,7 @@ from contactlab.compose.registry import KINDS, REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.fitting import tabulated
 from contactlab.impact.bodies import HalfSpace, Sphere
+from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, Rule
 from contactlab.numeric.names import nearest
@@ -101,16 +102,18 @@ class StiffnessRatio(Parameter):
         assert scene.target is not None
         poisson = (2.0 - 2.0 * value) / (2.0 - value)
 
-        def like(body: Any) -> Any:
-            old = body.material
+        def like(old: Material) -> Material:
             shear = old.shear_modulus * (1.0 - poisson) / (1.0 - old.poisson_ratio)
-            new = attrs.evolve(old, shear_modulus=shear, poisson_ratio=poisson)
-            return (
-                HalfSpace(new) if isinstance(body, HalfSpace) else attrs.evolve(body, material=new)
-            )
+            return attrs.evolve(old, shear_modulus=shear, poisson_ratio=poisson)
 
-        bodies = {"sphere": like(scene.sphere), "target": like(scene.target)}
-        return setup._replace(scene=attrs.evolve(scene, **bodies))
+        sphere = attrs.evolve(scene.sphere, material=like(scene.sphere.material))
+        material = like(scene.target.material)
+        target = (
+            HalfSpace(material)
+            if isinstance(scene.target, HalfSpace)
+            else attrs.evolve(scene.target, material=material)
+        )
+        return setup._replace(scene=attrs.evolve(scene, sphere=sphere, target=target))
 
 
 @attrs.frozen(kw_only=True)
@@ -233,7 +236,7 @@ def _choices(setup: Setup) -> dict[str, Callable[[], Parameter]]:
     return choices
 
 
-def _option(kind: str, field: attrs.Attribute[Any], value: float) -> LawOption:
+def _option(kind: str, field: attrs.Attribute[object], value: float) -> LawOption:
     """Return the parameter of an option."""
     least, most = _range(field.metadata.get("rule"), value)
     finite = math.isfinite(least) and math.isfinite(most)
@@ -260,7 +263,7 @@ def _range(rule: Rule | None, value: float) -> tuple[float, float]:
     return _end(rule, value, np.flip(TRIED[value > TRIED])), _end(rule, value, TRIED[value < TRIED])
 
 
-def _end(rule: Rule, value: float, further: Any) -> float:
+def _end(rule: Rule, value: float, further: Array) -> float:
     """Return the last number for which the rule holds on the way from ``value`` outwards."""
     inside = value
     for number in further.tolist():

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
 
 from contactlab.fitting.f_test import NUMERICAL, SPARE, chance_of, orthonormal
 from contactlab.fitting.problem import Problem
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab.outcome.columns import QUANTITIES
 
 #: Degree of the polynomial in the rank of a column.
@@ -35,7 +35,7 @@ NO_PATTERN = Pattern(1.0, "")
 
 
 def pattern(
-    problem: Problem, values: Array, scales: Mapping[str, Any], columns: Mapping[str, Array]
+    problem: Problem, values: Array, scales: Mapping[str, Real], columns: Mapping[str, Array]
 ) -> Pattern:
     """Return the least likely dependence of residuals on a varying column, or on the order.
 
@@ -118,7 +118,7 @@ def _changes(
     return changes
 
 
-def leverage(problem: Problem, values: Array, scales: Mapping[str, Any]) -> list[str]:
+def leverage(problem: Problem, values: Array, scales: Mapping[str, Real]) -> list[str]:
     """Return a sentence for each number that the fit meets at any value."""
     _, jacobian = problem.linearised(values, scales)
     shares = problem.by_quantity(np.sum(orthonormal(jacobian) ** 2, axis=1))

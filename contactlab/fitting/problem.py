@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Literal
 
 import attrs
 import numpy as np
 
 from contactlab.fitting.model import Model
 from contactlab.fitting.parameters import Parameter
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 Loss = Literal["linear", "soft_l1"]
 
@@ -63,11 +63,11 @@ class Problem:
         predicted = self.model.predicted(points, list(self.measured))
         return {name: values - predicted[name] for name, values in self.measured.items()}
 
-    def weighted(self, points: Array, scales: Mapping[str, Any]) -> Array:
+    def weighted(self, points: Array, scales: Mapping[str, Real]) -> Array:
         """Return residuals over errors, shape (m, numbers), by quantity, without gaps."""
         return self._over(self.residuals(points), scales)
 
-    def _over(self, residuals: Mapping[str, Array], scales: Mapping[str, Any]) -> Array:
+    def _over(self, residuals: Mapping[str, Array], scales: Mapping[str, Real]) -> Array:
         """Return residuals over errors, shape (m, numbers)."""
         present = {name: np.isfinite(values) for name, values in self.measured.items()}
         parts = [(residuals[name] / scales[name])[:, present[name]] for name in residuals]
@@ -77,12 +77,12 @@ class Problem:
         """Return the greatest magnitude of each quantity, 1 if zero."""
         return {name: float(np.nanmax(np.abs(v))) or 1.0 for name, v in self.measured.items()}
 
-    def scales(self, residuals: Mapping[str, Array] | None = None) -> dict[str, Any]:
+    def scales(self, residuals: Mapping[str, Array] | None = None) -> dict[str, Real]:
         """Return the error of each quantity: stated, or else the rms of its residuals.
 
         Without residuals the rms spread of the measured values is returned.
         """
-        scales: dict[str, Any] = {}
+        scales: dict[str, Real] = {}
         for name, measured in self.measured.items():
             if name in self.errors:
                 scales[name] = self.errors[name]
@@ -106,7 +106,7 @@ class Problem:
         logs = sum(2.0 * self.counts[name] * math.log(scales[name]) for name in unknown)
         return float(weighted @ weighted) + logs + 2.0 * (len(values) + len(unknown))
 
-    def linearised(self, values: Array, scales: Mapping[str, Any]) -> tuple[Array, Array]:
+    def linearised(self, values: Array, scales: Mapping[str, Real]) -> tuple[Array, Array]:
         """Return weighted residuals, shape (numbers,), and their derivatives by the parameters.
 
         The derivatives, shape (numbers, parameters), are central differences inside the bounds,
@@ -164,7 +164,7 @@ def _some(starts: list[float], most: int) -> Array:
     return np.array([starts[place] for place in sorted(set(places.round().astype(int).tolist()))])
 
 
-def solved(problem: Problem, start: Array, scales: Mapping[str, Any] | None = None) -> Array:
+def solved(problem: Problem, start: Array, scales: Mapping[str, Real] | None = None) -> Array:
     """Return the best values of the parameters, shape (parameters,).
 
     Quantities without stated errors are weighted by their own residuals in rounds that begin with
@@ -184,7 +184,7 @@ def solved(problem: Problem, start: Array, scales: Mapping[str, Any] | None = No
 
 
 def minimum(
-    problem: Problem, start: Array, scales: Mapping[str, Any], *, loss: Loss = "linear"
+    problem: Problem, start: Array, scales: Mapping[str, Real], *, loss: Loss = "linear"
 ) -> Array:
     """Return the values, shape (parameters,), at the least sum of a loss of residuals."""
     from scipy.optimize import least_squares  # only a fit needs scipy

@@ -12,7 +12,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.hertz import semi_axes
 from contactlab.impact.scene import Scene, entry_unit
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Real
 from contactlab.outcome.columns import (
     QUANTITIES,
     SWEEP_TABLE,
@@ -116,7 +116,7 @@ def sections(result: ImpactResult) -> list[Section]:
 
 
 def sweep_section(
-    result: ImpactResult, varied: Mapping[str, tuple[str, Array]], *, most: int | None = None
+    result: ImpactResult, varied: Mapping[str, tuple[str, Real]], *, most: int | None = None
 ) -> Section:
     """Return one row for each impact: entries that vary, by name and unit, quantities, status.
 
