@@ -11,7 +11,7 @@ import shlex
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import attrs
 
@@ -26,9 +26,12 @@ from contactlab.outcome.files import distinct, unwritable, write_table
 
 if TYPE_CHECKING:
     from contactlab.compose.simulation import Simulation
+    from contactlab.figures.style import Look, Width
     from contactlab.fitting.measurements import Measurements
     from contactlab.impact.scene import Scene
     from contactlab.scene_file import SceneFile
+    from contactlab.study.benchmark import Benchmark
+    from contactlab.study.stability import Stability
 
 
 def finite(text: str) -> float:
@@ -144,7 +147,14 @@ def add_look(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def look(arguments: argparse.Namespace) -> dict[str, Any]:
+class Drawing(TypedDict, total=False):
+    """Options of ``contactlab.figures.files.save``."""
+
+    look: Look
+    width: Width | None
+
+
+def look(arguments: argparse.Namespace) -> Drawing:
     """Return the options ``look`` and ``width`` of ``contactlab.figures.files.save``."""
     return {"look": arguments.style, "width": arguments.width}
 
@@ -245,7 +255,7 @@ def print_json(content: object) -> None:
     print(json.dumps(content, indent=2, allow_nan=False))
 
 
-def write_items(path: Path, kind: type, items: Iterable[Any]) -> None:
+def write_items(path: Path, kind: type, items: Iterable[object]) -> None:
     """Write a CSV with one row for each item of an attrs class, its fields as columns."""
     names = [field.name for field in attrs.fields(kind)]
     write_table(path, names, ([getattr(item, name) for name in names] for item in items))
@@ -312,7 +322,7 @@ def _columns(text: str) -> list[str]:
     return [name.strip() for name in text.split(",")]
 
 
-def read_impacts(data: Any, arguments: argparse.Namespace) -> Measurements:
+def read_impacts(data: object, arguments: argparse.Namespace) -> Measurements:
     """Return measured impacts, with the names of columns; a refusal has the command to paste."""
     from contactlab.fitting import measurements  # only for measured impacts
     from contactlab.fitting.foreign_headings import ForeignHeadingsError
@@ -399,6 +409,6 @@ def check_budget(seconds: float) -> None:
         raise ValueError(f"--budget {seconds:g}: must be positive, in seconds")
 
 
-def why_not(report: Any) -> str:
+def why_not(report: Benchmark | Stability) -> str:
     """Return why a report over all laws is not complete."""
     return "interrupted" if report.interrupted else "the budget ran out"

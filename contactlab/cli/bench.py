@@ -13,7 +13,7 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Unpack
 
 from contactlab.cli import arguments as shared
 from contactlab.compose.hooks import Execute, hookimpl
@@ -62,7 +62,7 @@ def execute(arguments: argparse.Namespace) -> int:
     return shared.INTERRUPTED if benchmark.interrupted else saved
 
 
-def _draw(path: Path, benchmark: Benchmark, **look: Any) -> bool:
+def _draw(path: Path, benchmark: Benchmark, **look: Unpack[shared.Drawing]) -> bool:
     """Draw error against run time, or return False; ``look`` as in ``arguments.look``."""
     if not benchmark.rows:
         print("no figure drawn: nothing was measured", file=sys.stderr)

@@ -42,6 +42,7 @@ from contactlab.study.loops import loops
 from contactlab.study.scores import (
     DEFAULT_SCENE,
     candidates,
+    describe_scores,
     scores,
     to_dict,
     write_csv,
@@ -120,7 +121,7 @@ def execute(arguments: argparse.Namespace) -> int:
     elif arguments.csv:
         write_csv(comparison, quantities, sys.stdout)
     elif scored:
-        print(side_by_side.describe_scores(scores(comparison, compared), comparison, file))
+        print(describe_scores(scores(comparison, compared), comparison, file))
     else:
         print(side_by_side.describe(comparison, quantities, file))
     failures = comparison.failures()

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from contactlab.impact.scene import entry_unit
+from contactlab.numeric.types import Array, Real
 from contactlab.outcome.numerical_error import error_cautions
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import answer, closing, largest_imbalance, sections, sweep_section
@@ -19,7 +20,7 @@ def describe(
     result: ImpactResult,
     *,
     title: str,
-    varied: Mapping[str, Any],
+    varied: Mapping[str, Real],
     collision: Collision | None,
 ) -> str:
     """Return the report of one impact or a sweep, with vectors if ``collision`` is given."""
@@ -49,6 +50,6 @@ def in_space(collision: Collision) -> str:
     return table(["in space", "before", "after", "unit"], rows)
 
 
-def _vector(numbers: Any) -> str:
+def _vector(numbers: Array) -> str:
     """Return a vector as text."""
     return f"({', '.join(f'{number + 0.0:.6g}' for number in numbers.tolist())})"

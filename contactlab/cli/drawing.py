@@ -4,22 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
+from matplotlib.axes import Axes
+
+from contactlab.cli.arguments import Drawing
 from contactlab.figures.comparison import (
     all_laws,
     differences,
     forces_over_contact,
     laws_over_sweep,
 )
-from contactlab.figures.files import save
+from contactlab.figures.files import Panels, save
 from contactlab.figures.load_paths import draw_loops
 from contactlab.study.comparison import Comparison
 from contactlab.study.loops import Loops
 
 
 def draw_comparison(
-    path: Path, comparison: Comparison, quantities: Sequence[str], **look: Any
+    path: Path, comparison: Comparison, quantities: Sequence[str], **look: Unpack[Drawing]
 ) -> None:
     """Draw laws and differences over a sweep, or forces over one contact."""
     if not comparison.scene.shape:
@@ -30,7 +33,7 @@ def draw_comparison(
         agreements = [item for item in comparison.agreements if item.measured.quantity == name]
         panels += [(name, item) for item in agreements] or [(name, None)]
 
-    def draw(axes: Any) -> None:
+    def draw(axes: Panels) -> None:
         for column, (name, agreement) in enumerate(panels):
             upper, lower = axes[0, column], axes[1, column]
             laws_over_sweep(upper, comparison, name, agreement)
@@ -43,19 +46,19 @@ def draw_comparison(
     save(path, draw, rows=2, columns=len(panels), heights=(2.4, 1.0), **look)
 
 
-def draw_all(path: Path, comparison: Comparison, quantity: str, **look: Any) -> None:
+def draw_all(path: Path, comparison: Comparison, quantity: str, **look: Unpack[Drawing]) -> None:
     """Draw every law over the sweep, and below its difference from the first law."""
 
-    def draw(axes: Any) -> None:
+    def draw(axes: Panels) -> None:
         all_laws(axes[0, 0], axes[1, 0], comparison, quantity)
 
     save(path, draw, rows=2, heights=(2.4, 1.2), **look)
 
 
-def draw_load_paths(path: Path, paths: Loops, **look: Any) -> None:
+def draw_load_paths(path: Path, paths: Loops, **look: Unpack[Drawing]) -> None:
     """Draw loops at constant and at oscillating load, one panel each."""
 
-    def draw(axes: Any) -> None:
+    def draw(axes: Panels) -> None:
         draw_loops(axes[0, 0], paths.constant, title="constant load")
         draw_loops(axes[0, 1], paths.oscillating, title="oscillating load")
         axes[0, 1].set_ylabel("")
@@ -64,6 +67,7 @@ def draw_load_paths(path: Path, paths: Loops, **look: Any) -> None:
     save(path, draw, columns=2, **look)
 
 
-def _labels(axes: Any) -> list[str]:
+def _labels(axes: Axes) -> list[str]:
     """Return the labels of the legend."""
-    return axes.get_legend_handles_labels()[1]  # type: ignore[no-any-return]
+    labels: list[str] = axes.get_legend_handles_labels()[1]
+    return labels

@@ -16,7 +16,7 @@ import argparse
 import itertools
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.fit_report import describe, further_cautions, ranking, write_residuals
@@ -208,7 +208,7 @@ def _simulations(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Si
     return simulations
 
 
-def _draw(path: Path, shown: list[Ranked], **look: Any) -> None:
+def _draw(path: Path, shown: list[Ranked], **look: Unpack[shared.Drawing]) -> None:
     """Draw measured values, laws and residuals."""
     from contactlab.figures.fitting import draw_fits  # matplotlib only when drawing
 

@@ -13,7 +13,7 @@ import traceback
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from importlib.machinery import PathFinder
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 import contactlab
 from contactlab.cli.statuses import BAD_INPUT, BROKEN_PIPE, FAILED, INTERRUPTED
@@ -106,14 +106,21 @@ def _warned() -> Iterator[None]:
     with warnings.catch_warnings():
         show_other = warnings.showwarning
 
-        def show(message: Warning | str, category: type[Warning], *where: Any) -> None:
+        def show(
+            message: Warning | str,
+            category: type[Warning],
+            filename: str,
+            lineno: int,
+            file: TextIO | None = None,
+            line: str | None = None,
+        ) -> None:
             if issubclass(category, PluginWarning):
                 print(f"contactlab: warning: {message}", file=sys.stderr)
             else:
-                show_other(message, category, *where)
+                show_other(message, category, filename, lineno, file, line)
 
         warnings.simplefilter("always", PluginWarning)
-        warnings.showwarning = show  # type: ignore[assignment]
+        warnings.showwarning = show
         yield
 
 

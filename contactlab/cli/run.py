@@ -16,7 +16,7 @@ import argparse
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Unpack
 
 import attrs
 
@@ -24,6 +24,7 @@ from contactlab.cli import arguments as shared
 from contactlab.cli.describe import describe
 from contactlab.cli.scene import add_scene, inputs
 from contactlab.compose.hooks import Execute, hookimpl
+from contactlab.numeric.types import Real
 from contactlab.outcome import export
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.export import WRITERS
@@ -66,7 +67,6 @@ def execute(arguments: argparse.Namespace) -> int:
                 f"--{option}: needs a single impact, this scene is a sweep; leave out --{option}"
             )
     with shared.working(arguments.progress, "impacts" if scene.shape else "impact") as progress:
-        result: Any
         if scene.shape:
             result = simulation.sweep(scene, progress=progress)
         else:
@@ -76,7 +76,7 @@ def execute(arguments: argparse.Namespace) -> int:
                 history="fields" if arguments.stick_slip else history,
                 estimate_error=arguments.estimate,
             )
-    varied: Mapping[str, Any] = file.varied if file else {}
+    varied: Mapping[str, Real] = file.varied if file else {}
     encounter = file.encounter if file else None
     collision = None
     if encounter is not None:
@@ -100,14 +100,14 @@ def execute(arguments: argparse.Namespace) -> int:
     return max(saved, status)
 
 
-def draw(path: Path, result: Any, **look: Any) -> None:
+def draw(path: Path, result: ImpactResult, **look: Unpack[shared.Drawing]) -> None:
     """Draw a result with its ``plot``; ``look`` as in ``arguments.look``."""
     from contactlab.figures.files import save  # matplotlib only when drawing
 
     save(path, lambda axes: result.plot(axes=axes), **look)
 
 
-def draw_map(path: Path, result: ImpactResult, **look: Any) -> None:
+def draw_map(path: Path, result: ImpactResult, **look: Unpack[shared.Drawing]) -> None:
     """Draw the map of stick and slip of an impact."""
     from contactlab.figures.files import save  # matplotlib only when drawing
     from contactlab.figures.stick_slip import draw_stick_slip
@@ -116,10 +116,10 @@ def draw_map(path: Path, result: ImpactResult, **look: Any) -> None:
 
 
 def report(
-    result: Any,
+    result: ImpactResult,
     *,
     as_json: bool,
-    varied: Mapping[str, Any],
+    varied: Mapping[str, Real],
     collision: Collision | None = None,
 ) -> int:
     """Print JSON if ``as_json``, report failures on stderr, and return the exit status."""

@@ -37,6 +37,7 @@ from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.impact.grid import GridParts
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
+from contactlab.numeric.types import Real
 from contactlab.outcome.chunk_forms import form_of
 from contactlab.outcome.columns import components, csv_heading
 from contactlab.outcome.export import WRITERS
@@ -180,7 +181,7 @@ def _into_folder(arguments: argparse.Namespace, file: SceneFile | None) -> int:
     return shared.OK if folder.complete else shared.INTERRUPTED
 
 
-def _print_table(result: ImpactResult, varied: Mapping[str, Any], out: Path | None = None) -> None:
+def _print_table(result: ImpactResult, varied: Mapping[str, Real], out: Path | None = None) -> None:
     """Print one row for each impact; evenly spread rows if the file ``out`` holds all."""
     most = None if out is None else MOST_ROWS
     if varied:
@@ -232,18 +233,18 @@ def _finished(result: ImpactResult) -> int:
     return sum(status not in TRIED_AGAIN for status in result.status)
 
 
-def _ranges(psi1: Any, chi: Any) -> Scene:
+def _ranges(psi1: Real | None, chi: Real | None) -> Scene:
     """Return the scene of every psi1 with every chi, psi1 varying fastest."""
     remedy = "--out folder/ holds more"
     return Scene.grid(**_grid(psi1, chi, most=MOST_IMPACTS, remedy=remedy))
 
 
-def _parts(psi1: Any, chi: Any) -> GridParts:
+def _parts(psi1: Real | None, chi: Real | None) -> GridParts:
     """Return the scenes of ``_ranges`` one after another."""
     return Scene.grid_in_parts(**_grid(psi1, chi, most=MOST_IN_A_FOLDER, remedy="vary less"))
 
 
-def _grid(psi1: Any, chi: Any, *, most: int, remedy: str) -> dict[str, Any]:
+def _grid(psi1: Real | None, chi: Real | None, *, most: int, remedy: str) -> dict[str, Any]:
     """Return the entries of a grid, or refuse more impacts than ``most``."""
     if psi1 is None or chi is None:
         missing = " and ".join(n for n, v in (("--psi1", psi1), ("--chi", chi)) if v is None)

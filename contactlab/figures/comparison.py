@@ -29,7 +29,8 @@ from contactlab.impact.scene import entry_unit
 from contactlab.numeric.types import Array
 from contactlab.outcome.columns import quantity_named
 from contactlab.outcome.history import scaled_forces
-from contactlab.study.comparison import Agreement, Comparison
+from contactlab.study.agreement import Agreement
+from contactlab.study.comparison import Comparison
 
 POINTS: dict[str, Any] = {
     "color": MEASURED_COLOUR, "linestyle": "none", "marker": "o", "markersize": 4.5,

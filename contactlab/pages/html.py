@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from html import escape
-from typing import Any
 
 from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import answer, closing, number, sections
 
 
-def table(headings: Sequence[str], rows: Iterable[Sequence[Any]], *, digits: int = 6) -> str:
+def table(headings: Sequence[str], rows: Iterable[Sequence[object]], *, digits: int = 6) -> str:
     """Return a table with text aligned left and numbers aligned right."""
     head = "".join(f"<th>{escape(str(name))}</th>" for name in headings)
     body = "".join(f"<tr>{''.join(_cell(item, digits) for item in row)}</tr>" for row in rows)
@@ -57,7 +56,7 @@ def one_impact(result: ImpactResult) -> str:
     return "".join([*parts, pairs(closing(result))])
 
 
-def _cell(item: Any, digits: int) -> str:
+def _cell(item: object, digits: int) -> str:
     """Return a cell of a table."""
     if isinstance(item, str):
         return f"<td>{escape(item)}</td>"

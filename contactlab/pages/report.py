@@ -7,16 +7,17 @@ from collections.abc import Callable, Mapping, Sequence
 from html import escape
 from importlib import metadata, resources
 from string import Template
-from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 
 import contactlab
 from contactlab.compose.citations import references
 from contactlab.compose.simulation import Simulation
 from contactlab.figures.comparison import differences, forces_over_contact, laws_over_sweep
-from contactlab.figures.files import as_svg
+from contactlab.figures.files import Panels, as_svg
 from contactlab.impact.scene import Scene, entry_unit
+from contactlab.numeric.types import Real
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import (
     closing,
@@ -29,7 +30,8 @@ from contactlab.outcome.tables import (
 from contactlab.pages import html
 from contactlab.pages.drawing import scene_drawing
 from contactlab.scene_file import SceneFile
-from contactlab.study.comparison import Agreement, Comparison
+from contactlab.study.agreement import Agreement
+from contactlab.study.comparison import Comparison
 
 #: Rows of a sweep on the page; ``contactlab sweep --out`` writes all of them.
 ROWS = 25
@@ -75,7 +77,7 @@ def _scene(file: SceneFile, scene: Scene) -> list[str]:
 
 
 def _answer(
-    result: ImpactResult, varied: Mapping[str, Any], agreements: Sequence[Agreement]
+    result: ImpactResult, varied: Mapping[str, Real], agreements: Sequence[Agreement]
 ) -> list[str]:
     """Return one impact in full, or the table of a sweep, at the measured points if there are."""
     if not result.scene.shape:
@@ -115,7 +117,7 @@ def _over_angle(comparison: Comparison) -> list[str]:
     if list(comparison.varied) != ["angle_deg"]:
         return []
 
-    def drawing(name: str) -> Callable[[Any], Any]:
+    def drawing(name: str) -> Callable[[Axes], Axes]:
         return lambda axes: laws_over_sweep(axes, comparison, name)
 
     return [html.figure(as_svg(drawing(name)), f"{name} over angle_deg.") for name in names]
@@ -155,7 +157,7 @@ def _measured(comparison: Comparison, agreement: Agreement) -> str:
     """Return picture and table of the laws beside one series of measured values."""
     name = agreement.measured.quantity
 
-    def draw(axes: Any) -> None:
+    def draw(axes: Panels) -> None:
         laws_over_sweep(axes[0, 0], comparison, name, agreement)
         differences(axes[1, 0], comparison, name, agreement)
         axes[0, 0].set_xlabel("")

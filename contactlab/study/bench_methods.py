@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Iterable, Sequence
-from typing import Any
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, TypeAlias
 
 import attrs
 
@@ -43,6 +43,10 @@ QUICK_RESOLUTIONS, QUICK_PARTS = 3, (8, 25, 50)
 STEPS_PER_PART, LEAST_STEPS = 4, 25
 #: Least number of parts under a tolerance.
 LEAST_PARTS = 10
+
+
+#: Options of laws, by kind and name: the resolution of a method.
+Options: TypeAlias = Mapping[str, Mapping[str, float]]
 
 
 @attrs.frozen(kw_only=True)
@@ -114,9 +118,7 @@ class Method:
             return max(1, round(step_default / part_default))
         return STEPS_PER_PART
 
-    def simulation(
-        self, options: dict[str, dict[str, Any]], *, normal: str | None = None
-    ) -> Simulation:
+    def simulation(self, options: Options, *, normal: str | None = None) -> Simulation:
         """Return the composition at one resolution; ``normal`` replaces the method's normal law."""
         return Simulation(
             normal=normal or self.normal,
@@ -239,7 +241,7 @@ def _makes_no_force(tangential: str) -> bool:
     return bool(result.psi_change == 0.0)
 
 
-def _accepted(name: str, options: dict[str, Any]) -> bool:
+def _accepted(name: str, options: Mapping[str, object]) -> bool:
     """Return whether a law accepts the options; a resolution may be too coarse."""
     try:
         REGISTRY.create(name, **options)

@@ -10,14 +10,13 @@ import numpy as np
 
 from contactlab.compose.error_estimate import estimated
 from contactlab.compose.simulation import Simulation
-from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import attributes_told
-from contactlab.numeric.types import Array
-from contactlab.outcome.columns import QUANTITIES, quantity_named
+from contactlab.numeric.types import Array, Real
 from contactlab.outcome.result import ImpactResult
-from contactlab.scene_file import Measured, SceneFile
+from contactlab.scene_file import SceneFile
+from contactlab.study.agreement import Agreement, LawRun, values_of
 from contactlab.study.interrupts import uninterrupted
 from contactlab.study.side_by_side import default_quantities, describe
 
@@ -27,90 +26,6 @@ REPEATS = 3
 EXACT = 1e-6
 #: A run longer than this, in s, is not repeated: warming up takes little of its time.
 LONG_RUN = 2.0
-#: Factor between mean squares that tells a sign.
-MUCH_NEARER = 4.0
-
-
-@attrs.frozen(kw_only=True, eq=False)
-class LawRun:
-    """One law's answer to the scene or sweep.
-
-    Attributes
-    ----------
-    name : str
-    result : ImpactResult
-    run_time_per_impact : float
-        Least wall-clock time of the repeats, over the number of impacts, in s.
-    model : str
-        What the law takes the bodies for: ``"rigid"``; ``"elastic"`` for a law that converges to
-        the elastic continuum; ``"exact"`` if it also declares an error of psi2 below ``EXACT``;
-        else empty.
-    """
-
-    name: str
-    result: ImpactResult
-    run_time_per_impact: float = attrs.field(metadata={"unit": "s"})
-    model: str = ""
-
-
-@attrs.frozen(kw_only=True, eq=False)
-class Agreement:
-    """One measured series, and the results of each law at the measured points.
-
-    Attributes
-    ----------
-    measured : Measured
-    results : mapping of str to ImpactResult
-        By law, batches of n impacts.
-    """
-
-    measured: Measured
-    results: Mapping[str, ImpactResult]
-
-    @property
-    def unit(self) -> str:
-        """Unit of the quantity; "1" if the scene has no units."""
-        scene = next(iter(self.results.values())).scene
-        return QUANTITIES[self.measured.quantity].unit_in(scene)
-
-    @property
-    def predicted(self) -> dict[str, Array]:
-        """Values by law, shape (n,), in the quantity's unit; NaN where an impact failed."""
-        quantity = self.measured.quantity
-        return {law: _values(quantity, result) for law, result in self.results.items()}
-
-    def difference(self, law: str) -> Array:
-        """Return predicted less measured values, shape (n,)."""
-        return self.predicted[law] - self.measured.values
-
-    @property
-    def opposite(self) -> str:
-        """Sentence on measured values that are opposite in sign to every law's; else empty."""
-        measured = self.measured.values
-        for values in self.predicted.values():
-            wrong, right = values + measured, values - measured
-            if not np.mean(wrong**2) * MUCH_NEARER < np.mean(right**2):
-                return ""
-        name = self.measured.quantity
-        return (
-            f"{name} looks as if of the opposite sign: its numbers turned are nearer to every law "
-            f"(--column HEADING=-{name} turns it)"
-        )
-
-    def rms(self, law: str) -> float:
-        """Return the root mean square difference."""
-        return float(np.sqrt(np.mean(self.difference(law) ** 2)))
-
-    def largest(self, law: str) -> float:
-        """Return the largest absolute difference."""
-        return float(np.max(np.abs(self.difference(law))))
-
-    def where_largest(self, law: str) -> float:
-        """Return the x of the largest absolute difference; NaN if a value is missing."""
-        difference = np.abs(self.difference(law))
-        if np.isnan(difference).any():
-            return float("nan")
-        return float(self.measured.x[np.argmax(difference)])
 
 
 @attributes_told
@@ -131,7 +46,7 @@ class Comparison:
     """
 
     scene: Scene
-    varied: Mapping[str, Any]
+    varied: Mapping[str, Real]
     runs: tuple[LawRun, ...]
     agreements: tuple[Agreement, ...]
     interrupted: bool = False
@@ -169,7 +84,7 @@ class Comparison:
 
     def values(self, quantity: str, law: str) -> Array:
         """Return a quantity of one law over the scene or sweep; NaN where an impact failed."""
-        return _values(quantity, self.result(law))
+        return values_of(quantity, self.result(law))
 
     def difference(self, quantity: str, law: str) -> Array:
         """Return a quantity of one law less that of the first law."""
@@ -189,7 +104,9 @@ class Comparison:
             error = self.numerical_error(law) / result.scene.psi_scale
             change = np.asarray(result.motion.slip_velocity_change)
             error = np.multiply.outer(error, np.ones(result.scene.slip_axes))
-        ends = [_values(quantity, _shifted(result, change + sign * error)) for sign in (1.0, -1.0)]
+        ends = [
+            values_of(quantity, _shifted(result, change + sign * error)) for sign in (1.0, -1.0)
+        ]
         return np.array(0.5 * np.abs(ends[0] - ends[1]))
 
     def failures(self) -> list[str]:
@@ -298,12 +215,6 @@ def _varied(scene: Scene) -> dict[str, Array]:
         if np.unique(values).size > 1:
             return {name: np.array(values)}
     return {"psi1": np.array(np.broadcast_to(psi1, scene.shape))}
-
-
-def _values(quantity: str, result: ImpactResult) -> Array:
-    """Return a quantity of a result, with NaN for impacts that failed."""
-    good = np.asarray(result.status, dtype=object) == Status.SUCCESS
-    return np.where(good, quantity_named(quantity).of(result), np.nan)
 
 
 def _shifted(result: ImpactResult, change: Array) -> ImpactResult:

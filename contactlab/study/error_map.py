@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import attrs
 import numpy as np
@@ -12,6 +11,7 @@ from contactlab.compose.composition import DEFAULT_NORMAL, STEPPED, exact, fixed
 from contactlab.compose.names import full_name
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
+from contactlab.contracts import TangentialLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array
@@ -102,7 +102,7 @@ def error_map(method: Method, *, quick: bool = False) -> ErrorMap:
     )
 
 
-def _limit(law: Any) -> Simulation:
+def _limit(law: TangentialLaw) -> Simulation:
     """Return what a law is judged by: the exact solution, or itself in very many steps."""
     if converges(law):
         return Simulation(**exact(REFERENCE_TOLERANCES[-1]))

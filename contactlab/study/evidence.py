@@ -14,7 +14,8 @@ from contactlab.compose.names import full_name, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.scene_file import SceneFile, read_scene
-from contactlab.study.comparison import Agreement, Comparison, LawRun
+from contactlab.study.agreement import Agreement, LawRun
+from contactlab.study.comparison import Comparison
 from contactlab.study.interrupts import uninterrupted
 from contactlab.study.validation import Finding
 
@@ -165,7 +166,7 @@ def _evidence(source: Source, *, curves: bool) -> Evidence:
 
 
 def simulations_over(
-    normals: Mapping[str, Mapping[str, Any]],
+    normals: Mapping[str, Mapping[str, object]],
 ) -> tuple[dict[str, Simulation], dict[str, str]]:
     """Return simulations of every tangential law under the normal laws, and reasons for misfits.
 

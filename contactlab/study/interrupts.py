@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from contactlab.contracts.status import Status
@@ -26,6 +24,6 @@ def uninterrupted(result: ImpactResult) -> ImpactResult:
     return result
 
 
-def was_interrupted(result: Any) -> bool:
+def was_interrupted(result: ImpactResult) -> bool:
     """Return whether Ctrl-C left impacts out."""
     return Status.INTERRUPTED in np.ravel(np.array(result.status, dtype=object))

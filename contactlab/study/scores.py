@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, TextIO
 
 import attrs
 import numpy as np
+from numpy.typing import ArrayLike
 
 from contactlab.compose import composition
 from contactlab.compose.names import full_name, short_name
@@ -16,10 +17,16 @@ from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import SteppedTangentialLaw, TangentialLaw, WholeImpactTangentialLaw
 from contactlab.impact.scene import entry_unit
+from contactlab.numeric.types import Real
 from contactlab.outcome.columns import QUANTITIES, csv_heading, json_value
-from contactlab.scene_file import LawChoice
+from contactlab.outcome.tables import number, time
+from contactlab.outcome.text_table import table
+from contactlab.scene_file import LawChoice, SceneFile
 from contactlab.study.comparison import Comparison
+from contactlab.study.side_by_side import wrapped
 
+#: Scores below this are rounding errors and shown as 0.
+ZERO = 1e-12
 #: Default scene: psi2 over psi1 of a solid sphere, with the values of other codes.
 DEFAULT_SCENE = Path(__file__).with_name("compiled_codes.toml")
 CSV_HEADINGS = (
@@ -145,7 +152,7 @@ def pressed_force(law: TangentialLaw) -> float:
     return float(np.max(np.abs(force[sheared:])) - abs(force[sheared - 1]))
 
 
-def _largest(values: Any) -> float:
+def _largest(values: ArrayLike) -> float:
     values = np.ravel(values)
     return float(np.max(values[np.isfinite(values)])) if np.isfinite(values).any() else np.nan
 
@@ -218,10 +225,45 @@ def write_csv(comparison: Comparison, quantities: Sequence[str], stream: TextIO)
                 writer.writerow([*start, row[0], law, *row[1:], *("" for _ in others)])
 
 
-def _rows(*columns: Any) -> Iterator[list[Any]]:
+def _rows(*columns: Real) -> Iterator[list[Any]]:
     for row in np.broadcast(*columns):
         yield ["" if np.isnan(item) else float(item) for item in row]
 
 
-def _list(values: Any) -> Any:
+def _list(values: Real) -> Any:
     return json_value(np.asarray(values)) if np.ndim(values) else json_value(float(values))
+
+
+def describe_scores(scores: Sequence[Score], comparison: Comparison, file: SceneFile) -> str:
+    """Return title and one row for each law: the reference first, the others by rms."""
+    reference = scores[0].law
+    headings = [
+        "law", "integrator", "psi2: rms", "worst", "at psi1", "numerical error",
+        "energy from nothing", "force from load alone", "time an impact",
+    ]  # fmt: skip
+    rows = []
+    for score in [scores[0], *sorted(scores[1:], key=lambda score: score.rms)]:
+        distance: list[str | float] = [score.rms, score.worst, score.where]
+        if score.law == reference:
+            distance = ["reference", "", ""]
+        rows.append([
+            score.law, score.integrator, *(_short(each) for each in distance),
+            *map(_short, (score.numerical_error, score.energy_made, score.pressed_force)),
+            time(score.run_time_per_impact),
+        ])  # fmt: skip
+    count = comparison.scene.shape[0]
+    notes = (
+        f"psi2: distance from {reference} over {count} impacts, model error and numerical error "
+        "together. Numerical error of psi2: the largest estimated or declared one. Energy from "
+        "nothing: over the energy at the start. Force from load alone: what pressing adds to a "
+        "sheared contact, over mu P_max; a dash for laws that are not stepped. Time: in the sweep."
+    )
+    parts = [part for part in (file.title, wrapped(file.citation)) if part]
+    return "\n\n".join([*parts, table(headings, rows), wrapped(notes)])
+
+
+def _short(value: str | float) -> str:
+    """Return text, or a number with two digits, 0 if it is a rounding error."""
+    if isinstance(value, str):
+        return value
+    return "0" if abs(value) < ZERO else number(value, digits=2)

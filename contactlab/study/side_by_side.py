@@ -3,24 +3,54 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Protocol
 
 import numpy as np
 
-from contactlab.impact.scene import entry_unit
+from contactlab.impact.scene import Scene, entry_unit
+from contactlab.numeric.types import Array, Real
 from contactlab.outcome.columns import COMPARISON_TABLE, columns_of, components, quantity_named
 from contactlab.outcome.tables import IN_SPACE, heading, number, time
 from contactlab.outcome.text_table import table
 from contactlab.scene_file import SceneFile
+from contactlab.study.agreement import Agreement, LawRun
 
-#: Scores below this are rounding errors and shown as 0.
-ZERO = 1e-12
 #: Laws beside each other, one impact's, above which each has a row.
 MOST_COLUMNS = 4
 
 
-def default_quantities(comparison: Any) -> list[str]:
+class Compared(Protocol):
+    """A comparison: the laws of ``contactlab.study.comparison.Comparison``, side by side."""
+
+    @property
+    def scene(self) -> Scene:
+        """The scene or sweep."""
+
+    @property
+    def varied(self) -> Mapping[str, Real]:
+        """Entries that vary."""
+
+    @property
+    def runs(self) -> Sequence[LawRun]:
+        """The answer of each law, the reference first."""
+
+    @property
+    def agreements(self) -> Sequence[Agreement]:
+        """Distances from each measured series."""
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the laws."""
+
+    def values(self, quantity: str, law: str) -> Array:
+        """Return a quantity of one law."""
+
+    def difference(self, quantity: str, law: str) -> Array:
+        """Return a quantity of one law less that of the first law."""
+
+
+def default_quantities(comparison: Compared) -> list[str]:
     """Return the measured quantities, or psi2 of a sweep, or all defined ones of one impact."""
     measured = [agreement.measured.quantity for agreement in comparison.agreements]
     if measured:
@@ -40,10 +70,10 @@ def default_quantities(comparison: Any) -> list[str]:
     ]
 
 
-def describe(comparison: Any, quantities: Sequence[str], file: SceneFile | None = None) -> str:
+def describe(comparison: Compared, quantities: Sequence[str], file: SceneFile | None = None) -> str:
     """Return a file's title, tables, agreement with measured values, cautions and cost."""
-    parts = [file.title, _wrapped(file.citation)] if file else []
-    by_quantity: dict[str, list[Any]] = {name: [] for name in quantities}
+    parts = [file.title, wrapped(file.citation)] if file else []
+    by_quantity: dict[str, list[Agreement]] = {name: [] for name in quantities}
     for agreement in comparison.agreements:
         by_quantity.setdefault(agreement.measured.quantity, []).append(agreement)
     if comparison.scene.shape:
@@ -61,42 +91,7 @@ def describe(comparison: Any, quantities: Sequence[str], file: SceneFile | None 
     return "\n\n".join(part for part in parts if part)
 
 
-def describe_scores(scores: Sequence[Any], comparison: Any, file: SceneFile) -> str:
-    """Return title and one row for each law: the reference first, the others by rms."""
-    reference = scores[0].law
-    headings = [
-        "law", "integrator", "psi2: rms", "worst", "at psi1", "numerical error",
-        "energy from nothing", "force from load alone", "time an impact",
-    ]  # fmt: skip
-    rows = []
-    for score in [scores[0], *sorted(scores[1:], key=lambda score: score.rms)]:
-        distance: list[object] = [score.rms, score.worst, score.where]
-        if score.law == reference:
-            distance = ["reference", "", ""]
-        rows.append([
-            score.law, score.integrator, *(_short(each) for each in distance),
-            *map(_short, (score.numerical_error, score.energy_made, score.pressed_force)),
-            time(score.run_time_per_impact),
-        ])  # fmt: skip
-    count = comparison.scene.shape[0]
-    notes = (
-        f"psi2: distance from {reference} over {count} impacts, model error and numerical error "
-        "together. Numerical error of psi2: the largest estimated or declared one. Energy from "
-        "nothing: over the energy at the start. Force from load alone: what pressing adds to a "
-        "sheared contact, over mu P_max; a dash for laws that are not stepped. Time: in the sweep."
-    )
-    parts = [part for part in (file.title, _wrapped(file.citation)) if part]
-    return "\n\n".join([*parts, table(headings, rows), _wrapped(notes)])
-
-
-def _short(value: object) -> str:
-    """Return text, or a number with two digits, 0 if it is a rounding error."""
-    if isinstance(value, str):
-        return value
-    return "0" if abs(float(value)) < ZERO else number(value, digits=2)  # type: ignore[arg-type]
-
-
-def _one_impact(comparison: Any, quantities: Sequence[str]) -> str:
+def _one_impact(comparison: Compared, quantities: Sequence[str]) -> str:
     """Return the quantities of one impact under all laws, a row each; of many laws a column."""
     first, *others = comparison.names
     if len(comparison.names) > MOST_COLUMNS:
@@ -116,7 +111,7 @@ def _one_impact(comparison: Any, quantities: Sequence[str]) -> str:
     return table(headings, rows)
 
 
-def _over_sweep(comparison: Any, quantity: str) -> str:
+def _over_sweep(comparison: Compared, quantity: str) -> str:
     """Return one quantity under all laws, one row for each impact."""
     first, *others = comparison.names
     headings = [*map(_with_unit, comparison.varied)]
@@ -128,7 +123,7 @@ def _over_sweep(comparison: Any, quantity: str) -> str:
     return f"{heading(quantity, unit)}:\n{table(headings, np.transpose(columns).tolist())}"
 
 
-def _points(agreement: Any) -> str:
+def _points(agreement: Agreement) -> str:
     """Return measured values beside the laws, one row for each value."""
     measured = agreement.measured
     names = list(agreement.predicted)
@@ -141,7 +136,7 @@ def _points(agreement: Any) -> str:
     return f"{title}, measured: {measured.source}\n{table(headings, rows, digits=4)}"
 
 
-def _agreement(comparison: Any) -> str:
+def _agreement(comparison: Compared) -> str:
     """Return the rms and largest distance of each law from measured values."""
     rows = []
     for agreement in comparison.agreements:
@@ -155,7 +150,7 @@ def _agreement(comparison: Any) -> str:
     return table(headings, rows, digits=3)
 
 
-def _cautions(comparison: Any) -> str:
+def _cautions(comparison: Compared) -> str:
     """Return the cautions of all plans, each once with the names of its laws."""
     about: dict[str, list[str]] = {}
     for run in comparison.runs:
@@ -168,7 +163,7 @@ def _cautions(comparison: Any) -> str:
     return "\n".join(textwrap.fill(line, width=96, subsequent_indent="  ") for line in lines)
 
 
-def _cost(comparison: Any) -> str:
+def _cost(comparison: Compared) -> str:
     """Return run time and number of successful impacts of each law."""
     first = comparison.runs[0].run_time_per_impact
     rows = []
@@ -186,6 +181,6 @@ def _with_unit(entry: str) -> str:
     return entry if unit in ("1", "deg") else f"{entry} ({unit})"
 
 
-def _wrapped(text: str) -> str:
+def wrapped(text: str) -> str:
     """Return a text in lines of 96 characters."""
     return textwrap.fill(" ".join(text.split()), width=96)

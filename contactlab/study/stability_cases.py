@@ -13,10 +13,12 @@ import numpy as np
 from contactlab.compose.composition import DEFAULT_NORMAL, misfit
 from contactlab.compose.names import full_name, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
+from contactlab.contracts import Law
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
-from contactlab.study.bench_methods import Method
+from contactlab.numeric.types import Number
+from contactlab.study.bench_methods import Method, Options
 from contactlab.study.stability_coupled import coupled_scenes, tried_coupled
 
 #: A solid sphere of Poisson's ratio 0.3: the paper's own case.
@@ -48,8 +50,6 @@ QUICK_MAP_CHIS, QUICK_MAP_STEPS, QUICK_MAP_TOLERANCES = (
 )  # fmt: skip
 #: Estimated steps under a tolerance, sqrt((1 + chi)/tolerance), beyond which there is no cell.
 MOST_STEPS = 3e4
-
-Options = dict[str, dict[str, Any]]
 
 
 @attrs.frozen(kw_only=True)
@@ -128,7 +128,7 @@ def other_normal_laws(method: Method) -> Iterator[str]:
 
 
 def _ladder(
-    method: Method, part: str | None, integrator: Any, psi1: float, chi: float, *, quick: bool
+    method: Method, part: str | None, integrator: type[Law], psi1: float, chi: float, *, quick: bool
 ) -> Iterator[Case]:
     """Yield the cases of one impact at several resolutions."""
     scene = partial(_plain, label=f"psi1={psi1:g} chi={chi:.4g}", psi1=psi1, chi=chi)
@@ -152,7 +152,7 @@ def _ladder(
                 yield _case(method, scene("parts"), both)
 
 
-def _map(method: Method, integrator: Any, *, quick: bool) -> Iterator[Case]:
+def _map(method: Method, integrator: type[Law], *, quick: bool) -> Iterator[Case]:
     """Yield the impacts of each resolution and chi, marched in the steps asked for."""
     word = integrator.resolution
     if word is None:
@@ -224,7 +224,7 @@ def normal_scenes(*, quick: bool = False) -> list[Extreme]:
     return scenes + [extreme._replace(family="normal") for extreme in others]
 
 
-def _plain(family: str, label: str, psi1: Any, chi: Any) -> Extreme:
+def _plain(family: str, label: str, psi1: Number, chi: Number) -> Extreme:
     """Return a scene defined by psi1 and chi."""
     return Extreme(family, label, lambda: Scene.nondimensional(psi1=psi1, chi=chi))
 

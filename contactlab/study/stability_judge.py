@@ -77,10 +77,27 @@ class Outcome:
     run_time_s: float = 0.0
 
     @classmethod
-    def of(cls, case: Case, outcome: str, **entries: Any) -> Outcome:
+    def of(
+        cls,
+        case: Case,
+        outcome: str,
+        *,
+        error: float = np.nan,
+        bound: float = np.nan,
+        note: str = "",
+        run_time_s: float = 0.0,
+    ) -> Outcome:
         """Return the outcome of a case."""
-        names: Any = {"method": case.method.name, "family": case.family, "case": case.label}
-        return cls(**names, outcome=outcome, **entries)
+        return cls(
+            method=case.method.name,
+            family=case.family,
+            case=case.label,
+            outcome=outcome,
+            error=error,
+            bound=bound,
+            note=note,
+            run_time_s=run_time_s,
+        )
 
 
 def judge(case: Case) -> Outcome:
@@ -141,7 +158,7 @@ def judge_run(
     return Outcome.of(case, outcome, error=off, bound=bound, note=note, run_time_s=took)
 
 
-def marched(simulation: Simulation, scene: Any) -> ImpactResult:
+def marched(simulation: Simulation, scene: Scene) -> ImpactResult:
     """Return the result of an impact marched by the integrator, without whole-impact answers."""
     law, integrator = simulation.tangential, simulation.integrator
     normal = simulation.normal_motion(scene)

@@ -9,9 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache, partial
-from typing import Any
 
-import attrs
 import numpy as np
 
 from contactlab.compose.composition import PREFERRED, exact, fixed_steps, misfit
@@ -29,6 +27,7 @@ from contactlab.contracts import (
 from contactlab.contracts.error_model import range_of
 from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.impact.scene import Scene
+from contactlab.testing.units import with_parameters
 
 #: Tolerances of the exact solution, the finer first; both finer than the default, which they judge.
 REFERENCE_TOLERANCES = (1e-11, 1e-9)
@@ -156,8 +155,9 @@ def _refines(law: TangentialLaw) -> bool:
 
 
 @lru_cache(maxsize=4096)
-def fine_under(scene: Scene, normal: NormalLaw, law: Any) -> float | None:
+def fine_under(scene: Scene, normal: NormalLaw, law: type[TangentialLaw]) -> float | None:
     """Return the change in m/s by a fine law of class ``law``; None if it does not settle."""
+    assert law.resolution is not None
     width = range_of(scene).width
     before = np.inf
     for parts in FINE_PARTS * 2 ** np.arange(DOUBLINGS + 1):
@@ -174,10 +174,11 @@ def fine_under(scene: Scene, normal: NormalLaw, law: Any) -> float | None:
 
 
 @lru_cache(maxsize=4096)
-def finer(normal: NormalLaw, scene: Scene, law: Any) -> float | None:
+def finer(normal: NormalLaw, scene: Scene, law: TangentialLaw) -> float | None:
     """Return the change by a law of whole impacts at twice its resolution, in m/s; None if none."""
+    assert law.resolution is not None
     try:
-        fine = attrs.evolve(law, **{law.resolution: 2 * getattr(law, law.resolution)})
+        fine = with_parameters(law, {law.resolution: 2 * getattr(law, law.resolution)})
     except ValueError:  # the law does not accept the finer value
         return None
     result = Simulation(normal=normal, tangential=fine).run(scene)

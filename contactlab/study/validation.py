@@ -8,6 +8,7 @@ from typing import Any
 
 import attrs
 import numpy as np
+from numpy.typing import ArrayLike
 
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
@@ -159,7 +160,7 @@ def _checks() -> Iterator[Callable[[], Finding]]:
             yield partial(_codes, number, form)
 
 
-def _finding(what: str, against: str, off: Any, bound: float) -> Finding:
+def _finding(what: str, against: str, off: ArrayLike, bound: float) -> Finding:
     """Return the finding of differences, of which the largest counts."""
     worst = float(np.max(np.abs(off)))
     return Finding(what=what, against=against, difference=worst, bound=bound)
@@ -237,9 +238,9 @@ def _stiff() -> Finding:
 
 def _reference(
     tangential: str,
-    options: dict[str, Any],
+    options: dict[str, object],
     integrator: str,
-    settings: dict[str, Any],
+    settings: dict[str, object],
     bound: float,
 ) -> Finding:
     """Return the finding of one composition against ``REFERENCE_PSI2``."""

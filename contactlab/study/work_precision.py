@@ -20,7 +20,7 @@ from contactlab.compose.rebound import rebound
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
 from contactlab.outcome.result import ImpactResult
-from contactlab.study.bench_methods import Method, scenes
+from contactlab.study.bench_methods import Method, Options, scenes
 from contactlab.study.benchmark import ALIKE, ROUNDING, Benchmark, Row
 from contactlab.study.interrupts import uninterrupted
 from contactlab.study.stability_references import converges, reference_for
@@ -164,7 +164,7 @@ def _elsewhere_rms(simulation: Simulation, method: Method, *, quick: bool) -> fl
     )
 
 
-def _rms(errors: Iterable[Any]) -> float:
+def _rms(errors: Iterable[float]) -> float:
     """Return the root of the mean square."""
     return float(np.sqrt(np.mean(np.square(list(errors)))))
 
@@ -206,9 +206,7 @@ def _least(call: Callable[[], object], *, repeats: int) -> float:
     return least
 
 
-def _row(
-    method: Method, resolution: dict[str, dict[str, Any]], truths: list[Truth], *, quick: bool
-) -> Row:
+def _row(method: Method, resolution: Options, truths: list[Truth], *, quick: bool) -> Row:
     """Return error and run time of a method at one resolution."""
     simulation = method.simulation(resolution)
     impacts = [truth.scene for truth in truths]
@@ -253,7 +251,7 @@ def _with_nearer(rows: list[Row]) -> list[Row]:
     return [attrs.evolve(row, converges=row.converges or row.method in nearer) for row in rows]
 
 
-def _left_out(method: Method, resolution: dict[str, dict[str, Any]]) -> Row:
+def _left_out(method: Method, resolution: Options) -> Row:
     """Return the row of a resolution that is not run because it would take too long."""
     return Row(
         method=method.name,
@@ -264,7 +262,7 @@ def _left_out(method: Method, resolution: dict[str, dict[str, Any]]) -> Row:
     )
 
 
-def _words(resolution: dict[str, dict[str, Any]]) -> str:
+def _words(resolution: Options) -> str:
     options = {key: value for part in resolution.values() for key, value in part.items()}
     return ", ".join(f"{key}={value:g}" for key, value in options.items())
 

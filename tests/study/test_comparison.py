@@ -14,7 +14,8 @@ from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, create, r
 from contactlab.contracts.status import Status
 from contactlab.scene_file import read_scene
 from contactlab.study import comparison as study
-from contactlab.study.comparison import Agreement, compare
+from contactlab.study.agreement import Agreement
+from contactlab.study.comparison import compare
 from tests.study.made_up import LAWS, SERIES, SWEEP
 
 PSI1 = [0.5, 2.0, 6.0]

@@ -7,7 +7,8 @@ import pytest
 from contactlab import Scene, Simulation, rebound
 from contactlab.scene_file import read_scene
 from contactlab.study import evidence, validation
-from contactlab.study.comparison import Agreement, Comparison
+from contactlab.study.agreement import Agreement
+from contactlab.study.comparison import Comparison
 from contactlab.study.evidence import Evidence, Source, simulations_over
 from contactlab.study.stability_coupled import rod
 from contactlab.study.validation import Finding

@@ -1,0 +1,105 @@
+"""One law's answer to a scene, and its distance from measured values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import attrs
+import numpy as np
+
+from contactlab.contracts.status import Status
+from contactlab.numeric.types import Array
+from contactlab.outcome.columns import QUANTITIES, quantity_named
+from contactlab.outcome.result import ImpactResult
+from contactlab.scene_file import Measured
+
+#: Factor between mean squares that tells a sign.
+MUCH_NEARER = 4.0
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class LawRun:
+    """One law's answer to the scene or sweep.
+
+    Attributes
+    ----------
+    name : str
+    result : ImpactResult
+    run_time_per_impact : float
+        Least wall-clock time of the repeats, over the number of impacts, in s.
+    model : str
+        What the law takes the bodies for: ``"rigid"``; ``"elastic"`` for a law that converges to
+        the elastic continuum; ``"exact"`` if it also declares an error of psi2 below ``EXACT``;
+        else empty.
+    """
+
+    name: str
+    result: ImpactResult
+    run_time_per_impact: float = attrs.field(metadata={"unit": "s"})
+    model: str = ""
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class Agreement:
+    """One measured series, and the results of each law at the measured points.
+
+    Attributes
+    ----------
+    measured : Measured
+    results : mapping of str to ImpactResult
+        By law, batches of n impacts.
+    """
+
+    measured: Measured
+    results: Mapping[str, ImpactResult]
+
+    @property
+    def unit(self) -> str:
+        """Unit of the quantity; "1" if the scene has no units."""
+        scene = next(iter(self.results.values())).scene
+        return QUANTITIES[self.measured.quantity].unit_in(scene)
+
+    @property
+    def predicted(self) -> dict[str, Array]:
+        """Values by law, shape (n,), in the quantity's unit; NaN where an impact failed."""
+        quantity = self.measured.quantity
+        return {law: values_of(quantity, result) for law, result in self.results.items()}
+
+    def difference(self, law: str) -> Array:
+        """Return predicted less measured values, shape (n,)."""
+        return self.predicted[law] - self.measured.values
+
+    @property
+    def opposite(self) -> str:
+        """Sentence on measured values that are opposite in sign to every law's; else empty."""
+        measured = self.measured.values
+        for values in self.predicted.values():
+            wrong, right = values + measured, values - measured
+            if not np.mean(wrong**2) * MUCH_NEARER < np.mean(right**2):
+                return ""
+        name = self.measured.quantity
+        return (
+            f"{name} looks as if of the opposite sign: its numbers turned are nearer to every law "
+            f"(--column HEADING=-{name} turns it)"
+        )
+
+    def rms(self, law: str) -> float:
+        """Return the root mean square difference."""
+        return float(np.sqrt(np.mean(self.difference(law) ** 2)))
+
+    def largest(self, law: str) -> float:
+        """Return the largest absolute difference."""
+        return float(np.max(np.abs(self.difference(law))))
+
+    def where_largest(self, law: str) -> float:
+        """Return the x of the largest absolute difference; NaN if a value is missing."""
+        difference = np.abs(self.difference(law))
+        if np.isnan(difference).any():
+            return float("nan")
+        return float(self.measured.x[np.argmax(difference)])
+
+
+def values_of(quantity: str, result: ImpactResult) -> Array:
+    """Return a quantity of a result, with NaN for impacts that failed."""
+    good = np.asarray(result.status, dtype=object) == Status.SUCCESS
+    return np.where(good, quantity_named(quantity).of(result), np.nan)
