@@ -7,6 +7,8 @@
  *     contactlab_impact out;
  *     int status = contactlab_impact_follow(0.8, 1.3, 0.19, 1.7, CONTACTLAB_IMPACT_EXACT, 20000, &out);
  *
+ * contactlab_impact_watched is the same and shows each step, for a history: contactlab_impact_at.
+ *
  * The variable is x with dT = 2 u dx, T the time times v1 over the largest approach of Hertz's impact. u is the contact
  * radius and V the rate of approach, both over Hertz's; s the sign in which the edge slips or would, k = V - s psi,
  * J = (2/3)(P - s F), and c the radius within which all sticks:
@@ -54,9 +56,25 @@ typedef struct { double press, relief, drive, spring; } contactlab_impact_laws;
  * of one sign, between two radii. The outermost piece is the last. */
 typedef struct { int drawn, sign; double radius, rate, margin, lack, length, inner; } contactlab_impact_piece;
 
+/* A step of an impact that is watched: the phase, how many phases came before, and the sign s; psi - psi1 and the work
+ * where the step begins; and the series of u, V, k, J, c and T in a variable from 0 to `length`. */
+typedef struct {
+  int phase, part, sign;
+  double change, work, length;
+  const double *radius, *rate, *margin, *lack, *stick, *time;
+} contactlab_impact_step;
+
+/* An instant: T, u, V and c; psi, and F over the largest mu P of Hertz's impact. */
+typedef struct { double time, radius, rate, stick, psi, force; } contactlab_impact_instant;
+
+/* What is called with each step, whose series are gone after the call, and a pointer of the caller's. */
+typedef void contactlab_impact_watch(void *context, const contactlab_impact_step *step);
+
 typedef struct {
   double chi, lam, eta, tolerance;
-  int most, sign, pieces;
+  int most, sign, pieces, part;
+  contactlab_impact_watch *watch;
+  void *context;
   double radius, rate, margin, lack; /* u, V, k, J */
   contactlab_impact_laws laws;
   contactlab_impact out;
@@ -406,6 +424,28 @@ static inline int contactlab_impact_event(int phase, int form, contactlab_impact
   return event;
 }
 
+/* Shows a step, whose work is the sum so far. */
+static inline void contactlab_impact_show(const contactlab_impact_course *I, int phase, contactlab_impact_series *rows,
+                                          double work, double length)
+{
+  static const contactlab_impact_series zero = {0};
+  const double psi = I->rate - I->margin; /* where the phase began */
+  contactlab_impact_step step;
+  step.phase = phase;
+  step.part = I->part;
+  step.sign = I->sign;
+  step.change = I->out.change + I->sign * (rows[1][0] - rows[2][0] - psi);
+  step.work = work;
+  step.length = length;
+  step.radius = rows[0];
+  step.rate = rows[1];
+  step.margin = rows[2];
+  step.lack = rows[3];
+  step.stick = phase == CONTACTLAB_IMPACT_STICK ? rows[0] : phase == CONTACTLAB_IMPACT_GROSS ? zero : rows[4];
+  step.time = rows[contactlab_impact_rows(phase) - 1];
+  I->watch(I->context, &step);
+}
+
 /* Follows a phase to its event: state in and out, T and work its last two numbers; `end` is where c ends it.
  * Returns the event, or minus a status. */
 static inline int contactlab_impact_phase(contactlab_impact_course *I, int phase, int form, double end, double *state)
@@ -434,6 +474,7 @@ static inline int contactlab_impact_phase(contactlab_impact_course *I, int phase
     t = contactlab_impact_length(rows, count, I->tolerance);
     if (t < 0) return -CONTACTLAB_IMPACT_OUTGROWN;
     event = contactlab_impact_event(phase, form, rows, end, &t);
+    if (I->watch) contactlab_impact_show(I, phase, rows, state[count], t);
     if (phase == CONTACTLAB_IMPACT_DRAWN || phase == CONTACTLAB_IMPACT_LOCKED)
       state[count] += contactlab_impact_work(phase, form, rows, t);
     for (i = 0; i < count; ++i) state[i] = contactlab_impact_value(rows[i], order, t);
@@ -445,6 +486,7 @@ static inline int contactlab_impact_phase(contactlab_impact_course *I, int phase
     I->out.compressions += rate <= 0 && state[1] > 0;
     I->out.steps += 1;
   }
+  ++I->part;
   return event;
 }
 
@@ -642,12 +684,12 @@ static inline int contactlab_impact_slide(contactlab_impact_course *I, int *next
     rise = drive * share;
   }
   radius = pow(fmax(after, 0), 0.2);
-  if (press > CONTACTLAB_IMPACT_SHALLOW) {
+  if (press > CONTACTLAB_IMPACT_SHALLOW && !I->watch) {
     I->out.time += contactlab_impact_hertz_time(press, left, radius, last);
     I->out.time -= contactlab_impact_hertz_time(press, left, I->radius, rate);
     if (rate > 0 && last <= 0) I->out.radius = fmax(I->out.radius, pow(left / press, 0.2));
   } else if (depth > 0 || rate > 0) {
-    double state[6] = {I->radius, rate, margin, 0, I->out.time, 0};
+    double state[6] = {I->radius, rate, margin, 0, I->out.time, I->out.work};
     const int event = contactlab_impact_phase(I, CONTACTLAB_IMPACT_GROSS, stops, 0, state);
     if (event < 0) return -event;
     I->out.time = state[4];
@@ -662,12 +704,9 @@ static inline int contactlab_impact_slide(contactlab_impact_course *I, int *next
   return stops ? contactlab_impact_stopped(I, 0, next) : CONTACTLAB_IMPACT_DONE;
 }
 
-/* Follows one impact to separation. Returns a status, and what it leaves in `out`.
- *
- * psi1, chi, lam, eta: theory section 14; finite, chi > 0 and lam eta < 2 chi. tolerance: error of a step. most: steps
- * after which it is given up; a hard impact takes 30, one of kappa = 1e6 some 10,000. */
-static inline int contactlab_impact_follow(double psi1, double chi, double lam, double eta, double tolerance, int most,
-                                           contactlab_impact *out)
+/* As contactlab_impact_follow, and calls `watch` with each step unless it is null. */
+static inline int contactlab_impact_watched(double psi1, double chi, double lam, double eta, double tolerance, int most,
+                                            contactlab_impact_watch *watch, void *context, contactlab_impact *out)
 {
   contactlab_impact_course course, *I = &course;
   const contactlab_impact none = {1, 0, 0, 0, 0, 1, 0};
@@ -677,8 +716,10 @@ static inline int contactlab_impact_follow(double psi1, double chi, double lam, 
   I->eta = eta;
   I->tolerance = tolerance;
   I->most = most;
+  I->watch = watch;
+  I->context = context;
   I->sign = psi1 >= 0 ? 1 : -1;
-  I->pieces = 0;
+  I->pieces = I->part = 0;
   I->radius = I->lack = 0;
   I->rate = 1;
   I->margin = 1 - fabs(psi1);
@@ -693,6 +734,30 @@ static inline int contactlab_impact_follow(double psi1, double chi, double lam, 
   I->out.rate = I->rate;
   *out = I->out;
   return status;
+}
+
+/* Follows one impact to separation. Returns a status, and what it leaves in `out`.
+ *
+ * psi1, chi, lam, eta: theory section 14; finite, chi > 0 and lam eta < 2 chi. tolerance: error of a step. most: steps
+ * after which it is given up; a hard impact takes 30, one of kappa = 1e6 some 10,000. */
+static inline int contactlab_impact_follow(double psi1, double chi, double lam, double eta, double tolerance, int most,
+                                           contactlab_impact *out)
+{
+  return contactlab_impact_watched(psi1, chi, lam, eta, tolerance, most, NULL, NULL, out);
+}
+
+/* Returns an instant of a step, at t from 0 to its length. */
+static inline contactlab_impact_instant contactlab_impact_at(const contactlab_impact_step *step, double t)
+{
+  const int last = CONTACTLAB_IMPACT_ORDER;
+  contactlab_impact_instant at;
+  at.time = contactlab_impact_value(step->time, last, t);
+  at.radius = contactlab_impact_value(step->radius, last, t);
+  at.rate = contactlab_impact_value(step->rate, last, t);
+  at.stick = contactlab_impact_value(step->stick, last, t);
+  at.psi = step->sign * (at.rate - contactlab_impact_value(step->margin, last, t));
+  at.force = step->sign * (at.radius * at.radius * at.radius - 1.5 * contactlab_impact_value(step->lack, last, t));
+  return at;
 }
 
 #endif

@@ -7,8 +7,6 @@ import pytest
 
 from contactlab_laws.fronts import compiled
 from contactlab_laws.fronts.path import Impact
-from contactlab_laws.fronts.steps import alone
-from contactlab_laws.fronts.together import _time
 from tests.kernels.test_kernels import COMPILER, HERE, KERNELS, SANITIZERS, STRICT, needs_c
 
 pytestmark = needs_c
@@ -18,7 +16,10 @@ MOST, TOLERANCE = 20_000, 5e-13
 
 @pytest.fixture(scope="module", params=["c99", pytest.param("c++", marks=pytest.mark.slow)])
 def followed(request, tmp_path_factory):
-    """Return a function of psi1, chi, lam, eta (4, n) that gives statuses and answers (7, n)."""
+    """Return a function of psi1, chi, lam, eta (4, n) that gives statuses and answers (7, n).
+
+    As attributes it has those of the watched impacts, and their instants, a row each.
+    """
     folder = tmp_path_factory.mktemp("impact")
     words = [COMPILER, *STRICT, *SANITIZERS] if request.param == "c99" else [COMPILER, "-x", "c++"]
     source = [f"-I{KERNELS}", HERE / "impact.c", "-o", folder / "impact", "-lm"]
@@ -28,10 +29,12 @@ def followed(request, tmp_path_factory):
         rows = np.full((np.shape(numbers)[1], 6), (0.0, 0.0, 0.0, 0.0, tolerance, most))
         rows[:, :4] = np.transpose(numbers)
         rows.tofile(folder / "in")
-        command = [folder / "impact", folder / "in", folder / "out"]
+        command = [folder / name for name in ("impact", "in", "out", "instants")]
         subprocess.run(command, check=True, timeout=300)
-        answers = np.fromfile(folder / "out").reshape(-1, 8).T
-        return answers[0].astype(int), answers[1:]
+        answers = np.fromfile(folder / "out").reshape(-1, 16).T
+        run.watched = answers[8].astype(int), answers[9:]
+        run.instants = np.fromfile(folder / "instants").reshape(-1, 12).T
+        return answers[0].astype(int), answers[1:8]
 
     return run
 
@@ -52,10 +55,9 @@ def drawn(count, seed):
 def by_python(numbers):
     answers = []
     for row in numbers.T.tolist():
-        impact = Impact(*row)
-        assert alone(impact, TOLERANCE, MOST) == ""
-        ends = impact.rate, impact.change, impact.work, _time(impact), impact.deepest
-        answers.append((*ends, impact.compressions))
+        impact = Impact(*row, tolerance=TOLERANCE, most=MOST)
+        assert impact.follow() == 0
+        answers.append(impact.ends()[:6])
     return np.array(answers).T
 
 
@@ -98,6 +100,46 @@ def test_closed_forms(followed):
     psi1, chi = numbers[:2]
     lost = -found[1] * (psi1 + 0.5 * found[1]) / chi  # over mu² v1² M_n/(2 kappa), twice
     assert 2.5 * found[2] == pytest.approx(lost, abs=1e-11 * np.max(np.maximum(1.0, psi1**2)))
+
+
+def test_steps_that_are_shown_lead_to_the_answer(followed):
+    """Gross slip is stepped there; in time they go on, and end where the impact ends."""
+    numbers = drawn(60, 5)
+    _, found = followed(numbers)
+    status, watched = followed.watched
+    assert not status.any()
+    assert np.abs(watched[:5] - found[:5]).max() < 1e-10
+    impact, part, *_, time, radius, rate, stick, psi, _ = followed.instants
+    same = np.diff(impact) == 0
+    assert np.diff(time)[same].min() > -1e-12
+    assert set(np.diff(part)[same]) <= {0.0, 1.0}
+    assert (stick <= radius + 1e-12).all()
+    last = np.append(~same, True)
+    assert radius[last] == pytest.approx(np.zeros(60), abs=1e-12)
+    assert rate[last] == pytest.approx(found[0], abs=1e-11)
+    assert time[last] == pytest.approx(watched[3], abs=1e-12)
+    assert psi[last] - numbers[0] == pytest.approx(found[1], abs=1e-10)
+
+
+def test_instants_of_spheres_obey_closed_forms(followed):
+    """V² + u⁵ = 1; Coulomb's force where all slips; psi = psi1 V and F = psi1 P at chi = 1/2."""
+    draw = np.random.default_rng(6)
+    chi = np.append(draw.uniform(0.3, 10.0, 30), 0.5)
+    psi1 = np.append(draw.uniform(-3.0, 3.0, 30) * chi[:30], 0.7)
+    followed([psi1, chi, 0.0 * chi, 0.0 * chi])
+    impact, _, phase, sign, change, _, _, u, rate, stick, psi, force = followed.instants
+    assert np.abs(rate**2 + u**5 - 1.0).max() < 1e-11
+    slips = phase == 3.0
+    assert slips.any()
+    assert np.abs(force - sign * u**3)[slips].max() < 1e-12
+    assert np.abs(stick[slips]).max() == 0.0
+    assert (np.abs(force) <= u**3 + 1e-12).all()
+    half = impact == 30.0
+    assert np.abs(psi - 0.7 * rate)[half].max() < 1e-12
+    assert np.abs(force - 0.7 * u**3)[half].max() < 1e-12
+    begins = np.arange(impact.size) % 3 == 0
+    off = psi[begins] - psi1[impact[begins].astype(int)] - change[begins]
+    assert np.abs(off).max() < 1e-12
 
 
 @pytest.mark.slow

@@ -174,6 +174,34 @@ def test_a_history_is_followed_and_agrees():
     assert result.psi2 == pytest.approx(rebound(1.2, 3.0), abs=1e-9)
 
 
+@needs_library
+@pytest.mark.parametrize("psi1", [0.0, -0.4, 1.2, 3.0, 1e9])
+def test_histories_of_spheres_are_those_of_python(both, psi1):
+    scene = Scene.nondimensional(psi1=psi1, chi=3.0)
+    one, other = both(lambda: Simulation().run(scene, history="fields").check())
+    assert one.psi2 == pytest.approx(other.psi2, abs=1e-11 * max(1.0, abs(psi1)))
+    assert one.energy.friction_work == pytest.approx(other.energy.friction_work, abs=1e-11)
+    for name in ("time", "normal_force", "slip_velocity", "tangential_force"):
+        first, second = getattr(one.history, name), getattr(other.history, name)
+        assert first == pytest.approx(second, rel=1e-11, abs=1e-11 * np.abs(second).max())
+    if psi1:
+        first, second = one.history.fields, other.history.fields
+        assert first["front"] == pytest.approx(second["front"], abs=1e-7)
+        assert (first["slipping"] != second["slipping"]).mean() < 1e-4
+
+
+@needs_library
+def test_histories_of_bodies_are_those_of_python(both):
+    """Their instants are those of the steps; what is drawn through them is the same."""
+    scene = bodies(3, 7).take(1)
+    one, other = both(lambda: Simulation().run(scene, history=True).check().history)
+    for name in ("normal_force", "slip_velocity", "tangential_force", "normal_velocity"):
+        column, size = getattr(one, name), np.abs(getattr(other, name)).max()
+        drawn = np.interp(one.time, other.time, getattr(other, name))
+        assert np.abs(column - drawn).max() < 0.02 * size
+        assert column[-1] == pytest.approx(getattr(other, name)[-1], abs=1e-10 * size)
+
+
 def test_what_computes_is_told(monkeypatch, capsys):
     monkeypatch.setenv(compiled.VARIABLE, "0")
     assert main(["plugins", "show", "tangential.fronts"]) == 0

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Generator, Iterator, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import attrs
 import numpy as np
@@ -13,19 +13,17 @@ from numpy.typing import NDArray
 
 from contactlab.contracts import ClosedFormMotion, LostPathError, ScaledContact, Stretch
 from contactlab.numeric.types import Array
-from contactlab_laws.fronts.path import Answer, Impact, Part, Request
-from contactlab_laws.fronts.phases import STICK, Phase
-from contactlab_laws.fronts.series import Rows
-from contactlab_laws.fronts.steps import alone, error_of_step
+from contactlab_laws.fronts.phases import GROSS
+from contactlab_laws.fronts.steps import Steps, error_of_step, kept
 from contactlab_laws.hertz.motion import velocity_factor
 
 #: Rings in which stick and slip are shown; the solution itself knows no rings.
 RINGS = 200
-#: From the phase to the variable of a series: moves of Newton's method, kept between bounds, at
-#: most; how far the phase may then be off; and where in a step it is known for a first guess.
-INVERSIONS, ON_PHASE, GUESSES = 50, 2e-15, np.linspace(0.0, 1.0, 17)
-#: Steps of an impact, about half a second; below OFTEN in chi it is not oscillation that takes so
-#: many.
+#: From the contact to the variable of a series: moves of Newton's method, kept between bounds, at
+#: most; how far u or V may then be off; and the V beyond which it is u that is looked for.
+INVERSIONS, ON_CONTACT, STEEP = 50, 1e-14, 0.5
+#: Steps of an impact by Python's solver, about half a second; below OFTEN in chi it is not
+#: oscillation that takes so many.
 MOST_STEPS, OFTEN = 3000, 1e3
 
 
@@ -63,74 +61,59 @@ class FrontStretch(Stretch):
         }
 
 
-class Step(NamedTuple):
-    """Series of u, V, k, J and the front to ``length``, where the phase is ``stop``.
-
-    ``before`` is the change of velocity where they begin.
-    """
-
-    stop: float
-    sign: int
-    rows: list[list[float]]
-    length: float
-    before: float
-
-    def at(self, phase: Array) -> Array:
-        """Return change, J and the front at each phase, by Newton's method for the variable."""
-        rows = np.array(self.rows)
-        slopes = np.zeros((2, rows.shape[1]))
-        slopes[:, :-1] = rows[:2, 1:] * np.arange(1.0, rows.shape[1])
-        table = np.vstack([rows, slopes])
-
-        def look(t: Array) -> tuple[Array, Array]:
-            """Return the series and the slopes of u and V, and the phase."""
-            values = table @ np.vander(t, rows.shape[1], increasing=True).T
-            u = np.maximum(values[0], 0.0)
-            return values, np.arctan2(u, values[1] / velocity_factor(u))
-
-        known = self.length * GUESSES
-        t = np.interp(phase, look(known)[1], known)
-        low, high = np.zeros_like(t), np.full_like(t, self.length)
-        for _ in range(INVERSIONS):
-            values, here = look(t)
-            over = here - phase
-            if np.abs(over).max() < ON_PHASE:
-                break
-            u, rate = np.maximum(values[0], 0.0), values[1]
-            # u' = V x' and V' = -2.5 u⁴ x', where the phase grows by g(u) times x (theory §3)
-            steep = np.abs(rate) > 0.5
-            slope, pace = np.where(steep, values[5], values[6]), np.where(steep, rate, -2.5 * u**4)
-            low, high = np.where(over > 0.0, low, t), np.where(over > 0.0, t, high)
-            with np.errstate(all="ignore"):
-                new = t - over * pace / (velocity_factor(u) * slope)
-            t = np.where((new >= low) & (new <= high), new, 0.5 * (low + high))
-        change = self.before + self.sign * (values[1] - values[2] - (rows[1, 0] - rows[2, 0]))
-        return np.vstack([change, values[3:5]])
-
-
 @attrs.frozen(eq=False)
 class SeriesStretch(FrontStretch):
-    """Stick, or slip at the edge, in steps; ``least`` is the most negative change possible."""
+    """Stick, or slip at the edge, in steps that end at the phases ``stops``.
 
-    steps: list[Step]
+    ``least`` is the most negative change possible.
+    """
+
+    steps: Steps
+    stops: Array
     least: float
 
-    def _at(self, phase: Array) -> Array:
-        """Return change, J and the front at each phase."""
-        which = np.searchsorted([step.stop for step in self.steps[:-1]], phase)
-        columns = np.empty((3, phase.size))
-        for index in np.unique(which).tolist():
-            columns[:, which == index] = self.steps[index].at(phase[which == index])
-        return columns
+    def _at(self, contact: ScaledContact) -> Array:
+        """Return change, force and the front at each instant, by Newton's method.
+
+        The force is that of the series at the same place, so that both vary slowly with it.
+        """
+        phase, radius, rate = map(np.atleast_1d, (contact.phase, contact.radius, contact.rate))
+        steps = self.steps
+        which = np.searchsorted(self.stops[:-1], phase)
+        series, length = steps.series[which], steps.length[which]
+        count = series.shape[-1]
+        # u' = V and V' = -2.5 u⁴ over x: one of them is steep everywhere, and grows in ``way``
+        steep = np.abs(rate) > STEEP
+        way = np.where(steep & (rate > 0.0), 1.0, -1.0)
+        sought = way[:, None] * np.where(steep[:, None], series[:, 0], series[:, 1])
+        sought[:, 0] -= way * np.where(steep, radius, rate)
+        slopes = sought[:, 1:] * np.arange(1.0, count)
+        low, high, over = np.zeros_like(length), length, sought[:, 0]
+        with np.errstate(all="ignore"):
+            last = np.einsum("kn,kn->k", sought, np.vander(length, count, increasing=True))
+            t = length * np.clip(np.nan_to_num(over / (over - last)), 0.0, 1.0)
+            for _ in range(INVERSIONS):
+                powers = np.vander(t, count, increasing=True)
+                over = np.einsum("kn,kn->k", sought, powers)
+                off = np.abs(over) > ON_CONTACT
+                if not off.any():
+                    break
+                low, high = np.where(over > 0.0, low, t), np.where(over > 0.0, t, high)
+                new = t - over / np.einsum("kn,kn->k", slopes, powers[:, :-1])
+                new = np.where((new >= low) & (new <= high), new, 0.5 * (low + high))
+                t = np.where(off, new, t)
+        u, V, k, J, c = np.einsum("kin,kn->ik", series[:, :5], powers)
+        psi = V - k - (series[:, 1, 0] - series[:, 2, 0])
+        return np.array([steps.change[which] + self.sign * psi, self.sign * (u**3 - 1.5 * J), c])
 
     def states(self, contact: ScaledContact) -> tuple[Array, Array]:
         """Return (change of velocity since first touch, force)."""
-        change, lack, _ = self._at(contact.phase)
-        return np.clip(change, self.least, 0.0), self.sign * (contact.force - 1.5 * lack)
+        change, force, _ = self._at(contact)
+        return np.clip(change, self.least, 0.0), force
 
     def front(self, contact: ScaledContact) -> float:
         """Return the radius of the front at one instant."""
-        return max(0.0, float(self._at(np.array([contact.phase]))[2, 0]))
+        return max(0.0, float(self._at(contact)[2, 0]))
 
 
 @attrs.frozen(eq=False)
@@ -154,68 +137,50 @@ class GrossStretch(FrontStretch):
         return 0.0
 
 
-class CentralImpact(Impact):
-    """An impact of spheres that keeps its stretches, one for each part of its path."""
-
-    def __init__(self, psi1: float, chi: float) -> None:
-        super().__init__(psi1, chi)
-        self.psi1, self.phase, self.solves = psi1, 0.0, 0
-        self.kept: list[Step] = []
-        self.stretches: list[FrontStretch] = []
-
-    def keep(self, phase: Phase, rows: Rows, length: float, last: tuple[float, ...]) -> None:
-        """Keep a step."""
-        psi = rows[1][0] - rows[2][0] - (self.rate - self.margin)
-        stop = math.atan2(max(last[0], 0.0), last[1] / velocity_factor(max(last[0], 0.0)))
-        shown = [*rows[:4], rows[0] if phase is STICK else rows[4]]
-        before = self.change + self.sign * psi
-        self.kept.append(Step(stop, self.sign, shown, length, before))
-
-    def _known(self, sign: int, stop: float) -> tuple[int, float, float, float, float, int]:
-        """Return what stretches have in common, and go on to the end of one."""
-        start, self.phase = self.phase, max(self.phase, stop)
-        # The energy of slip never exceeds that at first touch, rounding of a small psi1 apart.
-        change = min(max(self.change, -2.0 * self.psi1), 0.0)
-        self.solves += len(self.kept)
-        return sign, start, self.phase, change, self.work, self.solves
-
-    def _along(
-        self, phase: Phase, own: tuple[float, ...] = (), constants: tuple[float, ...] = ()
-    ) -> Generator[Request, Answer, tuple[int, tuple[float, ...]]]:
-        ended = yield from super()._along(phase, own, constants)
-        self.end_stretch()
-        return ended
-
-    def end_stretch(self) -> None:
-        """Make a stretch of the steps kept so far, if there are any."""
-        if self.kept:
-            known = self._known(self.sign, self.kept[-1].stop)
-            self.stretches.append(SeriesStretch(*known, self.kept, -2.0 * self.psi1))
-            self.kept = []
-
-    def _gross(self) -> Part:
-        sign, before, rate = self.sign, self.change, self.rate
-        after = yield from super()._gross()
-        known = self._known(sign, math.atan2(self.radius, self.rate / velocity_factor(self.radius)))
-        self.stretches.append(GrossStretch(*known, before, rate, 2.0 * self.numbers[0]))
-        return after
-
-
 def stretches(
     velocity: float, inertia: float, motion: ClosedFormMotion, tolerance: float
 ) -> Iterator[Stretch]:
-    """Yield the stretches of one impact, from psi and 2.5 chi at first touch."""
+    """Yield the stretches of one impact, from psi and 2.5 chi at first touch; each is a phase."""
     chi = 0.5 * inertia * motion.scaled_mass
-    impact = CentralImpact(velocity, chi)
     error = error_of_step(tolerance) * min(1.0, velocity)
-    reason = alone(impact, error, MOST_STEPS, impact.keep)
-    impact.end_stretch()  # of an impact that is lost, for its history so far
-    yield from impact.stretches
-    if reason:
+    ends, status, steps = kept((velocity, chi, 0.0, 0.0), error, MOST_STEPS)
+    # The energy of slip never exceeds that at first touch, rounding of a small psi1 apart.
+    changes = np.clip(np.append(steps.change, ends[1]), -2.0 * velocity, 0.0)
+    works = np.append(steps.work, ends[2])
+    bounds = _phases(steps, lost=status != 0)
+    first = 0
+    for end in np.flatnonzero(np.diff(steps.part, append=-1.0)).tolist():
+        after = end + 1
+        known = (
+            int(steps.sign[first]), float(bounds[first]), float(bounds[after]),
+            float(changes[after]), float(works[after]), after,
+        )  # fmt: skip
+        if steps.phase[first] == GROSS:
+            before, rate = float(changes[first]), float(steps.series[first, 1, 0])
+            yield GrossStretch(*known, before, rate, 2.0 * chi)
+        else:
+            part = slice(first, after)
+            stops = bounds[first + 1 : after + 1]
+            yield SeriesStretch(*known, steps.take(part), stops, -2.0 * velocity)
+        first = after
+    if status:
+        count = max(len(steps.part), MOST_STEPS)
         why = f"at chi = {chi:.3g} the contact oscillates about sqrt(chi) times"
         if chi < OFTEN:
             why = "slip changes too often, or stick is lost within too short a time"
         raise LostPathError(
-            f"More than {MOST_STEPS} panels would be needed: {why}. A law of steps, such as "
+            f"More than {count} panels would be needed: {why}. A law of steps, such as "
             "springs under symplectic, can go on, with the error of its steps."
         )
+
+
+def _phases(steps: Steps, *, lost: bool) -> Array:
+    """Return the phases at which steps begin, and the last one ends; those never fall."""
+    u, rate = steps.series[:, :2, 0].T
+    if lost and len(steps.part):
+        powers = steps.length[-1] ** np.arange(steps.series.shape[-1])
+        last = steps.series[-1, :2] @ powers
+        u, rate = np.append(u, last[0]), np.append(rate, last[1])
+    u = np.maximum(u, 0.0)
+    begins = np.arctan2(u, rate / velocity_factor(u))
+    return np.maximum.accumulate(begins if lost else np.append(begins, math.pi))

@@ -25,8 +25,11 @@ LEAST_ERROR = 5e-13
 MOST_STEPS = 20_000
 #: psi2 is proportional to psi1 below it; smaller ones would be lost in rounding.
 LINEAR_BELOW = 1e-8
-#: The status of an impact whose memory is longer than the library's; Python's solver follows it.
-MEMORY = 3
+#: Statuses of impacts without an answer; the last has a memory longer than the library's, and
+#: Python's solver follows it.
+UNSETTLED, OUTGROWN, MEMORY = 1, 2, 3
+#: Steps for which there is room at first.
+ROOM = 64
 #: Begin of words on an installation without the library.
 BY_PYTHON = "Python, about 2 ms an impact"
 #: Sentences on impacts without an answer, by status.
@@ -85,6 +88,10 @@ def _library(wanted: bool) -> tuple[Any, str]:
         ctypes.c_long, pointer, ctypes.c_double, ctypes.c_int, pointer, pointer,
     )  # fmt: skip
     found.contactlab_impact_follow_all.restype = None
+    found.contactlab_impact_follow_kept.argtypes = (
+        pointer, ctypes.c_double, ctypes.c_int, ctypes.c_long, pointer, pointer, pointer,
+    )  # fmt: skip
+    found.contactlab_impact_follow_kept.restype = ctypes.c_long
     return found, COMPILED
 
 
@@ -115,6 +122,20 @@ def follow(
         count, given.ctypes.data, tolerance, most, out.ctypes.data, status.ctypes.data
     )
     return out, status
+
+
+def kept(numbers: Any, tolerance: float, most: int = MOST_STEPS) -> tuple[Array, int, Array]:
+    """Return what one impact leaves, its status, and its steps as rows of ``steps.Steps``."""
+    law, given = library(), np.array(numbers, dtype=np.float64)
+    out, status, count = np.empty(7), ctypes.c_int(), ROOM
+    rows = np.empty((0, law.contactlab_impact_width()))
+    while count > len(rows):
+        rows = np.empty((count, rows.shape[1]))
+        count = law.contactlab_impact_follow_kept(
+            given.ctypes.data, tolerance, most, count, rows.ctypes.data,
+            out.ctypes.data, ctypes.byref(status),
+        )  # fmt: skip
+    return out, status.value, rows[:count]
 
 
 def central(psi1: Array, chi: Array) -> tuple[Array, Array, NDArray[np.bool_]]:

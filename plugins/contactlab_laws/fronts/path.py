@@ -7,11 +7,16 @@ was drawn while all stuck, or locked out of slip of one sign. Slip eats the piec
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Generator
+from collections.abc import Callable
+from itertools import chain
 from typing import NamedTuple, TypeAlias
 
-from contactlab_laws.fronts.phases import DRAWN, GROSS, HEAD, LAWS, LOCKED, STICK, Numbers, Phase
-from contactlab_laws.fronts.series import Laws
+import numpy as np
+
+from contactlab_laws.fronts.compiled import OUTGROWN, UNSETTLED
+from contactlab_laws.fronts.phases import DRAWN, GROSS, LOCKED, STICK, first_fall, step
+from contactlab_laws.fronts.series import ORDER, Laws, Rows, begun, value
+from contactlab_laws.hertz.motion import scaled_motion, velocity_factor
 
 #: Where slip or stick ends with a smaller V, it ends with maximum compression.
 AT_REST = 1e-14
@@ -37,13 +42,12 @@ class Locked(NamedTuple):
     outer: float
 
 
-#: A phase of which the path asks, with its numbers.
-Request: TypeAlias = tuple[Phase, Numbers]
-#: The event that ended it, with the numbers there.
-Answer: TypeAlias = tuple[int, Numbers]
-#: A stretch of the path, and the one after it.
-Part: TypeAlias = Generator[Request, Answer, "Callable[[], Part] | None"]
-Next: TypeAlias = Callable[[], Part]
+class _LostError(Exception):
+    """The impact has no answer, for the reason that its argument, a status, says."""
+
+
+#: A part of the path, which returns the one after it.
+Part: TypeAlias = "Callable[[], Part | None]"
 
 
 class Impact:
@@ -53,8 +57,12 @@ class Impact:
     ----------
     psi1, chi, lam, eta : float
         The parameters of theory §14; lam and eta of spheres are zero.
-    stepped : bool
-        Whether gross slip is stepped, too, which has a closed form.
+    tolerance : float
+        Error of a step.
+    most : int
+        Steps after which the impact is given up.
+    shown : list, optional
+        Where each step is kept as a row of numbers: those of ``contactlab_impact_step``.
 
     Attributes
     ----------
@@ -65,39 +73,59 @@ class Impact:
     work : float
         Friction work over 2.5 mu² v1²/(2 kappa W_nn).
     time, deepest : float
-        T, but for the slides in ``slides``, and the greatest u so far.
-    slides : list
-        Gross slip in closed form: 1 + s lam, V² + (1 + s lam) u⁵, and u and V at both ends.
+        T, and the greatest u so far.
     compressions, steps : int
         How often the approach grew; steps.
     """
 
     def __init__(
-        self, psi1: float, chi: float, lam: float = 0.0, eta: float = 0.0, *, stepped: bool = False
+        self,
+        psi1: float,
+        chi: float,
+        lam: float = 0.0,
+        eta: float = 0.0,
+        *,
+        tolerance: float,
+        most: int,
+        shown: list[list[float]] | None = None,
     ) -> None:
-        self.numbers, self.stepped = (chi, lam, eta), stepped
+        self.numbers, self.tolerance, self.most, self.shown = (
+            (chi, lam, eta),
+            tolerance,
+            most,
+            shown,
+        )
         self.radius, self.rate, self.lack = 0.0, 1.0, 0.0
         self.change = self.time = self.work = self.deepest = 0.0
         self.sign = 1 if psi1 >= 0.0 else -1
         self.laws = Laws.of(self.sign, *self.numbers)
         self.margin = 1.0 - abs(psi1)
         self.memory: list[Drawn | Locked] = []
-        self.slides: list[tuple[float, ...]] = []
-        self.steps: float = 0
-        self.compressions: float = 1
+        self.compressions, self.steps, self.phases = 1, 0, 0
 
-    def path(self) -> Generator[Request, Answer, None]:
-        """Ask for the phases of the impact until separation."""
+    def follow(self) -> int:
+        """Follow the impact to separation; return its status, a place of ``compiled.LOST``."""
         slips = self.margin < 0.0 or (self.margin == 0.0 and self.laws.drive <= 0.0)
-        part: Next | None = self._gross if slips else self._stuck
-        while part is not None:
-            part = yield from part()
+        part: Part | None = self._gross if slips else self._stuck
+        try:
+            while part is not None:
+                part = part()
+        except _LostError as lost:
+            return int(lost.args[0])
+        except ArithmeticError:
+            return OUTGROWN
+        return 0
+
+    def ends(self) -> tuple[float, ...]:
+        """Return what the impact leaves, as ``compiled.follow`` does."""
+        left = self.rate, self.change, self.work, self.time, self.deepest
+        return (*left, self.compressions, self.steps)
 
     # ---------------------------------------------------------------------------- the parts
 
     def _stuck(self) -> Part:
         """All sticks; the edge begins to slip where k, or its like of the other sign, is zero."""
-        event, (length,) = yield from self._along(STICK, (0.0,))
+        event, (length,) = self._along(STICK, (0.0,))
         if abs(self.rate) < AT_REST:
             self.rate = 0.0
             event = int(self._at_rest())
@@ -113,26 +141,20 @@ class Impact:
         piece = self.memory[-1]
         assert isinstance(piece, Drawn)
         *then, self.lack = piece.outer
-        event, (front, rate, margin, left) = yield from self._along(DRAWN, (*then, piece.length))
-        if event == 1:
-            self.memory.pop()
-            return self._slip()
+        event, (front, rate, margin, left) = self._along(DRAWN, (*then, piece.length))
         self.memory[-1] = Drawn(piece.sign, (front, rate, margin, self.lack), left)
-        return self._stopped(front) if event == 0 else self._caught(front)
+        return self._after(event, front)
 
     def _locked(self) -> Part:
         """Let the front run back through a zone that locked out of slip of the other sign."""
         piece = self.memory[-1]
         assert isinstance(piece, Locked)
         self.lack = (4.0 / 3.0) * piece.outer**3 - piece.lack
-        event, (front,) = yield from self._along(LOCKED, (piece.outer,), (piece.inner,))
-        if event == 1:
-            self.memory.pop()
-            return self._slip()
+        event, (front,) = self._along(LOCKED, (piece.outer,), piece.inner)
         self.memory[-1] = piece._replace(outer=front)
-        return self._stopped(front) if event == 0 else self._caught(front)
+        return self._after(event, front)
 
-    def _gross(self) -> Part:
+    def _gross(self) -> Part | None:
         """All slips, J = 0: V² + (1 + s lam) zeta^2.5 is constant, and k rises as V falls."""
         press, _, drive, _ = self.laws
         rate, margin, depth = self.rate, self.margin, self.radius**5
@@ -154,14 +176,17 @@ class Impact:
             share = -depth / (rate + last) if rate < 0.0 else (rate - last) / press
             fall, rise, after = press * share, drive * share, 0.0
             work = 0.8 * share * (-margin - 0.5 * drive * share)
-        before, change = self.radius, self.change - self.sign * (fall + rise)
-        radius = max(after, 0.0) ** 0.2
-        if press > SHALLOW and not self.stepped:
-            self.slides.append((press, left, before, rate, radius, last))
+        radius, change = max(after, 0.0) ** 0.2, self.change - self.sign * (fall + rise)
+        if self.shown is not None and not any(self.numbers[1:]):
+            # of spheres the motion is a closed form, and nobody asks for the series
+            self._show(GROSS, begun((self.radius, rate, margin, 0.0, self.time)), 0.0)
+            self.phases, self.steps = self.phases + 1, self.steps + 1
+        elif press > SHALLOW and self.shown is None:
+            self.time += _hertz_time(press, left, (self.radius, radius), (rate, last))
             if rate > 0.0 >= last:
                 self.deepest = max(self.deepest, (left / press) ** 0.2)
         elif depth > 0.0 or rate > 0.0:
-            yield from self._along(GROSS, (), (int(stops),))
+            self._along(GROSS, (), stops)
         self.radius, self.rate, self.margin = radius, last, margin + rise
         self.change, self.work = change, self.work + work
         self.deepest = max(self.deepest, radius)
@@ -169,7 +194,18 @@ class Impact:
 
     # --------------------------------------------------------------------- what comes after
 
-    def _slip(self) -> Next:
+    def _after(self, event: int, front: float) -> Part:
+        """Return what comes after slip has stopped, a piece is spent, or the edge met the front."""
+        if event == 0:
+            return self._stopped(front)
+        if event == 1:
+            self.memory.pop()
+        else:
+            self.radius = front
+            self._turn()
+        return self._slip()
+
+    def _slip(self) -> Part:
         """Let the edge slip into the outermost piece; without any all slips."""
         memory = self.memory
         while memory and isinstance(memory[-1], Locked) and memory[-1].sign == self.sign:
@@ -185,19 +221,13 @@ class Impact:
             memory[-1] = Drawn(self.sign, outer, piece.length)
         return self._drawn
 
-    def _stopped(self, front: float = 0.0) -> Next:
+    def _stopped(self, front: float = 0.0) -> Part:
         """Slip has stopped: its zone locks. In unloading the edge slips on with the other sign."""
         self.margin = 0.0
         self.memory.append(Locked(self.sign, self.lack, front, self.radius))
         if self.rate > AT_REST:
             return self._stuck
         self.rate = min(self.rate, 0.0)
-        self._turn()
-        return self._slip()
-
-    def _caught(self, front: float) -> Next:
-        """Let the edge, which has met the front, slip with the other sign."""
-        self.radius = front
         self._turn()
         return self._slip()
 
@@ -220,15 +250,43 @@ class Impact:
     # ------------------------------------------------------------------------------ phases
 
     def _along(
-        self, phase: Phase, own: tuple[float, ...] = (), constants: tuple[float, ...] = ()
-    ) -> Generator[Request, Answer, tuple[int, tuple[float, ...]]]:
-        """Ask for a phase; return the event that ended it, and what the phase has of its own."""
-        tally = (self.deepest, self.compressions, self.steps)
-        state = (self.radius, self.rate, self.margin, self.lack, *own, self.time, self.work)
-        psi = self.rate - self.margin
-        event, numbers = yield phase, (*tally, *self.laws, *state, *constants)
-        self.deepest, self.compressions, self.steps = numbers[:HEAD]
-        self.radius, self.rate, self.margin, self.lack = numbers[LAWS : LAWS + 4]
-        *ends, self.time, self.work = numbers[LAWS + 4 : LAWS + phase.size]
-        self.change += self.sign * (self.rate - self.margin - psi)
-        return event, tuple(ends)
+        self, phase: int, own: tuple[float, ...] = (), end: float = 0.0
+    ) -> tuple[int, list[float]]:
+        """Follow a phase; return the event that ended it, and what the phase has of its own."""
+        state = [self.radius, self.rate, self.margin, self.lack, *own, self.time]
+        change, psi, event = self.change, self.rate - self.margin, -1
+        while event < 0:
+            if self.steps >= self.most:
+                raise _LostError(UNSETTLED)
+            made = step(phase, self.laws, state, end, self.tolerance)
+            if made is None:
+                raise _LostError(OUTGROWN)
+            rows, length, event, work = made
+            self._show(phase, rows, length)
+            before, state = state, [value(row, length) for row in rows]
+            self.deepest = max(self.deepest, before[0], state[0])
+            if before[1] > 0.0 >= state[1]:
+                top, _ = first_fall([(rows[1], False)], length)
+                self.deepest = max(self.deepest, value(rows[0], top))
+            self.compressions += before[1] <= 0.0 < state[1]
+            self.steps, self.work = self.steps + 1, self.work + work
+            self.change = change + self.sign * (state[1] - state[2] - psi)
+        self.phases += 1
+        self.radius, self.rate, self.margin, self.lack = state[:4]
+        self.time = state[-1]
+        return event, state[4:-1]
+
+    def _show(self, phase: int, rows: Rows, length: float) -> None:
+        """Keep a step, if steps are kept."""
+        if self.shown is not None:
+            stick = {STICK: rows[0], GROSS: [0.0] * (ORDER + 1)}.get(phase, rows[4])
+            head = (self.phases, phase, self.sign, self.change, self.work, length)
+            self.shown.append([*head, *chain(*rows[:4], stick, rows[-1])])
+
+
+def _hertz_time(press: float, left: float, *ends: tuple[float, float]) -> float:
+    """Return T between two u and V of gross slip, where V² + ``press`` u⁵ is ``left``."""
+    top, speed = (left / press) ** 0.2, math.sqrt(left)
+    radius, rate = np.array(ends[0]) / top, np.array(ends[1]) / speed
+    begin, end = scaled_motion(np.arctan2(radius, rate / velocity_factor(radius)))[2]
+    return float(top * top / speed * (end - begin))

@@ -1,16 +1,15 @@
-"""The phases of an impact: the series of each, and the events that end it.
-
-An impact enters a phase with its numbers: the greatest u, how often the approach grew, steps, the
-four ``Laws``, the state that the phase's series continue, and what stays constant. It leaves with
-the numbers at the event.
-"""
+"""The phases of an impact: one step of each along its series, to the event that ends it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, NamedTuple, TypeAlias
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
 
 from contactlab_laws.fronts.series import (
+    ORDER,
     Laws,
     Rows,
     Series,
@@ -18,99 +17,187 @@ from contactlab_laws.fronts.series import (
     along_gross,
     along_locked,
     along_stick,
-    difference,
-    negative,
+    value,
 )
 
+#: All sticks; the edge slips into memory that was drawn while all stuck, or into a zone that locked
+#: out of slip; all slips.
+STICK, DRAWN, LOCKED, GROSS = range(4)
 #: A front whose square is below this part of its slope is followed to the centre.
 INMOST = 0.1
 #: An edge that is less beyond the front, or goes less beyond it, does so by rounding.
 APART = 4e-15
-#: Numbers before the laws and before the state.
-HEAD, LAWS = 3, 7
+#: A series is followed as far as its last two terms stay below the tolerance, times the first;
+#: beyond the second forces turn more than events are looked for.
+CAREFUL, LONGEST = 0.9, 1.0
+#: Error of a step over its velocity that is rounding: a jam may multiply velocities by 1e8.
+ROUNDING = 1e-14
+#: Parts of a step at whose ends events are looked for, and where a root has been found.
+LOOKS, ROOT_VALUE, ROOT_WIDTH, ROOT_CAP = 8, 1e-17, 1e-16, 80
+#: Moves of Newton's method to where a dip is lowest.
+MOVES = 8
 
-Numbers: TypeAlias = tuple[float, ...]
-#: Series whose fall below zero ends a phase. One marked True begins at zero: the fall of the series
-#: over the variable is looked for.
-Events: TypeAlias = list[tuple[Series, Any]]
+#: Places and weights of Gauss's rule on [0, 1], which adds up the friction work of a step.
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+PLACES, WEIGHTS = (0.5 + 0.5 * _NODES).tolist(), (0.5 * _WEIGHTS).tolist()
 
 
-class Phase(NamedTuple):
-    """The length of a phase's state, its series and events, and the form in which they are found.
+class Step(NamedTuple):
+    """Series to ``length``, the event there, -1 if there is none, and the friction work."""
 
-    ``course`` takes laws, state, constants and the form. ``power`` is the friction work over the
-    variable, from the form and the values of the series ``slips``; where none slips these are none.
+    rows: Rows
+    length: float
+    event: int
+    work: float
+
+
+def step(
+    phase: int, laws: Laws, state: Sequence[float], end: float, tolerance: float
+) -> Step | None:
+    """Return the next step of a phase; None if its numbers grow without bound.
+
+    ``end`` is the radius at which a locked zone is spent, or whether gross slip stops.
     """
-
-    size: int
-    form: Callable[[Any, Any], Any]
-    course: Callable[[Laws, Any, Any, int], tuple[Rows, Events]]
-    slips: tuple[int, ...] = ()
-    power: Callable[..., Any] = float
-
-
-def _stick(laws: Laws, state: Any, _constants: Any, _form: int) -> tuple[Rows, Events]:
-    """All sticks until k, or its like of the other sign, is zero."""
-    rows = along_stick(laws, state)
-    other = difference(rows[1], difference(rows[2], rows[1]))
-    return rows, [(rows[2], state[2] == 0.0), (other, False)]
-
-
-def _drawn(laws: Laws, state: Any, _constants: Any, form: int) -> tuple[Rows, Events]:
-    """Slip eats drawn memory until slip stops, the memory is spent, or the edge meets the front."""
-    rows = along_drawn(laws, state, fresh=form == 2, back=form == 1)
-    return rows, [_slip_stops(rows, state), (rows[7], False), _edge_meets(rows, state)]
-
-
-def _drawn_form(state: Any, _constants: Any) -> Any:
-    """Return 2 where slip begins, 1 where u k of the motion is larger than of the memory, or 0."""
-    u, k, c, k1 = state[0], state[2], state[4], state[6]
-    return (abs(u * k) > abs(c * k1)) + 2 * (k == 0.0 and k1 == 0.0)
-
-
-def _drawn_power(form: int, u: Any, k: Any, c: Any, k1: Any) -> Any:
-    """Return -u k x' (u - c)² (2u + c), where u k x' = c k_1 x_1'."""
-    return (c * k1 if form == 1 else -u * k) * (u - c) ** 2 * (2.0 * u + c)
+    back = inmost = False
+    if phase == STICK:
+        rows = along_stick(laws, state)
+        # k, or its like of the other sign, falls below zero
+        other = [rate - (margin - rate) for rate, margin in zip(rows[1], rows[2], strict=True)]
+        events = [(rows[2], state[2] == 0.0), (other, False)]
+    elif phase == GROSS:
+        rows = along_gross(laws, state)
+        events = [_slip_stops(rows) if end else (rows[0], state[0] == 0.0)]
+    else:
+        if phase == DRAWN:
+            u, _, k, _, c, _, k1, *_ = state
+            fresh, back = k == 0.0 and k1 == 0.0, abs(u * k) > abs(c * k1)
+            rows = along_drawn(laws, state, fresh=fresh, back=back)
+            spent = rows[7]
+        else:
+            inmost = state[4] * state[4] < INMOST * abs(state[0] * state[2])
+            rows = along_locked(laws, state, inmost=inmost)
+            spent = [rows[4][0] - end, *rows[4][1:]]
+        events = [_slip_stops(rows), (spent, False), _edge_meets(rows)]
+    length = _usable(rows, tolerance)
+    if length is None:
+        return None
+    length, event = first_fall(events, length)
+    work = 0.0 if phase in (STICK, GROSS) else _work(rows, length, back=back, inmost=inmost)
+    return Step(rows, length, event, work)
 
 
-def _locked(laws: Laws, state: Any, constants: Any, form: int) -> tuple[Rows, Events]:
-    """Slip eats a locked zone until slip stops, the zone is spent, or the edge meets the front."""
-    rows = along_locked(laws, state, inmost=form == 1)
-    rest = rows[4].copy()
-    rest[0] = rest[0] - constants[0]
-    return rows, [_slip_stops(rows, state), (rest, False), _edge_meets(rows, state)]
+def _slip_stops(rows: Rows) -> tuple[Series, bool]:
+    """Return -k."""
+    return [-margin for margin in rows[2]], rows[2][0] == 0.0
 
 
-def _locked_form(state: Any, _constants: Any) -> Any:
-    """Return 1 where the front is about to reach the centre."""
-    return state[4] * state[4] < INMOST * abs(state[0] * state[2])
-
-
-def _locked_power(form: int, u: Any, k: Any, c: Any) -> Any:
-    """Return -u k x' (u - c)² (2u + c), where x' is 1 or, near the centre, 2c."""
-    return -u * k * (u - c) ** 2 * (2.0 * u + c) * (2.0 * c if form == 1 else 1.0)
-
-
-def _slip_stops(rows: Rows, state: Any) -> tuple[Series, Any]:
-    return negative(rows[2]), state[2] == 0.0
-
-
-def _edge_meets(rows: Rows, state: Any) -> tuple[Series, Any]:
-    gap, meets = difference(rows[0], rows[4]), state[0] == state[4]
+def _edge_meets(rows: Rows) -> tuple[Series, bool]:
+    """Return how far the edge is beyond the front."""
+    gap, meets = [u - c for u, c in zip(rows[0], rows[4], strict=True)], rows[0][0] == rows[4][0]
     # at chi = 1/2 the two go together; beside zero it is the slope that is looked at
-    gap[0] = gap[0] + APART * (1 - meets)
-    gap[1] = gap[1] + APART * meets
+    gap[meets] += APART
     return gap, meets
 
 
-def _gross(laws: Laws, state: Any, _constants: Any, form: int) -> tuple[Rows, Events]:
-    """All slips until slip stops or, where it does not, until u is zero."""
-    rows = along_gross(laws, state)
-    return rows, [_slip_stops(rows, state) if form else (rows[0], state[0] == 0.0)]
+def _work(rows: Rows, length: float, *, back: bool, inmost: bool) -> float:
+    """Return the integral of -u k x' (u - c)² (2u + c): u k x' is c k_1 x_1' in drawn memory."""
+    total = 0.0
+    for place, weight in zip(PLACES, WEIGHTS, strict=True):
+        u, k, c = (value(rows[index], length * place) for index in (0, 2, 4))
+        pace = c * value(rows[6], length * place) if back else -u * k
+        total += weight * pace * (2.0 * c if inmost else 1.0) * (u - c) ** 2 * (2.0 * u + c)
+    return length * total
 
 
-STICK = Phase(7, lambda state, _constants: 0 * state[0], _stick)
-DRAWN = Phase(10, _drawn_form, _drawn, (0, 2, 4, 6), _drawn_power)
-LOCKED = Phase(7, _locked_form, _locked, (0, 2, 4), _locked_power)
-#: The constant is the form: whether slip stops.
-GROSS = Phase(6, lambda _state, constants: constants[0], _gross)
+def _usable(rows: Rows, tolerance: float) -> float | None:
+    """Return how far all series of a step hold but that of time; None if they are not finite."""
+    last = before = total = 0.0
+    for row in rows[:-1]:
+        allowed = max(tolerance, ROUNDING * abs(row[0]))
+        size, larger = abs(row[ORDER]) / allowed, abs(row[ORDER - 1]) / allowed
+        last, before, total = max(last, size), max(before, larger), total + size + larger
+    if not total < math.inf:
+        return None
+    length = LONGEST
+    if last > 0.0:
+        length = min(length, last ** (-1.0 / ORDER))
+    if before > 0.0:
+        length = min(length, before ** (-1.0 / (ORDER - 1)))
+    return CAREFUL * length
+
+
+def first_fall(events: Sequence[tuple[Series, bool]], end: float) -> tuple[float, int]:
+    """Return where the first of some series falls below zero in (0, end], and which; (end, -1).
+
+    Of a series marked True, which begins at zero, the fall over the variable is looked for.
+    """
+    where, which = end, -1
+    for index, (series, begins) in enumerate(events):
+        found = fall(series[begins:], where)
+        if found is not None:
+            where, which = found, index
+    return where, which
+
+
+def fall(series: Series, end: float) -> float | None:
+    """Return the first place at which a series is negative, seen at ``LOOKS`` places."""
+    most = 0.0
+    for coefficient in reversed(series):
+        most = most * end + abs(coefficient)
+    if 2.0 * series[0] > most:  # the first term is more than all others together
+        return None
+    width, before, falls = end / LOOKS, series[0], series[1] < 0.0
+    for look in range(1, LOOKS + 1):
+        t = width * look
+        here = value(series, t)
+        if here < 0.0:
+            return _root(series, t - width, t, before, here)
+        fell, falls = falls, here < before if look < LOOKS else _slopes(series, t)[0] < 0.0
+        if (fell and not falls) or (look == LOOKS and here < before and not falls):
+            # a dip, perhaps below zero, in this part or the one before
+            start = max(t - 2.0 * width, 0.0)
+            lowest = _lowest(series, start, t)
+            least = value(series, lowest)
+            if least < 0.0:
+                return _root(series, start, lowest, value(series, start), least)
+        before = here
+    return None
+
+
+def _slopes(series: Series, t: float) -> tuple[float, float]:
+    """Return the first and the second derivative at t."""
+    slope = bend = 0.0
+    for n in range(len(series) - 1, 0, -1):
+        bend = bend * t + slope
+        slope = slope * t + n * series[n]
+    return slope, bend
+
+
+def _lowest(series: Series, low: float, high: float) -> float:
+    """Return where a dip between two places is lowest, by Newton's method kept within them."""
+    t = 0.5 * (low + high)
+    for _ in range(MOVES):
+        slope, bend = _slopes(series, t)
+        low, high = (t, high) if slope < 0.0 else (low, t)
+        new = t - slope / bend if bend > 0.0 else low
+        t = new if low < new < high else 0.5 * (low + high)
+    return t
+
+
+def _root(series: Series, a: float, b: float, at_a: float, at_b: float) -> float:
+    """Return the root between a and b by the Illinois method."""
+    if at_a <= 0.0:
+        return a
+    side, t = 0, a
+    for _ in range(ROOT_CAP):
+        t = (at_a * b - at_b * a) / (at_a - at_b)
+        here = value(series, t)
+        if abs(here) < ROOT_VALUE or b - a < ROOT_WIDTH:
+            break
+        if here > 0.0:
+            a, at_a, at_b = t, here, 0.5 * at_b if side > 0 else at_b
+            side = 1
+        else:
+            b, at_b, at_a = t, here, 0.5 * at_a if side < 0 else at_a
+            side = -1
+    return t

@@ -46,9 +46,9 @@ class Laws(NamedTuple):
         return cls(press, relief, 2.0 * chi + sign * eta - press, 3.0 * chi - relief)
 
 
-def blank(count: int) -> list[Series]:
-    """Return series of zeros."""
-    return [[0.0] * (ORDER + 1) for _ in range(count)]
+def begun(state: Sequence[float]) -> Rows:
+    """Return series that begin with the numbers of a state."""
+    return [[number] + [0.0] * ORDER for number in state]
 
 
 def product(a: Series, b: Series, n: int) -> float:
@@ -63,16 +63,6 @@ def lower(a: Series, b: Series, n: int) -> float:
     return total
 
 
-def difference(a: Series, b: Series) -> Series:
-    """Return a - b."""
-    return [x - y for x, y in zip(a, b, strict=True)]
-
-
-def negative(a: Series) -> Series:
-    """Return -a."""
-    return [-x for x in a]
-
-
 def value(series: Series, t: float) -> float:
     """Return the value at t by Horner's rule."""
     total: float = 0.0
@@ -81,54 +71,88 @@ def value(series: Series, t: float) -> float:
     return total
 
 
-class Forces:
-    """V' and k' of one contact, order by order, from its u and the J."""
+class Contact:
+    """A contact whose u, V and k are found order by order, with the J; V' and k' are kept."""
 
-    def __init__(self, laws: Laws, u: Series, lack: Series) -> None:
-        self.laws, self.u, self.lack = laws, u, lack
-        self.square, self.fourth, self.rate, self.margin = blank(4)
+    def __init__(self, laws: Laws, u: Series, rate: Series, margin: Series, lack: Series) -> None:
+        self.laws, self.rows = laws, (u, rate, margin, lack)
+        self.square, self.fourth, self.forces, self.pulls = begun((0.0,) * 4)
 
-    def next(self, n: int) -> tuple[float, float]:
-        """Find, and return, the coefficients n."""
+    def press(self, n: int) -> None:
+        """Find the coefficients n of V' and k'."""
         press, relief, drive, spring = self.laws
-        u = self.u
+        u, _, _, lack = self.rows
         self.square[n] = product(u, u, n)
         self.fourth[n] = fourth = product(self.square, self.square, n)
-        held = product(u, self.lack, n)
-        self.rate[n] = rate = -2.5 * (press * fourth - relief * held)
-        self.margin[n] = margin = 2.5 * (drive * fourth - spring * held)
-        return rate, margin
+        held = product(u, lack, n)
+        self.forces[n] = -2.5 * (press * fourth - relief * held)
+        self.pulls[n] = 2.5 * (drive * fourth - spring * held)
+
+    def move(self, n: int, way: float = 1.0) -> None:
+        """Find the coefficients n + 1 where the variable is x, or -x."""
+        u, rate, margin, _ = self.rows
+        share = way * SHARES[n]
+        u[n + 1] = share * rate[n]
+        rate[n + 1] = share * self.forces[n]
+        margin[n + 1] = share * self.pulls[n]
+
+    def move_along(self, n: int, pace: Series, share: float) -> None:
+        """Find the coefficients n + 1 where x has the slope ``pace``, times (n + 1) ``share``."""
+        u, rate, margin, _ = self.rows
+        u[n + 1] = share * product(rate, pace, n)
+        rate[n + 1] = share * product(self.forces, pace, n)
+        margin[n + 1] = share * product(self.pulls, pace, n)
 
 
 def along_stick(laws: Laws, state: Sequence[float]) -> Rows:
     """Return u, V, k, J, x and T while all sticks, from their values."""
-    U, V, K, J, X, T = rows = blank(6)
-    for row, begin in zip(rows, state, strict=False):
-        row[0] = begin
+    U, V, K, J, X, T = rows = begun(state)
     X[1] += 1.0
-    forces = Forces(laws, U, J)
+    contact = Contact(laws, U, V, K, J)
     for n, share in enumerate(SHARES):
-        rate, margin = forces.next(n)
-        J[n + 1] = 2.0 * share * product(forces.square, K, n)
+        contact.press(n)
+        contact.move(n)
+        J[n + 1] = 2.0 * share * product(contact.square, K, n)
         T[n + 1] = 2.0 * share * U[n]
-        U[n + 1] = share * V[n]
-        V[n + 1] = share * rate
-        K[n + 1] = share * margin
     return rows
 
 
 def along_gross(laws: Laws, state: Sequence[float]) -> Rows:
     """Return u, V, k, J = 0 and T while all slips."""
-    U, V, K, J, T = rows = blank(5)
-    for row, begin in zip(rows, state, strict=False):
-        row[0] = begin
-    forces = Forces(laws, U, J)
+    *rest, T = rows = begun(state)
+    contact = Contact(laws, *rest)
     for n, share in enumerate(SHARES):
-        rate, margin = forces.next(n)
-        T[n + 1] = 2.0 * share * U[n]
-        U[n + 1] = share * V[n]
-        V[n + 1] = share * rate
-        K[n + 1] = share * margin
+        contact.press(n)
+        contact.move(n)
+        T[n + 1] = 2.0 * share * rest[0][n]
+    return rows
+
+
+def along_locked(laws: Laws, state: Sequence[float], *, inmost: bool) -> Rows:
+    """Return u, V, k, J, c and T while a zone slips that was locked out of the other sign.
+
+    There m + 2c² and J - (4/3) c³ are constant, and 2 c dc = u k dx. The variable is x or, for
+    ``inmost`` fronts, one in which dx = 2 c and dc = u k: as c² goes through zero, c ends.
+    """
+    U, V, K, J, C, T = rows = begun(state)
+    gone, run = begun((0.0, 0.0))
+    contact = Contact(laws, U, V, K, J)
+    for n, share in enumerate(SHARES):
+        contact.press(n)
+        gone[n] = product(U, K, n)
+        twice = 2.0 * share
+        if inmost:
+            contact.move_along(n, C, twice)
+            T[n + 1] = 2.0 * twice * product(U, C, n)
+            C[n + 1] = share * gone[n]
+            run[n] = 2.0 * product(C, gone, n)
+            J[n + 1] = twice * product(C, run, n)
+        else:
+            contact.move(n)
+            T[n + 1] = twice * U[n]
+            run[n] = (0.5 * gone[n] - lower(run, C, n)) / C[0]
+            C[n + 1] = share * run[n]
+            J[n + 1] = twice * product(C, gone, n)
     return rows
 
 
@@ -145,96 +169,30 @@ def along_drawn(laws: Laws, state: Sequence[float], *, fresh: bool, back: bool) 
     back : bool
         True if x_1, which falls, is the variable, and not x.
     """
-    U, V, K, J, C, V1, K1, X1, T = rows = blank(9)
-    for row, begin in zip(rows, state, strict=False):
-        row[0] = begin
+    U, V, K, J, C, V1, K1, X1, T = rows = begun(state)
     way = -1.0 if back else 1.0
-    (u, v, k), (u1, v1, k1) = ((C, V1, K1), (U, V, K)) if back else ((U, V, K), (C, V1, K1))
-    lead, trail = Forces(laws, u, J), Forces(laws, u1, J)
-    # u k of both, the pace of the other, and its k over x where slip begins
-    gone, other, run, slope = blank(4)
+    motion, memory = Contact(laws, U, V, K, J), Contact(laws, C, V1, K1, J)
+    lead, trail = (memory, motion) if back else (motion, memory)
+    # u k of the leading contact, u k of the other or, where slip begins, that over x, and its pace
+    gone, other, run = begun((0.0,) * 3)
     for n, share in enumerate(SHARES):
-        ahead = way * share
-        rate, margin = lead.next(n)
-        trail.next(n)
-        u[n + 1] = ahead * v[n]
-        v[n + 1] = ahead * rate
-        k[n + 1] = ahead * margin
-        if fresh:
-            known = lower(U, K, n + 1)
-            run[n] = _fresh(n, C, trail.margin, run, slope, other, known)
-            k1[n + 1] = slope[n]
-            gone[n] = product(u, k, n)
-        else:
-            gone[n] = way * product(u, k, n)
-            other[n] = product(u1, k1, n)
+        lead.press(n)
+        trail.press(n)
+        lead.move(n, way)
+        gone[n] = way * product(lead.rows[0], lead.rows[2], n)
+        if not fresh:
+            other[n] = product(trail.rows[0], trail.rows[2], n)
             run[n] = (gone[n] - lower(run, other, n)) / other[0]
-            k1[n + 1] = share * product(trail.margin, run, n)
-        u1[n + 1] = share * product(v1, run, n)
-        v1[n + 1] = share * product(trail.rate, run, n)
+        elif n == 0:
+            run[0], other[0] = -1.0, -C[0] * trail.pulls[0]
+        else:  # the coefficient sought stands in k_1 too, as k_1' is the pull times dx_1/dx
+            own = C[0] * share * trail.pulls[0]
+            rest = C[0] * share * lower(run, trail.pulls, n) + lower(K1, C, n + 1)
+            known = lower(U, K, n + 1) - lower(other, run, n)
+            run[n] = (known + rest) / (other[0] - own)
+            other[n] = rest + own * run[n]
+        trail.move_along(n, run, share)
         J[n + 1] = 2.0 * share * product(C, gone, n)
         T[n + 1] = 2.0 * share * (product(U, run, n) if back else U[n])
         X1[n + 1] = (0.0 if n else -1.0) if back else share * run[n]
-    return rows
-
-
-def _fresh(
-    n: int,
-    front: Series,
-    back: Series,
-    run: Series,
-    slope: Series,
-    start: Series,
-    known: float,
-) -> float:
-    """Return the coefficient n of dx_1/dx where slip begins, from (c K_1) dx_1/dx = u K.
-
-    K = k/x and K_1 = k_1/x are ``slope`` and its like; ``start`` is c K_1, ``known`` u K. The
-    coefficient stands in K_1 too, as k_1' = ``back`` dx_1/dx.
-    """
-    if n == 0:
-        slope[0] = -back[0]
-        start[0] = -front[0] * back[0]
-        return -1.0
-    part = SHARES[n] * lower(run, back, n)
-    rest = front[0] * part + lower(slope, front, n)
-    own = SHARES[n] * back[0]
-    # run[n], the coefficient sought, is still zero
-    coefficient = (known - lower(start, run, n) + rest) / (start[0] - front[0] * own)
-    slope[n] = part + own * coefficient
-    start[n] = rest + front[0] * own * coefficient
-    return coefficient
-
-
-def along_locked(laws: Laws, state: Sequence[float], *, inmost: bool) -> Rows:
-    """Return u, V, k, J, c and T while a zone slips that was locked out of the other sign.
-
-    There m + 2c² and J - (4/3) c³ are constant, and 2 c dc = u k dx. The variable is x or, for
-    ``inmost`` fronts, one in which dx = 2 c and dc = u k: as c² goes through zero, c ends.
-    """
-    U, V, K, J, C, T = rows = blank(6)
-    for row, begin in zip(rows, state, strict=False):
-        row[0] = begin
-    gone, run = blank(2)
-    forces = Forces(laws, U, J)
-    for n, share in enumerate(SHARES):
-        rate, margin = forces.next(n)
-        gone[n] = product(U, K, n)
-        if inmost:
-            twice = 2.0 * share
-            U[n + 1] = twice * product(V, C, n)
-            V[n + 1] = twice * product(forces.rate, C, n)
-            K[n + 1] = twice * product(forces.margin, C, n)
-            T[n + 1] = 2.0 * twice * product(U, C, n)
-            C[n + 1] = share * gone[n]
-            run[n] = 2.0 * product(C, gone, n)
-            J[n + 1] = twice * product(C, run, n)
-        else:
-            U[n + 1] = share * V[n]
-            V[n + 1] = share * rate
-            K[n + 1] = share * margin
-            T[n + 1] = 2.0 * share * U[n]
-            run[n] = (0.5 * gone[n] - lower(run, C, n)) / C[0]
-            C[n + 1] = share * run[n]
-            J[n + 1] = 2.0 * share * product(C, gone, n)
     return rows

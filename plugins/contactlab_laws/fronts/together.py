@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.contracts import (
     Ends,
@@ -22,15 +21,16 @@ from contactlab.contracts.status import Status
 from contactlab.impact.hertz import DURATION_CONSTANT, hertz_scales
 from contactlab.numeric.types import Array
 from contactlab_laws.fronts import compiled
+from contactlab_laws.fronts.compiled import MEMORY, MOST_STEPS
 from contactlab_laws.fronts.path import Impact
-from contactlab_laws.fronts.phases import Phase
-from contactlab_laws.fronts.series import Rows, value
-from contactlab_laws.fronts.steps import Watch, error_of_step
-from contactlab_laws.fronts.steps import alone as followed
-from contactlab_laws.hertz.motion import scaled_motion, velocity_factor
+from contactlab_laws.fronts.steps import Steps, error_of_step, kept
 
 #: The accuracy if none is asked for.
 USUAL = 1e-9
+#: Parts of a step at which an instant is shown.
+INSTANTS = np.array([0.25, 0.5, 0.75, 1.0])
+#: Sentences on impacts without an answer, by status.
+LOST = tuple(words.format(MOST_STEPS) for words in compiled.LOST)
 #: V, psi's change, work, T, u and compressions of an impact without friction (theory §1).
 SMOOTH = (-1.0, 0.0, 0.0, DURATION_CONSTANT, 1.0, 1.0)
 
@@ -52,8 +52,13 @@ def motion(
     smooth = np.broadcast_to(mu == 0.0, shape)
     numbers = np.array([np.broadcast_to(column, shape) for column in columns], dtype=float)
     moving = np.flatnonzero(~smooth)
-    watch = None if observer is None else partial(_watch, scene, scales, observer)
-    found, lost = solved(numbers.reshape(4, -1)[:, moving], tolerance, watch)
+    sought = numbers.reshape(4, -1)[:, moving]
+    if observer is None or moving.size != 1:
+        found, lost = solved(sought, tolerance)
+    else:
+        left, status, steps = kept(sought[:, 0].tolist(), tolerance, MOST_STEPS)
+        found, lost = np.array(left)[:, None], np.array([status])
+        _show(scene, scales, steps, observer)
     rows = np.repeat(np.array(SMOOTH)[:, None], smooth.size, axis=1)
     rows[:, moving] = found[:6]
     statuses = np.full(smooth.size, Status.SUCCESS, dtype=object)
@@ -61,7 +66,7 @@ def motion(
     for place in np.flatnonzero(lost).tolist():
         rows[:, moving[place]] = math.nan
         statuses[moving[place]] = Status.UNRESOLVED
-        details[moving[place]] = f"{lost[place]}, from Fronts."
+        details[moving[place]] = f"{LOST[lost[place]]}, from Fronts."
     rate, psi, work, time, radius, times = rows.reshape(6, *shape)
     unit = mu * speed / kappa
     dragged = -2.0 * speed * W[..., 0, 1] / W[..., 0, 0]
@@ -85,70 +90,36 @@ def motion(
     )
 
 
-def solved(
-    numbers: Array, tolerance: float, watch: Callable[[Impact], Watch] | None = None
-) -> tuple[Array, Any]:
-    """Return what impacts leave, as ``compiled.follow`` does, and why some are lost, as objects.
-
-    Parameters
-    ----------
-    numbers : array, shape (4, impacts)
-        psi1, chi, lam and eta.
-    tolerance : float
-        Error of a step.
-    watch : callable, optional
-        Returns what shows the steps of an impact; Python's solver alone shows them.
-    """
+def solved(numbers: Array, tolerance: float) -> tuple[Array, NDArray[np.intc]]:
+    """Return what impacts leave and their statuses, as ``compiled.follow`` does."""
     count = numbers.shape[1]
-    out, lost = np.empty((7, count)), np.full(count, "", dtype=object)
-    alone = np.arange(count)
-    if watch is None and compiled.library() is not None:
-        out, status = compiled.follow(numbers, tolerance, compiled.MOST_STEPS)
-        for place in np.flatnonzero(status).tolist():
-            if status[place] != compiled.MEMORY:
-                lost[place] = compiled.LOST[status[place]].format(compiled.MOST_STEPS)
-        alone = np.flatnonzero(status == compiled.MEMORY)
-    for place in alone.tolist():
-        impact = Impact(*numbers[:, place].tolist(), stepped=watch is not None)
-        shown = None if watch is None else watch(impact)
-        lost[place] = followed(impact, tolerance, compiled.MOST_STEPS, shown)
-        ends = impact.rate, impact.change, impact.work, _time(impact), impact.deepest
-        out[:, place] = *ends, impact.compressions, impact.steps
-    return out, lost
+    out, status = np.empty((7, count)), np.full(count, MEMORY, dtype=np.intc)
+    if compiled.library() is not None:
+        out, status = compiled.follow(numbers, tolerance)
+    for place in np.flatnonzero(status == MEMORY).tolist():
+        impact = Impact(*numbers[:, place].tolist(), tolerance=tolerance, most=MOST_STEPS)
+        status[place] = impact.follow()
+        out[:, place] = impact.ends()
+    return out, status
 
 
-def _time(impact: Impact) -> float:
-    """Return T at separation, with Hertz's in gross slip, where V² + ``press`` u⁵ is ``left``."""
-    time = impact.time
-    for press, left, *ends in impact.slides:
-        top, speed = (left / press) ** 0.2, math.sqrt(left)
-        radius, rate = np.array(ends[::2]) / top, np.array(ends[1::2]) / speed
-        phases = np.arctan2(radius, rate / velocity_factor(radius))
-        begin, end = scaled_motion(phases)[2]
-        time += top * top / speed * (end - begin)
-    return float(time)
-
-
-def _watch(scene: Scene, scales: Any, observer: Observer, impact: Impact) -> Watch:
-    """Return what shows instants of an impact to an observer in SI."""
+def _show(scene: Scene, scales: Any, steps: Steps, observer: Observer) -> None:
+    """Show four instants of each step to an observer in SI."""
     speed, mu = scene.normal_speed, scene.friction_coefficient
-    unit = mu * speed / scene.pair.stiffness_ratio
-
-    def watch(_phase: Phase, rows: Rows, length: float, _last: tuple[float, ...]) -> None:
-        for part in (0.25, 0.5, 0.75, 1.0):
-            u, rate, margin, lack = (value(row, part * length) for row in rows[:4])
-            time = value(rows[-1], part * length)
-            psi, force = impact.sign * (rate - margin), impact.sign * (u**3 - 1.5 * lack)
-            contact = NormalContact(u**3 * scales.force, u * scales.radius, u * u * scales.approach)
-            observer(
-                Sample(
-                    time * scales.approach / speed,
-                    u * u * scales.approach,
-                    rate * speed,
-                    contact.complete,
-                    psi * unit,
-                    force * mu * scales.force,
-                )
-            )
-
-    return watch
+    unit: Any = mu * speed / scene.pair.stiffness_ratio
+    powers = np.multiply.outer(steps.length, INSTANTS)[..., None] ** np.arange(
+        steps.series.shape[-1]
+    )
+    values = np.einsum("smn,sin->ism", powers, steps.series)
+    u, rate, margin, lack, _, time = values
+    sign = steps.sign[:, None]
+    columns = (
+        time * scales.approach / speed, u * u * scales.approach, rate * speed, u**3 * scales.force,
+        u * scales.radius, sign * (rate - margin) * unit,
+        sign * (u**3 - 1.5 * lack) * mu * scales.force,
+    )  # fmt: skip
+    for time, approach, rate, force, radius, velocity, friction in zip(
+        *(column.ravel().tolist() for column in columns), strict=True
+    ):
+        contact = NormalContact(force, radius, approach)
+        observer(Sample(time, approach, rate, contact.complete, velocity, friction))
