@@ -17,14 +17,19 @@ from typing import Any
 
 import numpy as np
 
+from contactlab.numeric.types import Array
+
 #: Share of the step after which springs are cut first, and what that cut weighs at the end.
 EARLY = 1.0 - math.sqrt(0.5)
 WEIGHT = (1.0 - EARLY) / EARLY
 #: Added to lengths that divide, so that none is zero.
 TINY = 1e-300
-#: Steps of Newton's method for the point of the limit on an ellipse; force over the limit beyond
+#: Steps of Newton's method for the point of the limit on an ellipse (right to 5e-11 for stiffnesses
+#: that differ by less than a factor of 2, as those of ellipses do); force over the limit beyond
 #: which it no longer turns.
-STEPS, FAR = 3, 1e60
+STEPS, FAR = 2, 1e60
+#: Forces whose points are sought at a time, so that the numbers stay in the cache.
+BLOCK = 4096
 
 
 def turned(held: Any, move: Any, least: Any, most: Any, cross: Any = None) -> tuple[Any, Any]:
@@ -80,9 +85,14 @@ def beyond(force: Any, limit: Any, cross: Any = None) -> Any:
     if cross is None:
         return force * np.where(slips, 1.0 - limit / (size + TINY), 0.0)
     over = np.zeros_like(force)
-    if slips.any():
-        limits, ratio = (np.broadcast_to(each, force.shape)[slips] for each in (limit, cross))
-        over[slips] = force[slips] - _closest(force[slips], limits, ratio)
+    parts = force.real, force.imag, limit, cross
+    along, across, limits, ratio = (np.broadcast_to(each, force.shape)[slips] for each in parts)
+    for start in range(0, along.size, BLOCK):
+        block = slice(start, start + BLOCK)
+        first, second = _closest(along[block], across[block], limits[block], ratio[block])
+        along[block] -= first
+        across[block] -= second
+    over.real[slips], over.imag[slips] = along, across
     return over
 
 
@@ -101,22 +111,21 @@ def energy(force: Any, cross: Any) -> Any:
     return (force.conj() * relaxed(force, cross)).real
 
 
-def _closest(force: Any, limit: Any, cross: Any) -> Any:
+def _closest(along: Array, across: Array, limit: Array, cross: Array) -> tuple[Array, Array]:
     """Return the forces of length ``limit`` that are closest in the energy of the springs."""
     # force/(1 + g stiffness) along each axis, in units of the limit. 1/length is nearly linear in
     # g, and Newton's method begins with the stiffness along the force.
-    scaled = force / (limit + TINY)
-    size = np.abs(scaled)
-    if (far := size > FAR).any():
-        scaled = np.where(far, scaled * (FAR / size), scaled)
-        size = np.minimum(size, FAR)
-    x, y = np.square(scaled.real), np.square(scaled.imag)
-    g = (size - 1.0) * (x + y) / (x + cross * y)
+    unit = 1.0 / np.maximum(limit, np.hypot(along, across) / FAR + TINY)
+    u, v = along * unit, across * unit
+    x, y = u * u, v * v
+    square = x + y
+    g = (np.sqrt(square) - 1.0) * square / (x + cross * y)
     for _ in range(STEPS):
         one, other = 1.0 / (1.0 + g), 1.0 / (1.0 + cross * g)
         first, second = x * one * one, y * other * other
         square = first + second
-        length = np.sqrt(square)
-        g = g + (length - 1.0) * square / (first * one + cross * second * other)
-    point = scaled.real / (1.0 + g) + 1j * (scaled.imag / (1.0 + cross * g))
-    return limit * point / np.abs(point)
+        g += (np.sqrt(square) - 1.0) * square / (first * one + cross * second * other)
+    u /= 1.0 + g
+    v /= 1.0 + cross * g
+    unit = limit / np.hypot(u, v)
+    return unit * u, unit * v
