@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from abc import abstractmethod
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -29,7 +28,10 @@ MOST_STEPS, OFTEN = 3000, 1e3
 
 @attrs.frozen(eq=False)
 class FrontStretch(Stretch):
-    """A stretch within whose ``front`` all sticks, and outside which all slips one way."""
+    """A stretch within whose front all sticks, and outside which all slips one way.
+
+    Its ``steps`` end at the phases ``stops``; ``psi1`` and ``chi`` are those of the impact.
+    """
 
     sign: int
     start: float
@@ -37,10 +39,10 @@ class FrontStretch(Stretch):
     change: float
     work: float
     solves: int
-
-    @abstractmethod
-    def front(self, contact: ScaledContact) -> float:
-        """Return the radius of the front at one instant."""
+    steps: Steps
+    stops: Array
+    psi1: float
+    chi: float
 
     def fields(
         self, normal: ClosedFormMotion, contact: ScaledContact, factor: float
@@ -50,7 +52,7 @@ class FrontStretch(Stretch):
         ``front`` (m) is the radius within which the contact sticks.
         """
         ring, largest = (np.arange(RINGS) + 0.5) / RINGS, float(normal.maximum_radius)
-        front = self.front(contact)
+        front = 0.0 if self._gross else max(0.0, float(self._at(contact)[2, 0]))
         touching, inside = ring < contact.radius, ring < front
         shown = self.sign if factor > 0.0 else -self.sign
         return {
@@ -60,17 +62,19 @@ class FrontStretch(Stretch):
             "slipping": np.where(touching & ~inside, shown, 0).astype(np.int8),
         }
 
+    @property
+    def _gross(self) -> bool:
+        return bool(self.steps.phase[0] == GROSS)
 
-@attrs.frozen(eq=False)
-class SeriesStretch(FrontStretch):
-    """Stick, or slip at the edge, in steps that end at the phases ``stops``.
-
-    ``least`` is the most negative change possible.
-    """
-
-    steps: Steps
-    stops: Array
-    least: float
+    def states(self, contact: ScaledContact) -> tuple[Array, Array]:
+        """Return (change of velocity since first touch, force)."""
+        least = -2.0 * self.psi1  # energy of slip never exceeds that at first touch
+        if self._gross:  # psi falls in proportion to V, under Coulomb's force
+            gone = 2.0 * self.chi * (self.steps.series[0, 1, 0] - contact.rate)
+            before = np.clip(self.steps.change[0], least, 0.0)
+            return before - self.sign * gone, self.sign * contact.force
+        change, force, _ = self._at(contact)
+        return np.clip(change, least, 0.0), force
 
     def _at(self, contact: ScaledContact) -> Array:
         """Return change, force and the front at each instant, by Newton's method.
@@ -106,36 +110,6 @@ class SeriesStretch(FrontStretch):
         psi = V - k - (series[:, 1, 0] - series[:, 2, 0])
         return np.array([steps.change[which] + self.sign * psi, self.sign * (u**3 - 1.5 * J), c])
 
-    def states(self, contact: ScaledContact) -> tuple[Array, Array]:
-        """Return (change of velocity since first touch, force)."""
-        change, force, _ = self._at(contact)
-        return np.clip(change, self.least, 0.0), force
-
-    def front(self, contact: ScaledContact) -> float:
-        """Return the radius of the front at one instant."""
-        return max(0.0, float(self._at(contact)[2, 0]))
-
-
-@attrs.frozen(eq=False)
-class GrossStretch(FrontStretch):
-    """Gross slip: psi falls in proportion to V, under Coulomb's force.
-
-    ``ratio`` is 2 chi; ``before`` and ``rate`` are change of velocity and V where it begins.
-    """
-
-    before: float
-    rate: float
-    ratio: float
-
-    def states(self, contact: ScaledContact) -> tuple[Array, Array]:
-        """Return (change of velocity since first touch, force)."""
-        gone = (self.sign * self.ratio) * (self.rate - contact.rate)
-        return self.before - gone, self.sign * contact.force
-
-    def front(self, contact: ScaledContact) -> float:
-        """Return 0: the front is at the centre."""
-        return 0.0
-
 
 def stretches(
     velocity: float, inertia: float, motion: ClosedFormMotion, tolerance: float
@@ -144,24 +118,18 @@ def stretches(
     chi = 0.5 * inertia * motion.scaled_mass
     error = error_of_step(tolerance) * min(1.0, velocity)
     ends, status, steps = kept((velocity, chi, 0.0, 0.0), error, MOST_STEPS)
-    # The energy of slip never exceeds that at first touch, rounding of a small psi1 apart.
+    # rounding of a small psi1 apart, the change is one that slip can make
     changes = np.clip(np.append(steps.change, ends[1]), -2.0 * velocity, 0.0)
     works = np.append(steps.work, ends[2])
     bounds = _phases(steps, lost=status != 0)
     first = 0
     for end in np.flatnonzero(np.diff(steps.part, append=-1.0)).tolist():
         after = end + 1
-        known = (
+        yield FrontStretch(
             int(steps.sign[first]), float(bounds[first]), float(bounds[after]),
             float(changes[after]), float(works[after]), after,
+            steps.take(slice(first, after)), bounds[first + 1 : after + 1], velocity, chi,
         )  # fmt: skip
-        if steps.phase[first] == GROSS:
-            before, rate = float(changes[first]), float(steps.series[first, 1, 0])
-            yield GrossStretch(*known, before, rate, 2.0 * chi)
-        else:
-            part = slice(first, after)
-            stops = bounds[first + 1 : after + 1]
-            yield SeriesStretch(*known, steps.take(part), stops, -2.0 * velocity)
         first = after
     if status:
         count = max(len(steps.part), MOST_STEPS)
