@@ -91,7 +91,7 @@ __all__ = [
 ]
 
 
-def create(name: str, **options: Any) -> Any:
+def create(name: str, **options: object) -> Any:
     """Return a new law by name: ``create("tangential.annulus", annuli=50)``.
 
     Parameters

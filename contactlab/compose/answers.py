@@ -20,6 +20,7 @@ from contactlab.contracts.whole_impact import WholeImpact
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import shown
+from contactlab.numeric.types import Real
 
 Mask = NDArray[np.bool_]
 
@@ -123,13 +124,13 @@ def show(normal: NormalMotion, known: Sequence[Answer], observer: Observer) -> N
         observer(Sample(time, approach, rate, touching, velocity, acting, fields))
 
 
-def _columns(normal: NormalMotion, phases: Any) -> list[Any]:
+def _columns(normal: NormalMotion, phases: Real) -> list[Any]:
     """Return time, approach, rate, the entries of the contact, and load impulse."""
     time, approach, rate, contact, impulse = normal.at(phases)
     return [time, approach, rate, *contact, impulse]
 
 
-def _fields(known: Sequence[Answer], impulse: Any, shape: tuple[int, ...]) -> Mapping[str, Any]:
+def _fields(known: Sequence[Answer], impulse: Real, shape: tuple[int, ...]) -> Mapping[str, Any]:
     """Return the fields of whole-impact answers at one instant; NaN for impacts without."""
     fields: dict[str, Any] = {}
     if not shape:

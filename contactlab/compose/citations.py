@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from importlib import metadata, resources
-from typing import Any
 
 from contactlab.compose.options import section
 
@@ -14,7 +13,7 @@ DOI = re.compile(r"10\.\d{4,9}/[^\s,;}\"'`]+[^\s,;.}\"'`]")
 YEAR = re.compile(r"\b(?:19|20)\d\d(?=\)|\.?$)")
 
 
-def references(law: Any) -> list[str]:
+def references(law: object) -> list[str]:
     """Return the sources in the section References of a law, or of a class of laws."""
     text = section(law if isinstance(law, type) else type(law), "References").strip()
     return [" ".join(entry.split()) for entry in re.split(r"\n\n+", text) if entry]

@@ -15,6 +15,7 @@ from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.impact.encounter import Encounter
 from contactlab.numeric.arrays import every, some
 from contactlab.numeric.checks import Real, check_place, real, refuse
+from contactlab.numeric.types import Array, Numbers
 from contactlab.numeric.vectors import LEAST
 
 SEPARATING = ("refuse", "pass")
@@ -24,7 +25,7 @@ def collide(
     encounter: Encounter,
     simulation: Simulation | None = None,
     *,
-    restitution: Real | Callable[[Any], Any] = 1.0,
+    restitution: Numbers | Callable[[float], Numbers] | Callable[[Array], Numbers] = 1.0,
     separating: str = "refuse",
 ) -> Collision:
     """Return velocities and spins of both bodies after an encounter, or after each of a batch.
@@ -119,7 +120,7 @@ def collide(
     return Collision.by(encounter, result, met, **about)
 
 
-def _alone(given: Any, restitution: Any) -> None:
+def _alone(given: object, restitution: Real) -> None:
     """Refuse a restitution beside a simulation."""
     if np.any(restitution != 1.0):
         remedy = "give it to the normal law: create('normal.viscoelastic', restitution=0.9)"
@@ -135,7 +136,7 @@ def _spread(restitution: Any, shape: tuple[int, ...]) -> Any:
         raise refuse("restitution", restitution, rule) from None
 
 
-def _at_speeds(restitution: Callable[[Any], Any], encounter: Encounter) -> Any:
+def _at_speeds(restitution: Callable[..., Numbers], encounter: Encounter) -> Any:
     """Return the restitution at the normal speed of each encounter; 1 where bodies separate."""
     shape, approach = encounter.shape, encounter.meeting().approach
     apart = np.broadcast_to(~(np.asarray(approach) >= LEAST), shape)

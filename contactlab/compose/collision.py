@@ -13,13 +13,14 @@ from contactlab.compose.collision_plan import collision_plan
 from contactlab.compose.restituted import planned, run_by_restitution
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.status import Status
-from contactlab.impact.bodies import Sphere
+from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.body_contact import arms, in_space, pushed
 from contactlab.impact.encounter import Encounter
+from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.arrays import filled
 from contactlab.numeric.checks import Real, refuse
 from contactlab.numeric.names import attributes_told
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Mask
 from contactlab.outcome.answer import Answer
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.energy import EnergyLedger, books
@@ -100,7 +101,7 @@ class Collision(Answer):
         return cls.by(encounter, result, met)
 
     @classmethod
-    def by(cls, encounter: Encounter, result: ImpactResult, met: Any, **about: Any) -> Collision:
+    def by(cls, encounter: Encounter, result: ImpactResult, met: Mask, **about: Any) -> Collision:
         """Return the collision of ``encounter`` by the result of those that ``met``.
 
         Parameters
@@ -222,7 +223,7 @@ class Collision(Answer):
         """Velocity of the target's surface at the contact after the impact, in m/s."""
         return self.target_velocity + self._rim(1, self.encounter.target, self.target_spin)
 
-    def _rim(self, side: int, body: Any, spin: Array) -> Array:
+    def _rim(self, side: int, body: Sphere | HalfSpace | RigidBody, spin: Array) -> Array:
         """Return the velocity in m/s, relative to the centre, of the surface at the contact."""
         normal = np.stack(self.encounter.meeting().normal, axis=-1)
         normal = np.broadcast_to(normal, (*self.encounter.shape, 3))
@@ -273,7 +274,7 @@ class Collision(Answer):
         return {name: json_value(np.asarray(getattr(self, name))) for name, _ in VECTORS_AFTER}
 
 
-def _columns(encounter: Encounter, met: Any, *quantities: Any) -> Array:
+def _columns(encounter: Encounter, met: Mask, *quantities: Real) -> Array:
     """Return quantities of the encounters that met as rows, 0 without a collision."""
     columns = np.zeros((len(quantities), *encounter.shape))
     for k, quantity in enumerate(quantities):
@@ -281,7 +282,7 @@ def _columns(encounter: Encounter, met: Any, *quantities: Any) -> Array:
     return columns
 
 
-def _moved(encounter: Encounter, result: ImpactResult, met: Any) -> dict[str, Any]:
+def _moved(encounter: Encounter, result: ImpactResult, met: Mask) -> dict[str, Any]:
     """Return the attributes of a collision of bodies that are no spheres."""
     motion, part = result.motion, encounter if np.all(met) else encounter.take(met)
     axes: Any = result.scene.frame

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.compose.rebound import RESTITUTED_CHI, restituted_error
 from contactlab.impact.cautions import contact_vectors
@@ -19,7 +20,7 @@ PARTED = "collision: the bodies separate, they pass through untouched"
 FIRST, EACH = 0.1, 6e-4
 
 
-def collision_plan(plan: Plan, met: Encounter | None, passed: Any) -> Plan:
+def collision_plan(plan: Plan, met: Encounter | None, passed: NDArray[np.bool_]) -> Plan:
     """Return the plan with clauses on separating bodies and contacts of bodies.
 
     ``plan`` is that of the encounters that ``met``, None if no bodies did; ``passed`` marks the
@@ -34,7 +35,7 @@ def collision_plan(plan: Plan, met: Encounter | None, passed: Any) -> Plan:
     return plan.changed(left_out=tuple(left_out), cautions=tuple(cautions))
 
 
-def by_rebound(plan: Plan, chi: Any, restitution: Real) -> Plan:
+def by_rebound(plan: Plan, chi: Real, restitution: Real) -> Plan:
     """Return the plan of laws that answer as ``rebound`` does, with the words of ``rebound``."""
     marched = plan.columns.marched
     error = np.where(marched, restituted_error(chi, restitution), plan.psi2_error)
@@ -57,7 +58,7 @@ def by_rebound(plan: Plan, chi: Any, restitution: Real) -> Plan:
     return plan.changed(computed=tuple(computed), psi2_error=error if error.ndim else float(error))
 
 
-def _lasting(chi: Any, marched: Any) -> str:
+def _lasting(chi: Real, marched: NDArray[np.bool_]) -> str:
     """Return about how long the springs of ``rebound`` take, on a computer of the year 2026."""
     far = np.maximum(np.broadcast_to(chi, np.shape(marched))[marched] / RESTITUTED_CHI[1], 1.0)
     seconds = FIRST + EACH * float(np.sum(far**0.75))

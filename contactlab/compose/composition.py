@@ -170,7 +170,7 @@ def _remedy(laws: Laws, planar: bool) -> str:
     return f"no law at hand has one beside normal = {_name(laws.normal)}; take another normal law"
 
 
-def law(kind: str, value: object, **options: Any) -> Any:
+def law(kind: str, value: object, **options: object) -> Any:
     """Return the law of ``kind`` that ``value`` names, made with ``options``; or a law as it is."""
     if isinstance(value, str):
         name = full_name(kind, value)
@@ -263,7 +263,7 @@ def _fits(*parts: Law) -> bool:
     return misfit(*parts) is None
 
 
-def misfit(normal: Any, tangential: Any = None, integrator: Any = None) -> str | None:
+def misfit(normal: Law, tangential: Any = None, integrator: Any = None) -> str | None:
     """Return why laws do not fit, with the names of both; None if they fit."""
     if "elastic_hertz" in normal.offers and not isinstance(normal, ClosedFormNormalLaw):
         return (

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.compose import solve
 from contactlab.compose.composition import Laws
 from contactlab.compose.normal_motion import normal_or_failed
 from contactlab.compose.planning import CLOSED_FORM
 from contactlab.contracts.error_model import psi_magnitude
-from contactlab.contracts.status import Status
+from contactlab.contracts.status import Status, Statuses
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Array, Mask
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.result import ImpactResult
 
@@ -61,7 +64,13 @@ def estimated(laws: Laws, result: ImpactResult) -> tuple[Real, Real]:
 
 
 def _fill(
-    laws: Laws, scene: Scene, part: Scene, errors: Any, answer: Any, marched: Any, left: Any
+    laws: Laws,
+    scene: Scene,
+    part: Scene,
+    errors: Array,
+    answer: NDArray[np.complex128],
+    marched: Mask,
+    left: Mask,
 ) -> None:
     """Write the errors of impacts that are solved alike, by the resolution that each has."""
     resolutions = np.full(scene.shape, np.nan)
@@ -83,7 +92,9 @@ def _resolution(laws: Laws, scene: Scene) -> Any:
     return np.broadcast_to(resolution, scene.shape)
 
 
-def _distance(laws: Laws, scene: Scene, resolution: float | None, answer: Any) -> Any:
+def _distance(
+    laws: Laws, scene: Scene, resolution: float | None, answer: NDArray[np.complex128]
+) -> Any:
     """Return the estimated errors, shape (2, ...); 0 where no finer run is possible."""
     options = _options(laws, resolution)
     counts = {kind: value for kind, value in options.items() if isinstance(value, int)}
@@ -145,7 +156,7 @@ def _options(laws: Laws, resolution: float | None) -> dict[str, Any]:
     return options
 
 
-def _finer(laws: Laws, options: dict[str, Any], times: int) -> Laws | None:
+def _finer(laws: Laws, options: Mapping[str, float], times: int) -> Laws | None:
     """Return the laws with counts ``times`` as large; None without options, or if a law refuses."""
     changed = {}
     for kind, value in options.items():
@@ -158,5 +169,5 @@ def _finer(laws: Laws, options: dict[str, Any], times: int) -> Laws | None:
     return laws.changed(**changed) if changed else None
 
 
-def _successes(status: Any) -> Any:
+def _successes(status: Statuses) -> Any:
     return np.asarray(status, dtype=object) == Status.SUCCESS

@@ -93,7 +93,7 @@ class Named:
         return self.value
 
 
-def ask(info: PluginInfo, hook: str, **arguments: Any) -> Any:
+def ask(info: PluginInfo, hook: str, **arguments: object) -> Any:
     """Import the plug-in of an entry point, and return what its hook answers.
 
     Raises

@@ -54,7 +54,7 @@ def rebounding(
     return -restitution * contact.approach, change, chosen(work <= 0.0, 0.0, work)
 
 
-def _check(part: Encounter, impulse: Any, change: Any) -> None:
+def _check(part: Encounter, impulse: Real, change: Real) -> None:
     """Refuse encounters whose numbers a float cannot hold, as ``Scene`` does."""
     if not every(impulse >= LEAST_IMPULSE):
         raise refuse(
@@ -117,7 +117,7 @@ def moved(
     )
 
 
-def turned(encounter: Encounter, moved: Moved, change: Any) -> Moved:
+def turned(encounter: Encounter, moved: Moved, change: Real) -> Moved:
     """Return what ``moved`` returned, with a change (rad/s) of the relative spin about the normal.
 
     The couple is opposite on both spheres: each takes its share by its inertia.
@@ -195,7 +195,7 @@ def _pushed(part: Encounter, contact: Contact, push: Any, drag: Any) -> list[Arr
     return vectors
 
 
-def _push(moved: list[Array], part: Encounter, contact: Contact, push: Any, drag: Any) -> None:
+def _push(moved: list[Array], part: Encounter, contact: Contact, push: Real, drag: Real) -> None:
     """Write ``VELOCITIES`` after a normal impulse ``push`` and one along the slip, in N s."""
     (n1, n2, n3), (t1, t2, t3) = contact.normal, contact.along
     across = (n2 * t3 - n3 * t2, n3 * t1 - n1 * t3, n1 * t2 - n2 * t1)

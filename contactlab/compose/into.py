@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.compose.composition import Laws
 from contactlab.compose.kept import TRIED_AGAIN, fingerprint, opened, written_piece
@@ -213,7 +214,7 @@ def _total(scenes: Scene | GridParts | Iterable[Scene]) -> int | None:
     return math.prod(scenes.shape) if isinstance(scenes, Scene) else None
 
 
-def _codes(statuses: Any) -> Any:
+def _codes(statuses: NDArray[np.object_]) -> Any:
     """Return the codes of an array of statuses, one byte each."""
     if succeeded(statuses):  # a look at each takes longer than the impacts
         return np.zeros(statuses.shape, dtype=np.uint8)

@@ -7,7 +7,7 @@ import hashlib
 import json
 import os
 import pickle
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from enum import Enum
 from importlib import metadata
 from pathlib import Path
@@ -23,7 +23,9 @@ from contactlab.compose.pieces import Piece
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts.law import Law
 from contactlab.contracts.status import Status
+from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
+from contactlab.numeric.types import Column
 from contactlab.outcome.chunk_files import DAMAGED, chunks_in, name_of, refuse_file, refuse_place
 from contactlab.outcome.chunk_forms import NPZ, Chunk, Form
 from contactlab.outcome.files import written
@@ -39,7 +41,7 @@ TRIED_AGAIN = (Status.INTERRUPTED, Status.WORKER_DIED)
 class Kept:
     """A folder with the finished pieces of one sweep, each written to a temporary file first."""
 
-    def __init__(self, folder: str | Path, laws: Laws, scene: Any, block: int) -> None:
+    def __init__(self, folder: str | Path, laws: Laws, scene: Scene, block: int) -> None:
         self.impacts = scene.shape[0]
         more = {"impacts": self.impacts, "scene": fingerprint(scene), "block": block}
         self.folder, self.sweep = opened("keep", folder, laws, more)
@@ -83,7 +85,7 @@ class Kept:
 
 
 def opened(
-    argument: str, folder: str | Path, laws: Laws, more: Mapping[str, Any], form: Form = NPZ
+    argument: str, folder: str | Path, laws: Laws, more: Mapping[str, object], form: Form = NPZ
 ) -> tuple[Path, str]:
     """Return the folder of a sweep, made if there is none, and the sweep's fingerprint.
 
@@ -114,7 +116,7 @@ def opened(
     return Path(folder), fingerprint(about)
 
 
-def _check(argument: str, folder: Path, about: Mapping[str, Any], form: Form) -> None:
+def _check(argument: str, folder: Path, about: Mapping[str, object], form: Form) -> None:
     """Make the folder if there is none, or refuse a folder of another sweep."""
     remedy = "delete the folder, or name another for this sweep"
     path = folder / form.about
@@ -172,7 +174,7 @@ def remove(folder: Path) -> None:
         folder.rmdir()
 
 
-def fingerprint(tree: Any) -> str:
+def fingerprint(tree: object) -> str:
     """Return a hash of every number, text and class in a tree, 16 hexadecimal digits."""
     digest = hashlib.sha256()
     _feed(tree, digest.update)
@@ -194,7 +196,7 @@ def _modules(tree: Any) -> set[str]:
     return names
 
 
-def _feed(tree: Any, update: Any) -> None:
+def _feed(tree: Any, update: Callable[[bytes], None]) -> None:
     """Pass the bytes of a tree to ``update``."""
     update(type(tree).__qualname__.encode())
     if attrs.has(type(tree)):
@@ -217,7 +219,7 @@ def _feed(tree: Any, update: Any) -> None:
         update(pickle.dumps(tree))
 
 
-def _checksum(arrays: Mapping[str, Any]) -> str:
+def _checksum(arrays: Mapping[str, Column]) -> str:
     """Return a hash of the arrays of a piece, in the order of their names."""
     return fingerprint([(name, np.asarray(arrays[name])) for name in sorted(arrays)])
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,9 @@ KINDS = {"xarray": "DataArray", "pandas": "Series", "dask": "Array"}
 MODULES = {"xarray": "xarray", "pandas": "pandas", "dask": "dask.array"}
 
 
-def by_labels(function: Callable[..., Any], answers: int, arguments: Mapping[str, Any]) -> Any:
+def by_labels(
+    function: Callable[..., object], answers: int, arguments: Mapping[str, object]
+) -> Any:
     """Return a function of arrays, applied to labelled or lazy arrays.
 
     Parameters
@@ -52,7 +54,7 @@ def by_labels(function: Callable[..., Any], answers: int, arguments: Mapping[str
     return apply(module, function, answers, checked)
 
 
-def _library(arguments: Mapping[str, Any]) -> tuple[str, str]:
+def _library(arguments: Mapping[str, object]) -> tuple[str, str]:
     """Return the package of the arguments, and the name of the first argument of it."""
     owners: dict[str, str] = {}
     for name, value in arguments.items():
@@ -72,7 +74,7 @@ def _library(arguments: Mapping[str, Any]) -> tuple[str, str]:
 
 
 def _by_dimensions(
-    xarray: Any, function: Callable[..., Any], answers: int, arguments: Mapping[str, Any]
+    xarray: Any, function: Callable[..., object], answers: int, arguments: Mapping[str, object]
 ) -> Any:
     """Return ``DataArray``s over every dimension of the arguments; lazy ones of lazy ones."""
     labelled = [value for value in arguments.values() if isinstance(value, xarray.DataArray)]
@@ -120,7 +122,7 @@ def _by_index(
 
 
 def _lazily(
-    dask_array: Any, function: Callable[..., Any], answers: int, arguments: Mapping[str, Any]
+    dask_array: Any, function: Callable[..., object], answers: int, arguments: Mapping[str, Any]
 ) -> Any:
     """Return dask arrays of the broadcast shape; bad numbers are refused when they are computed."""
     for name, value in arguments.items():
@@ -136,13 +138,13 @@ def _lazily(
     )
 
 
-def _one_or_all(answers: Any) -> Any:
+def _one_or_all(answers: Iterable[object]) -> Any:
     """Return a single answer, or all as a tuple."""
     one, *others = answers
     return (one, *others) if others else one
 
 
-def _unequal(arguments: Mapping[str, Any], what: str, remedy: str) -> ValueError:
+def _unequal(arguments: Mapping[str, object], what: str, remedy: str) -> ValueError:
     """Return the refusal of arguments whose labels differ."""
     names = [name for name, value in arguments.items() if library_of(value)]
     values = ", ".join(shown(arguments[name], most=40) for name in names)

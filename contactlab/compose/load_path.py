@@ -20,7 +20,7 @@ from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import Rule, real, refuse
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Numbers
 from contactlab.outcome.answer import Answer
 
 #: Columns of a path that the laws return.
@@ -124,12 +124,12 @@ class LoadPath(Answer):
 
 def load_path(
     scene: Scene,
-    approach: Any,
-    displacement: Any,
+    approach: Numbers,
+    displacement: Numbers,
     *,
     normal: str | NormalLaw = composition.DEFAULT_NORMAL,
     tangential: str | TangentialLaw = composition.ON_A_PATH,
-    time: Any = None,
+    time: Numbers | None = None,
 ) -> LoadPath:
     """Return the forces of a contact that is moved along a prescribed path.
 
@@ -209,7 +209,9 @@ def _laws(scene: Scene, normal: object, tangential: object) -> tuple[Any, Any]:
     return first, second
 
 
-def _path(scene: Scene, approach: Any, displacement: Any, time: Any) -> tuple[Points, Array, Scene]:
+def _path(
+    scene: Scene, approach: Numbers, displacement: Numbers, time: Numbers | None
+) -> tuple[Points, Array, Scene]:
     """Return the points of a path, the time of first touch, and the scene of the paths' shape."""
     entries: dict[str, Any] = {
         "approach": real("approach", approach),
@@ -250,7 +252,9 @@ def _path(scene: Scene, approach: Any, displacement: Any, time: Any) -> tuple[Po
     return Points(np.broadcast_to(even, depth.shape), depth, moved), 0.0 * step, scene
 
 
-def _followed(laws: tuple[Any, Any], scene: Scene, points: Points) -> Followed:
+def _followed(
+    laws: tuple[NormalLaw, SteppedTangentialLaw], scene: Scene, points: Points
+) -> Followed:
     """Return what the laws answer; in a batch a law that raises costs the paths that raise only."""
     try:
         return followed(*laws, scene, points)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.impact.normal_spin import NormalSpin, normal_spin
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import some
+from contactlab.numeric.types import Mask
 from contactlab.outcome.plan import NORMAL_SPIN, PSI2_ERROR, WITHOUT_SPIN, Clause, Clauses, Words
 
 ANSWERED = "spin about the normal: friction of slip and of spin is one"
@@ -22,7 +22,7 @@ MEASURED = (
 )
 
 
-def with_normal_spin(words: Words, scene: Scene, *, answered: Any = False) -> Words:
+def with_normal_spin(words: Words, scene: Scene, *, answered: Mask = False) -> Words:
     """Return the words of a plan with what spin about the normal would change.
 
     ``answered`` marks impacts whose law answers spin about the normal, unless a body is off centre.
@@ -40,7 +40,7 @@ def with_normal_spin(words: Words, scene: Scene, *, answered: Any = False) -> Wo
     return computed, left_out, (*cautions, *_sizes(spin, batch=bool(scene.shape)))
 
 
-def _without_spin(clause: Clause, acts: Any) -> Clauses:
+def _without_spin(clause: Clause, acts: NDArray[np.bool_]) -> Clauses:
     """Return a clause; a bound of the error of psi2 is said apart where spin ``acts``."""
     if clause.code != PSI2_ERROR or clause.values is None or not some(clause.where & acts):
         return (clause,)

@@ -6,9 +6,11 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.contracts import faults
 from contactlab.contracts.contact import NormalContact
+from contactlab.contracts.law import Law
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.sampled_motion import SampledMotion
 from contactlab.contracts.status import Status
@@ -16,7 +18,7 @@ from contactlab.contracts.tangential import Increment, Sampled, SteppedTangentia
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import shown
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 
 class Points(NamedTuple):
@@ -26,7 +28,7 @@ class Points(NamedTuple):
     approach: Array
     displacement: Array
 
-    def moved(self, column: Array, first: Any) -> tuple[Array, Array]:
+    def moved(self, column: Array, first: Real) -> tuple[Array, Array]:
         """Return the change of a column over each step from ``first`` on, and its rate."""
         moved, drift = (
             np.diff(column, axis=0, prepend=first),
@@ -133,7 +135,9 @@ def _steps(
         yield Increment(*moved_by, after.friction_load, 0.0 * time, time, sampled), after
 
 
-def _judged(laws: Any, columns: dict[str, Array], unsettled: Any) -> tuple[Any, str]:
+def _judged(
+    laws: tuple[Law, Law], columns: dict[str, Array], unsettled: NDArray[np.bool_]
+) -> tuple[Any, str]:
     """Return statuses and the sentence of the first failure; what follows a failure is NaN."""
     normal, tangential = laws
     shape = unsettled.shape[1:]
@@ -157,7 +161,7 @@ def _judged(laws: Any, columns: dict[str, Array], unsettled: Any) -> tuple[Any, 
     return (status if shape else status.item()), detail
 
 
-def _column(rows: Any, shape: tuple[int, ...]) -> Array:
+def _column(rows: Iterable[Real], shape: tuple[int, ...]) -> Array:
     """Return rows that broadcast to ``shape`` as an array of shape (K, ...)."""
     return np.array([np.broadcast_to(row, shape) for row in rows], dtype=np.float64)
 
@@ -167,6 +171,6 @@ def _rows(column: Array) -> Any:
     return column.tolist() if column.ndim == 1 else np.array(column)
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: Real) -> Any:
     """Return a number as a float, and an array read-only."""
     return locked(value) if np.ndim(value) else float(value)

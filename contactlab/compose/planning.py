@@ -33,6 +33,7 @@ from contactlab.impact.cautions import (
 from contactlab.impact.hertz import elongation_of
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, some, spread, taken
+from contactlab.numeric.types import Real
 from contactlab.outcome.energy import ledger
 from contactlab.outcome.motion import ENDS, Motion
 from contactlab.outcome.plan import (
@@ -273,14 +274,14 @@ def _cautions(
     return (*clauses, *(Clause(text, np.ones(scene.shape, dtype=bool)) for text in vectors))
 
 
-def _of_grip(law: Any, central: Scene, known: Mask, ends: Any) -> list[str]:
+def _of_grip(law: TangentialLaw, central: Scene, known: Mask, ends: NormalMotion) -> list[str]:
     """Return what a law that shares the loss says, beside what all say, of the smaller slip."""
     scene = central if every(known) else central.take(known)
     usual = TangentialLaw.cautions(law, scene, ends)
     return [text for text in _asked(law, law.cautions, scene, ends) if text not in usual]
 
 
-def _ends(law: Any, scene: Scene, motion: Motion | None, where: Mask) -> Any:
+def _ends(law: NormalLaw, scene: Scene, motion: Motion | None, where: Mask) -> Any:
     """Return the normal motion of some impacts: by its ends after a run, else made now."""
     part = scene if every(where) else scene.take(where)
     if motion is None:
@@ -288,7 +289,7 @@ def _ends(law: Any, scene: Scene, motion: Motion | None, where: Mask) -> Any:
     return _Ends(law, part, motion if every(where) else taken(motion, scene.shape, where))
 
 
-def _asked(law: Law, question: Callable[..., tuple[str, ...]], *about: Any) -> list[str]:
+def _asked(law: Law, question: Callable[..., tuple[str, ...]], *about: object) -> list[str]:
     """Return what a law says; if it raises, what it raised."""
     try:
         return list(question(*about))
@@ -318,7 +319,7 @@ def _books(laws: Laws, scene: Scene, motion: Motion) -> list[Clause]:
 class _Ends:
     """The normal motion of a run by its end and its maxima; the rest is made when it is asked."""
 
-    def __init__(self, law: Any, scene: Scene, motion: Motion) -> None:
+    def __init__(self, law: NormalLaw, scene: Scene, motion: Motion) -> None:
         self.law, self.scene, self._motion = law, scene, motion
         self.offers = law.offers
 
@@ -334,7 +335,7 @@ class _Ends:
         return normal_motion(self.law, self.scene)
 
 
-def _by_default(law: Any) -> tuple[str, ...]:
+def _by_default(law: Law) -> tuple[str, ...]:
     """Return the caution of a restitution that nobody gave."""
     value = _kept_defaults(law).get("restitution")
     if value is None:
@@ -343,7 +344,7 @@ def _by_default(law: Any) -> tuple[str, ...]:
     return (f"restitution = {value:g} was taken by default: give {name} one of your own",)
 
 
-def _defaults(law: Any) -> str:
+def _defaults(law: Law) -> str:
     """Return which options of a law have their default value, with a semicolon before."""
     kept = ", ".join(f"{name} = {value:g}" for name, value in _kept_defaults(law).items())
     return f"; {kept} by default" if kept else ""
@@ -411,7 +412,7 @@ def _error(normal: NormalMotion, laws: Laws, known: Sequence[Answer], marched: M
     return error if scene.shape else float(error)
 
 
-def _error_clauses(what: str, error: Any, ended: Mask, advice: str) -> list[Clause]:
+def _error_clauses(what: str, error: Real, ended: Mask, advice: str) -> list[Clause]:
     """Return what a plan says of a numerical error."""
     undeclared = np.asarray(ended & np.isnan(error))
     declared = np.asarray(ended & ~undeclared)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import os
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cache
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, overload
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeGuard, overload
 
 import attrs
 import numpy as np
@@ -17,14 +17,14 @@ from contactlab.compose.names import BLOCK_VARIABLE
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.numeric.checks import FINITE, POSITIVE, Real, Rule, paired, real, refuse
 from contactlab.numeric.labels import library_of
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Labelled, Many, Number, Numbers
 
 if TYPE_CHECKING:
     from contactlab.compose.simulation import Simulation
     from contactlab.contracts.whole_impact import Tabulated
 
-#: Numbers without labels; of arrays with labels the answer has their type.
-Numbers: TypeAlias = float | np.number[Any] | NDArray[Any] | Sequence[Any]
+Yes: TypeAlias = Literal[True]
+No: TypeAlias = Literal[False]
 
 #: Range of chi in the table of restitutions below 1. Largest errors of psi2: in the table up to chi
 #: ``NEARER``, and up to its end; and of springs beyond it over sqrt(chi/3):
@@ -64,42 +64,79 @@ FEW_NUMBERS = 40
 
 @overload
 def rebound(
-    psi1: Numbers,
+    psi1: Number,
+    chi: Number,
+    *,
+    tolerance: float = ...,
+    derivatives: No = ...,
+    restitution: Number = ...,
+) -> float: ...
+@overload
+def rebound(
+    psi1: Many,
     chi: Numbers,
     *,
-    tolerance: float = USUAL,
-    derivatives: Literal[False] = False,
-    restitution: Real = ELASTIC,
-) -> Real: ...
-@overload
-def rebound(
-    psi1: Numbers, chi: Numbers, *, tolerance: float = USUAL, derivatives: Literal[True]
-) -> tuple[Real, Real, Real]: ...
+    tolerance: float = ...,
+    derivatives: No = ...,
+    restitution: Numbers = ...,
+) -> Array: ...
 @overload
 def rebound(
     psi1: Numbers,
-    chi: Numbers,
+    chi: Many,
     *,
-    tolerance: float = USUAL,
-    derivatives: Literal[True],
-    restitution: Real,
-) -> tuple[Real, Real, Real, Real]: ...
+    tolerance: float = ...,
+    derivatives: No = ...,
+    restitution: Numbers = ...,
+) -> Array: ...
 @overload
 def rebound(
-    psi1: object,
-    chi: object,
+    psi1: Number, chi: Number, *, tolerance: float = ..., derivatives: No = ..., restitution: Many
+) -> Array: ...
+@overload
+def rebound(
+    psi1: Number, chi: Number, *, tolerance: float = ..., derivatives: Yes
+) -> tuple[float, float, float]: ...
+@overload
+def rebound(
+    psi1: Many, chi: Numbers, *, tolerance: float = ..., derivatives: Yes
+) -> tuple[Array, Array, Array]: ...
+@overload
+def rebound(
+    psi1: Numbers, chi: Many, *, tolerance: float = ..., derivatives: Yes
+) -> tuple[Array, Array, Array]: ...
+@overload
+def rebound(
+    psi1: Number, chi: Number, *, tolerance: float = ..., derivatives: Yes, restitution: Number
+) -> tuple[float, float, float, float]: ...
+@overload
+def rebound(
+    psi1: Many, chi: Numbers, *, tolerance: float = ..., derivatives: Yes, restitution: Numbers
+) -> tuple[Array, Array, Array, Array]: ...
+@overload
+def rebound(
+    psi1: Numbers, chi: Many, *, tolerance: float = ..., derivatives: Yes, restitution: Numbers
+) -> tuple[Array, Array, Array, Array]: ...
+@overload
+def rebound(
+    psi1: Number, chi: Number, *, tolerance: float = ..., derivatives: Yes, restitution: Many
+) -> tuple[Array, Array, Array, Array]: ...
+@overload
+def rebound(
+    psi1: Numbers | Labelled,
+    chi: Numbers | Labelled,
     *,
-    tolerance: float = USUAL,
-    derivatives: bool = False,
-    restitution: object = ELASTIC,
+    tolerance: float = ...,
+    derivatives: bool = ...,
+    restitution: Numbers | Labelled = ...,
 ) -> Any: ...
 def rebound(
-    psi1: object,
-    chi: object,
+    psi1: Numbers | Labelled,
+    chi: Numbers | Labelled,
     *,
     tolerance: float = USUAL,
     derivatives: bool = False,
-    restitution: Any = ELASTIC,
+    restitution: Numbers | Labelled = ELASTIC,
 ) -> Any:
     """Return the dimensionless rebound psi2 of spheres, a float or an array of the inputs' shape.
 
@@ -238,7 +275,7 @@ def _warn_if_exchanged(psi1: float, chi: float) -> None:
         warnings.warn(f"{told}; {remedy}", UserWarning, stacklevel=3)
 
 
-def _tolerance(value: Any) -> float:
+def _tolerance(value: object) -> float:
     """Return a checked tolerance."""
     aim = real("tolerance", value, rule=TOLERANCE, remedy="leave it out for 1e-5")
     if not isinstance(aim, float):
@@ -246,7 +283,9 @@ def _tolerance(value: Any) -> float:
     return aim
 
 
-def _labelled(psi1: Any, chi: Any, tolerance: Any, derivatives: bool, restitution: Any) -> Any:
+def _labelled(
+    psi1: object, chi: object, tolerance: float, derivatives: bool, restitution: object
+) -> Any:
     """Return ``rebound`` of labelled or lazy arrays, with their labels."""
     arguments, three = {"psi1": psi1, "chi": chi}, restitution is not ELASTIC
     if three:
@@ -256,14 +295,14 @@ def _labelled(psi1: Any, chi: Any, tolerance: Any, derivatives: bool, restitutio
         return _by_jax(arguments, derivatives)
     from contactlab.compose.labelled import by_labels  # only for arrays of other libraries
 
-    def answer(*columns: Any) -> Any:
+    def answer(*columns: Real) -> Any:
         e = columns[2] if three else ELASTIC
         return rebound(*columns[:2], tolerance=tolerance, derivatives=derivatives, restitution=e)
 
     return by_labels(answer, 1 + (2 + three) * derivatives, arguments)
 
 
-def _by_jax(arguments: dict[str, Any], derivatives: bool) -> Any:
+def _by_jax(arguments: dict[str, object], derivatives: bool) -> Any:
     """Return ``rebound`` of arrays of JAX, traced or not."""
     from contactlab.compose.traced import by_jax  # only for arrays of JAX
 
@@ -316,7 +355,7 @@ def _by_table(psi1: Any, chi: Any, restitution: Real) -> Any:
     return table(psi1.ravel(), chi.ravel(), e).reshape(psi1.shape)
 
 
-def _below_one(restitution: Any, psi1: Any) -> bool:
+def _below_one(restitution: Any, psi1: Any) -> TypeGuard[Real]:
     """Return whether a restitution is a float from 0 to 1, 1 excluded, or an array like psi1."""
     if type(restitution) is float:
         return 0.0 <= restitution < 1.0
@@ -346,7 +385,10 @@ def _within(psi1: Any, chi: Any, low: float, high: float) -> bool:
 
 
 def _parted(
-    where: Any, inside: Callable[..., Any], outside: Callable[..., Any], *columns: Array
+    where: NDArray[np.bool_],
+    inside: Callable[..., Array],
+    outside: Callable[..., Array],
+    *columns: Array,
 ) -> Array:
     """Return psi2, shape (impacts,), by one function of the columns where a mask is True."""
     if where.all():
@@ -404,7 +446,7 @@ def _table(kind: str) -> Callable[..., Any]:
 
 
 @cache
-def _kept_table(kind: str, blocked: Any) -> Callable[..., Any]:
+def _kept_table(kind: str, blocked: str | None) -> Callable[..., Any]:
     """Return the function of a law while the blocking is the same."""
     return _kept_law(kind, blocked).rebound
 
@@ -415,7 +457,7 @@ def _law(kind: str) -> Tabulated:
 
 
 @cache
-def _kept_law(kind: str, _: Any) -> Tabulated:
+def _kept_law(kind: str, _: str | None) -> Tabulated:
     """Return a law while the blocking is the same."""
     from contactlab.compose import composition  # takes long to import
 

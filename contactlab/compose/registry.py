@@ -146,7 +146,7 @@ class Registry:
             self._meant[key] = info.qualified
         return self._loaded[self._meant[key]][0]
 
-    def create(self, name: str, **options: Any) -> Any:
+    def create(self, name: str, **options: object) -> Any:
         """Return a new law: ``create("tangential.annulus", annuli=50)``.
 
         Raises

@@ -17,6 +17,7 @@ from contactlab.impact.inverse_mass import along
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import filled, spread
 from contactlab.numeric.checks import Real, refuse
+from contactlab.numeric.types import Array
 from contactlab.outcome.motion import ENDS, Motion
 from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult
@@ -94,7 +95,7 @@ def planned(scene: Scene, restitution: Real) -> Plan:
     return Plan(plan.columns, lambda: with_normal_spin(plan.words, scene))
 
 
-def _of_groups(scene: Scene, restitution: Any) -> Plan:
+def _of_groups(scene: Scene, restitution: Real) -> Plan:
     """Return the plan of impacts, with the words of each restitution."""
     if isinstance(restitution, float):
         return _planned(scene, restitution, restitution)
@@ -117,6 +118,6 @@ def _simulation(restitution: float) -> Simulation:
     return Simulation() if restitution == 1.0 else laws_of(restitution)
 
 
-def _alike(restitution: Any) -> list[tuple[Any, float]]:
+def _alike(restitution: Array) -> list[tuple[Any, float]]:
     """Return masks of equal restitutions, and the restitution of each mask."""
     return [(restitution == value, value) for value in np.unique(restitution).tolist()]

@@ -15,7 +15,7 @@ from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat, locked
 from contactlab.numeric.checks import shown
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 #: Types of an entry of a contact that are always well formed.
 PLAIN = (float, np.float64, type(None))
@@ -115,6 +115,6 @@ class ScaledNormalLaw:
                 raise self.fault(Status.MALFORMED, f"the answer {shown(entry)}")
         return contact, state
 
-    def _per_item(self, entry: Any) -> Any:
+    def _per_item(self, entry: Real) -> Any:
         """Return a scalar or an array of the scene's shape as an array of shape (items,)."""
         return flat(np.array(entry, dtype=np.float64), self.shape)

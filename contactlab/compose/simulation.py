@@ -263,7 +263,13 @@ class Simulation:
         columns, motion = swept(laws, batch, keep=keep, **options)
         return _result(laws, batch, plan_of(laws, batch, columns, motion), motion, started)
 
-    def _into(self, into: str | Path, keep: Any, scenes: Any, options: Any) -> SweepFolder:
+    def _into(
+        self,
+        into: str | Path,
+        keep: object,
+        scenes: Scene | GridParts | Iterable[Scene],
+        options: Any,
+    ) -> SweepFolder:
         """Return the folder of a sweep that is written as it goes."""
         from contactlab.compose.into import swept_into  # needed with ``into`` only
 

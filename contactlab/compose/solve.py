@@ -26,6 +26,7 @@ from contactlab.impact.inverse_mass import along
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import are_zeros, consecutive, every, some, zeros
 from contactlab.numeric.checks import refuse
+from contactlab.numeric.types import Index, Mask
 from contactlab.outcome.chunk_forms import Chunk
 from contactlab.outcome.energy import balanced
 from contactlab.outcome.history import Recorder
@@ -236,7 +237,7 @@ def _parts(size: int, *, most: int) -> list[slice]:
 
 
 def _tangential(
-    laws: Laws, normal: NormalMotion, known: list[Answer], marched: Any, recorder: Recorder | None
+    laws: Laws, normal: NormalMotion, known: list[Answer], marched: Mask, recorder: Recorder | None
 ) -> TangentialMotion:
     """Return the tangential motion, by whole-impact answers where there are any, else marched."""
     shape = normal.scene.shape
@@ -268,7 +269,7 @@ def _march(laws: Laws, normal: NormalMotion, observer: Observer | None = None) -
     """Return the tangential motion; in a batch only the impacts that fail have no answer."""
     # With an observer, failures are not isolated: the observer would be called again.
 
-    def part(index: Any) -> TangentialMotion:
+    def part(index: Index) -> TangentialMotion:
         return _march(laws, normal.take(index))
 
     shape = normal.scene.shape

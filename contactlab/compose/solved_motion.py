@@ -18,7 +18,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Real
 from contactlab.numeric.lobatto import lobatto, rows
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Index
 
 #: Declared relative error of the load impulse: the sum of the errors of all steps, each within
 #: the ``TOLERANCE`` of ``contactlab.compose.normal_motion``.
@@ -219,7 +219,7 @@ class SolvedMotion(NormalMotion):
         """Return pi times the fraction."""
         return math.pi * np.asarray(fraction)
 
-    def take(self, part: Any) -> SolvedMotion:
+    def take(self, part: Index) -> SolvedMotion:
         """Return the motion of some impacts."""
         scene, table = self.scene.take(part), self.table
         if table.shape:
@@ -258,7 +258,7 @@ class FailedMotion(NormalMotion):
         """Return pi times the fraction."""
         return math.pi * np.asarray(fraction)
 
-    def take(self, part: Any) -> FailedMotion:
+    def take(self, part: Index) -> FailedMotion:
         """Return the motion of some impacts."""
         status, detail = (
             np.ravel(np.asarray(entry, dtype=object))[0] for entry in (self.status, self.detail)

@@ -18,6 +18,7 @@ from contactlab.contracts.tangential_motion import Observer, TangentialMotion
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import spread
 from contactlab.numeric.checks import shown
+from contactlab.numeric.types import Mask, Real
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import ENDLESS, MARCHED, PlanColumns, Reason
 
@@ -78,7 +79,7 @@ def columns_of(laws: Laws, scene: Scene, normal: NormalMotion) -> PlanColumns:
     return PlanColumns(code, psi2, (WHOLE,) if together else (), restitution)
 
 
-def lasting(laws: Laws, scene: Scene, marched: Any) -> str:
+def lasting(laws: Laws, scene: Scene, marched: Mask) -> str:
     """Return words on how long the march of some impacts takes, empty if nobody declares it."""
     part = scene if np.all(marched) else scene.take(marched)
     normal = normal_or_failed(laws.normal, part.central)
@@ -114,7 +115,7 @@ def _slips(scene: Scene) -> tuple[Any, Any]:
     return scene.slip_speed, scene.size_of(np.asarray(scene.slip_velocity) - drag)
 
 
-def _at_slip(scene: Scene, slip: Any) -> Scene:
+def _at_slip(scene: Scene, slip: Real) -> Scene:
     """Return the central scene at a slip speed."""
     slip = spread(slip, scene.shape)
     return attrs.evolve(scene.central, tangential_velocity=slip).numbered(scene.index)

@@ -19,7 +19,7 @@ SHORTEST = "float32"
 
 def by_jax(
     law: Tabulated,
-    arguments: Mapping[str, Any],
+    arguments: Mapping[str, object],
     rules: Mapping[str, Rule],
     *,
     joined: bool,

@@ -92,7 +92,7 @@ def _sent(laws: Laws) -> bytes:
     return pickle.dumps(laws)
 
 
-def _submitted(executor: Any, *call: Any) -> Future[Reply]:
+def _submitted(executor: Executor, *call: Any) -> Future[Reply]:
     """Return the future of a reply; the future holds the error of a broken executor."""
     try:
         future: Future[Reply] = executor.submit(reply, *call)

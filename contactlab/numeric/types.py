@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from types import EllipsisType
-from typing import TypeAlias, TypeVar
+from typing import Protocol, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,17 +27,29 @@ Mask: TypeAlias = bool | np.bool_ | NDArray[np.bool_]
 #: Indices in an array.
 Places: TypeAlias = NDArray[np.intp]
 #: What takes a part of a batch.
-Index: TypeAlias = int | slice | EllipsisType | tuple[int, ...] | NDArray[np.bool_] | Places
+Index: TypeAlias = int | slice | EllipsisType | tuple[int, ...] | Mask | Places
 #: An array of any type of NumPy: numbers, bools, codes, words.
 Column: TypeAlias = NDArray[np.generic]
 
 #: A number of Python or NumPy; a bool is none, but checkers take it for an int.
 Number: TypeAlias = float | np.floating | np.integer
 _Row: TypeAlias = Number | NDArray[np.floating | np.integer]
-#: What a user may give as real numbers.
-Numbers: TypeAlias = (
-    _Row | Sequence[_Row] | Sequence[Sequence[_Row]] | Sequence[Sequence[Sequence[_Row]]]
+#: Arrays, lists and tuples of real numbers; ranges too.
+Many: TypeAlias = (
+    NDArray[np.floating | np.integer]
+    | Sequence[_Row]
+    | Sequence[Sequence[_Row]]
+    | Sequence[Sequence[Sequence[_Row]]]
 )
+#: What a user may give as real numbers.
+Numbers: TypeAlias = Number | Many
+
+
+class Labelled(Protocol):
+    """An array of another library: of xarray, pandas, dask or JAX."""
+
+    def __array__(self) -> NDArray[np.generic]: ...
+
 
 #: A float, or an array: the same on both sides of a function.
 Kind = TypeVar("Kind", float, Array, Real)
