@@ -28,7 +28,7 @@ class Parts(NamedTuple):
     radius: Real
 
 
-def root_of_size(scaled: Any) -> Any:
+def root_of_size(scaled: Real) -> Any:
     """Return s, the larger solution of s⁴ - s = ``scaled``, where ``scaled`` >= ``LEAST``."""
     # Ferrari: s = ½ (sqrt(2m) + sqrt(2/sqrt(2m) - 2m)), m³ + scaled m = 1/8, with m by Cardano,
     # written so that no digits cancel.

@@ -10,6 +10,7 @@ import numpy as np
 
 from contactlab.contracts import NormalContact, without_tension
 from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Array
 from contactlab_laws.relaxing import Parts, Relaxing
 
 #: Tolerance of the integration and of the calibration.
@@ -24,11 +25,11 @@ def rebound(number: float) -> float:
 
     # u = sqrt(zeta), dT = 2 u dq: u' = V, V' = -2.5 u² (u² + 1.5 A V), smooth from first touch.
     # Contact ends where the force vanishes: V is stationary there.
-    def slope(_: float, state: Any) -> list[float]:
+    def slope(_: float, state: Array) -> list[float]:
         u, rate = state
         return [rate, -2.5 * u * u * (u * u + 1.5 * number * rate)]
 
-    def released(_: float, state: Any) -> float:
+    def released(_: float, state: Array) -> float:
         return float(state[0] - max(-1.5 * number * state[1], 0.0) ** 0.5)
 
     released.terminal, released.direction = True, -1  # type: ignore[attr-defined]

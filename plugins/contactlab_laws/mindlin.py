@@ -307,7 +307,7 @@ class MindlinCap(SteppedTangentialLaw):
         )
 
 
-def _mean_radius(before: Any, after: Any) -> Any:
+def _mean_radius(before: Real, after: Real) -> Any:
     """Return the mean contact radius over a step in which its square changes evenly."""
     total = before + after
     squares = before * before + before * after + after * after

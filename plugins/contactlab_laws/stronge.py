@@ -109,7 +109,7 @@ def _pull(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
     )
 
 
-def _of_each(incidence: Any, frequency: Any, bounce: Any, shape: tuple[int, ...]) -> Rebound:
+def _of_each(incidence: Real, frequency: Real, bounce: Real, shape: tuple[int, ...]) -> Rebound:
     """Return change and work of all impacts, arrays of ``shape``, scaled as in this file's head."""
     columns = (incidence, frequency, bounce)
     rows = zip(*(np.broadcast_to(each, shape).ravel().tolist() for each in columns), strict=True)

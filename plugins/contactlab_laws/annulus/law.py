@@ -19,6 +19,7 @@ from contactlab.contracts import (
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, choice, count
+from contactlab.numeric.types import Array
 from contactlab_laws.annulus import all_steps, step
 from contactlab_laws.annulus.tables import Tables, hertz_pressure, tables
 from contactlab_laws.differences import table as differences
@@ -136,7 +137,7 @@ class Annulus(PartialSlip):
         work = march.friction_work() * float(scales.work)
         return AllStepsResponse(march.forces * scales.force, work, settled)
 
-    def _pressure(self, scales: Scales, radius: Any, load: Any, *, hertz: bool) -> Any:
+    def _pressure(self, scales: Scales, radius: Array, load: Array, *, hertz: bool) -> Any:
         """Return the ratio of the pressures of (34) to those of a Hertz contact of this radius."""
         if hertz:
             return scales.pressure(radius, load)

@@ -13,11 +13,11 @@ so far: while an annulus sticks its lag is constant, which is all that (33) says
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 #: Most annuli for which the responses of all leading divisions are kept (8 n³ bytes: 64 MB at 200).
 LARGEST_TABLE = 200
@@ -35,7 +35,7 @@ class Tables(NamedTuple):
     responses: list[Array]  # entry c: ``response`` with annuli 1..c stuck; empty for large n
 
 
-def hertz_pressure(table: Tables, radius: Any) -> Array:
+def hertz_pressure(table: Tables, radius: Real) -> Array:
     """Return sqrt(beta² - r_j²), the limits (34) of a Hertz pressure, shape (..., n)."""
     limits = np.square(np.asarray(radius))[..., None] - table.radius_squared
     return np.asarray(np.sqrt(np.maximum(limits, 0.0, out=limits), out=limits))

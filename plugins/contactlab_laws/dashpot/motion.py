@@ -19,7 +19,7 @@ from contactlab.contracts import (
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
 from contactlab.numeric.lobatto import lobatto, rows
-from contactlab.numeric.types import Array, Index
+from contactlab.numeric.types import Array, Index, Kind
 from contactlab_laws.dashpot.oscillator import Oscillator
 
 #: Edges of the panels over which time is summed, and nodes in each panel. Panels are even, then
@@ -33,14 +33,14 @@ POINTS, NEWTON = 2000, 4
 ROOT = 0.2
 
 
-def stretched(share: Any) -> Any:
+def stretched(share: Kind) -> Kind:
     """Return tau = t⁵/(t⁵ + (1 - t)/16): oscillator time over duration, t the phase over pi."""
     # tau = ½ at t = ½, greatest compression; x^0.2 and so zeta^¼ is analytic at first touch.
     fifth = share**5
     return fifth / (fifth + (1.0 - share) / 16.0)
 
 
-def stretching(share: Any) -> Any:
+def stretching(share: Kind) -> Kind:
     """Return d tau/dt over t⁴."""
     return (5.0 - 4.0 * share) / 16.0 / (share**5 + (1.0 - share) / 16.0) ** 2
 
@@ -114,7 +114,7 @@ class ScaledMotion:
         pace = duration * stretching(share) * share**4 / (self.power * factor + (factor == 0.0))
         return ScaledSample(x ** (1.0 / self.power), rate, factor * pull, pace)
 
-    def time(self, phase: Any) -> Array:
+    def time(self, phase: Real) -> Array:
         """Return T at ``phase``, of its shape."""
         share = np.clip(np.asarray(phase, dtype=np.float64) / math.pi, 0.0, 1.0)
         values = _times(self)

@@ -16,6 +16,7 @@ import attrs
 import numpy as np
 
 from contactlab.contracts.restitution import root
+from contactlab.numeric.types import Real
 
 
 def half_duration(damping: float) -> float:
@@ -64,7 +65,7 @@ class Oscillator:
         """Minus V at the end; x is sqrt(e) at most, and 2 beta e at the end."""
         return restitution(self.damping)
 
-    def at(self, time: Any) -> tuple[Any, Any, Any]:
+    def at(self, time: Real) -> tuple[Any, Any, Any]:
         """Return x, V and x + 2 beta V; the first and the last are never negative."""
         beta = self.damping
         square = (1.0 - beta) * (1.0 + beta)

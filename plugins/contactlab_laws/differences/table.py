@@ -13,6 +13,7 @@ import numpy as np
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
 from contactlab.impact.scene import Scene
+from contactlab.numeric.types import Real
 
 FILE = Path(__file__).with_name("differences.csv")
 #: Differences of psi2 below this are not worth a sentence.
@@ -87,12 +88,12 @@ def springs(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
     )
 
 
-def _beyond(chi: Any) -> bool:
+def _beyond(chi: Real) -> bool:
     """Return whether any chi lies beyond those that were measured."""
     return bool(np.min(chi) < NODES[0] or np.max(chi) > NODES[-1])
 
 
-def _by_springs(measured: tuple[Row, ...], e: Any, chi: Any) -> float:
+def _by_springs(measured: tuple[Row, ...], e: Real, chi: Real) -> float:
     """Return the largest error of springs at the measured e and chi around those of the impacts."""
     sizes = np.array([row.springs for row in measured])
     known = np.array([row.restitution for row in measured])

@@ -25,6 +25,7 @@ from contactlab.impact.hertz import slips_throughout
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import spread
 from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Array, Mask
 from contactlab_laws.fronts import compiled
 from contactlab_laws.jaeger.gross_slip import gross_slip
 from contactlab_laws.tables.elastic import ERROR, rebound
@@ -111,7 +112,7 @@ class Fronts(PathTangentialLaw, Tabulated):
                 chi, psi1 = np.where(tabulated, chi, 1.0), np.where(tabulated, psi1, 0.0)
         return (*closed, _from_table(scene, psi1, chi, where=tabulated))
 
-    def solved(self, psi1: Any, chi: Any) -> Any:
+    def solved(self, psi1: Array, chi: Array) -> Any:
         """Return psi2 - psi1 by the compiled law; None where it does not answer for all."""
         if compiled.library() is None:
             return None
@@ -136,7 +137,7 @@ class Fronts(PathTangentialLaw, Tabulated):
         """Return why a batch is followed one by one, empty where it is compiled."""
         return "" if compiled.library() is not None else compiled.told()
 
-    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:
+    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Real) -> Real:
         """Return 0: there is no discretisation."""
         return 0.0
 
@@ -166,7 +167,7 @@ class Fronts(PathTangentialLaw, Tabulated):
         return error * psi_magnitude(scene), error
 
 
-def _solved(scene: Scene, where: Any) -> tuple[WholeImpact, ...]:
+def _solved(scene: Scene, where: Mask) -> tuple[WholeImpact, ...]:
     """Return the answers of the compiled law, where it solves central impacts."""
     if compiled.library() is None:
         return ()
@@ -198,7 +199,7 @@ def _solved(scene: Scene, where: Any) -> tuple[WholeImpact, ...]:
     )
 
 
-def _from_table(scene: Scene, psi1: Any, chi: Any, *, where: Any) -> WholeImpact:
+def _from_table(scene: Scene, psi1: Any, chi: Real, *, where: Mask) -> WholeImpact:
     """Return the answer of the table."""
     magnitude: Any = np.maximum(1.0, abs(psi1)) if scene.shape else max(1.0, abs(psi1))
     return from_change(

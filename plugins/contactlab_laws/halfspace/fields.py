@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import NormalMotion
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Mask, Real
 from contactlab_laws.halfspace.basis import basis
 from contactlab_laws.halfspace.groups import Options, groups, signs
 from contactlab_laws.halfspace.instants import units
@@ -33,12 +33,12 @@ class Fields:
         The impacts of ``every`` that have fields.
     """
 
-    def __init__(self, options: Options, every: NormalMotion, left: Any) -> None:
+    def __init__(self, options: Options, every: NormalMotion, left: Mask) -> None:
         self._options, self._every = options, every
         self._places = [tuple(place) for place in np.argwhere(left).tolist()]
         self._kept: list[tuple[Array, Array, Array, Array]] = []
 
-    def at(self, load_impulse: Any) -> Mapping[str, NDArray[Any]]:
+    def at(self, load_impulse: Real) -> Mapping[str, NDArray[Any]]:
         """Return the fields at the instants with the integrals ``load_impulse`` of the load, N s.
 
         The last axes are angles and rings. Angles are from the direction x of positive slip, over

@@ -12,15 +12,14 @@ DLMF, https://dlmf.nist.gov/10.22, eq. (10.22.56).
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from scipy.special import hyp2f1, rgamma
 
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 
-def displacement(order: int, source: int, radius: Any, edge: Any) -> Array:
+def displacement(order: int, source: int, radius: Real, edge: Real) -> Array:
     """Return (4/pi) ∫ J_order(k r) F(k) dk, F the transform of a traction of order ``source``.
 
     Parameters

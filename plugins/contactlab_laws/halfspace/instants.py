@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import ClosedFormMotion, NormalMotion
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Places
 from contactlab_laws.halfspace.basis import edge_at
 
 #: Phases at which the radius is looked at, and halvings in the search of an instant.
@@ -48,7 +48,7 @@ class Instants(NamedTuple):
     pressure: Array
     phase: Array
 
-    def take(self, items: Any) -> Instants:
+    def take(self, items: Places | list[int]) -> Instants:
         """Return the instants of the impacts with these places."""
         columns = {
             name: column[:, items if column.shape[1] > 1 else np.zeros_like(items)]

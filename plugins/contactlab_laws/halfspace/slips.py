@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 
 class Slips(NamedTuple):
@@ -35,7 +35,7 @@ def begun(slip: Array) -> Slips:
     return Slips(slip, slip, slip, (0.0, 0.0), np.zeros(slip.shape[-1]))
 
 
-def moved(slips: Slips, slip: Array, duration: Any, touching: NDArray[np.bool_]) -> Slips:
+def moved(slips: Slips, slip: Array, duration: Real, touching: NDArray[np.bool_]) -> Slips:
     """Return the slips after a step; ``touching`` marks the rings in contact at its end."""
     # A ring out of contact forgets how fast it slipped.
     return Slips(
@@ -47,7 +47,7 @@ def moved(slips: Slips, slip: Array, duration: Any, touching: NDArray[np.bool_])
     )
 
 
-def rest(slips: Slips, duration: Any, *, vectors: bool) -> Array:
+def rest(slips: Slips, duration: Real, *, vectors: bool) -> Array:
     """Return the slip at the end of the next step of a point whose slip rate is zero there.
 
     The traction of a point that slips is along its slip less this slip. The slip rate is

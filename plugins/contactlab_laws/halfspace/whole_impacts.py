@@ -7,10 +7,11 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.contracts import NormalMotion, Status, WholeImpact, sliding
 from contactlab.impact.scene import Scene
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab_laws.halfspace.changed_motion import changed_motion
 from contactlab_laws.halfspace.fields import Fields
 from contactlab_laws.halfspace.groups import Options, groups
@@ -124,7 +125,7 @@ def _extrapolated(fine: Followed, coarse: Followed, further: float) -> Array:
     return np.clip(fine.share + (fine.share - between) * further, -1.0, 1.0)
 
 
-def _whole_impact(options: Options, every: NormalMotion, left: Any) -> WholeImpact:
+def _whole_impact(options: Options, every: NormalMotion, left: NDArray[np.bool_]) -> WholeImpact:
     """Return the answer in SI units of the impacts ``left``, with numbers of the batch shape."""
     shape = every.scene.shape
     normal = every.take(left) if shape else every
@@ -149,7 +150,7 @@ def _whole_impact(options: Options, every: NormalMotion, left: Any) -> WholeImpa
         whole[left] = values
         return whole
 
-    def course(load_impulse: Any, load: Any) -> tuple[Any, Any]:
+    def course(load_impulse: Real, load: Real) -> tuple[Any, Any]:
         outer = np.broadcast_shapes(np.shape(load_impulse), np.shape(load), shape)
         passed, acting = (np.broadcast_to(each, outer) for each in (load_impulse, load))
         gained, force = np.zeros(outer), np.zeros(outer)
@@ -193,7 +194,7 @@ def _whole_impact(options: Options, every: NormalMotion, left: Any) -> WholeImpa
     )
 
 
-def _along(impulse: Any, knots: Array, shares: Array) -> tuple[Any, Any]:
+def _along(impulse: Real, knots: Array, shares: Array) -> tuple[Any, Any]:
     """Return the integral of the share over the impulse, and the share, at ``impulse``."""
     # The share is linear in the impulse between the knots.
     share = np.interp(impulse, knots, shares)

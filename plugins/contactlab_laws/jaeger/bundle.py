@@ -127,7 +127,9 @@ def of_each(bundle: Bundle, before: Real, after: Array, pressure: Real) -> Geome
     return Geometry(throughout, np.where(grows, part, 1.0), limit, weights)
 
 
-def spring_fields(radius: Any, deflection: Any, limit: Any, *, metres: Any = 1.0) -> dict[str, Any]:
+def spring_fields(
+    radius: Array, deflection: Array, limit: Array, *, metres: Real = 1.0
+) -> dict[str, Any]:
     """Return the fields of springs, w and l in units of ``metres``, all of one shape.
 
     A complex w is a vector: its parts are on a last axis, and ``slipping`` is 1 whatever its sign.

@@ -54,7 +54,7 @@ class Scales(NamedTuple):
         per_slip = (friction > 0.0) / (slip + (friction == 0.0))
         return cls(radius, per_slip, friction * peak, peak, friction * peak * slip)
 
-    def pressure(self, radius: Any, load: Any) -> Any:
+    def pressure(self, radius: Real, load: Real) -> Any:
         """Return p, the load at a radius over that of a Hertz contact: 1 under Hertz's law."""
         cube = self.normal_force * radius**3
         return load / (cube + (cube == 0.0))

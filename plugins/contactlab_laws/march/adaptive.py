@@ -22,6 +22,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Rule, quantity
+from contactlab.numeric.types import Array
 from contactlab_laws.march import together
 from contactlab_laws.march.division import midpoints
 from contactlab_laws.march.fixed import (
@@ -141,7 +142,7 @@ class Adaptive(Integrator):
         scene: Scene,
         normal: NormalMotion,
         law: SteppedTangentialLaw,
-        count: Any,
+        count: Array,
         before: TangentialMotion,
     ) -> tuple[TangentialMotion, Any]:
         """Return motion and steps of each impact, doubled from ``before``, in ``count`` steps."""

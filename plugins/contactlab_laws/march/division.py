@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import NormalContact, NormalMotion, NormalSample, Steps, TangentialLaw
+from contactlab.numeric.types import Array, Real
 
 #: Largest omega dt of the fastest tangential oscillation. From 2 on the leapfrog is unstable
 #: (theory §4) and wrong by any amount. Below 2 it is stable, but at 1/2 the phase is off by 1 % a
@@ -35,7 +36,7 @@ LONGEST_KEPT = 4000
 GRADED, LEAST_RADIUS = 512, 1e-6
 
 
-def resolving(radians: Any, law: TangentialLaw) -> Any:
+def resolving(radians: Real, law: TangentialLaw) -> Any:
     """Return the least steps that resolve a tangential oscillation through ``radians``."""
     steps = radians / LARGEST_PHASE_STEP
     if "partial_slip" not in law.offers:
@@ -90,7 +91,7 @@ def _graded(normal: NormalMotion, count: int) -> Any:
     return np.stack(found, axis=-1).reshape(-1, *shape)
 
 
-def _even(u: Any, fractions: Any, rate: Any, radius: Any, count: int) -> Any:
+def _even(u: Array, fractions: Array, rate: Array, radius: Array, count: int) -> Any:
     """Return the fractions of one motion."""
     inner = np.maximum(radius[1::2], LEAST_RADIUS * radius.max())
     along = np.concatenate(([0.0], np.cumsum(np.diff(fractions[::2]) / inner)))
@@ -140,7 +141,7 @@ def _parted(steps: Steps, ends: NormalSample) -> Steps:
     return Steps(NormalContact(*contact), *still, *last)
 
 
-def sampled(normal: NormalMotion, phases: Any, kick: Any, load_impulse: Any) -> Steps:
+def sampled(normal: NormalMotion, phases: Array, kick: Array, load_impulse: Array) -> Steps:
     """Return steps that sample the contact at ``phases``, shape (K,) or (K, ...), read-only."""
     # ``kick`` is the time in s for which each force acts, ``load_impulse`` the exact integral of
     # the friction load over it in N s, both of shape (K, ...).
@@ -181,6 +182,6 @@ def one_by_one(steps: Steps) -> Iterator[Steps]:
             yield Steps(NormalContact(*row[:4]), *row[4:])
 
 
-def _column(phases: Any, normal: NormalMotion) -> Any:
+def _column(phases: Array, normal: NormalMotion) -> Array:
     """Return phases of shape (K,) in a shape that broadcasts with the batch; others unchanged."""
     return phases if phases.ndim > 1 else phases.reshape((-1,) + (1,) * len(normal.scene.shape))

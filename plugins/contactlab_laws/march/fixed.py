@@ -59,7 +59,7 @@ def needed_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene | None =
     return np.maximum(resolving(omega * normal.duration, law), float(LEAST_STEPS))
 
 
-def refined(steps: int, needed: Any) -> Any:
+def refined(steps: int, needed: Real) -> Any:
     """Return ``steps``, or the first number >= ``needed`` of a sequence from it."""
     # With a sequence the impacts of a batch fall into a few groups of equal steps.
     if isinstance(needed, float) and needed <= steps:
@@ -72,19 +72,19 @@ def refined(steps: int, needed: Any) -> Any:
     return np.array(sequence)[np.minimum(np.searchsorted(sequence, needed), len(sequence) - 1)]
 
 
-def _most(needed: Any) -> float:
+def _most(needed: Real) -> float:
     """Return the largest of the numbers that are not NaN."""
     return needed if isinstance(needed, float) else float(np.fmax.reduce(needed, axis=None))
 
 
-def refusals(steps: int, needed: Any) -> Any:
+def refusals(steps: int, needed: Real) -> Any:
     """Return the detail of ``TOO_FEW_STEPS`` for each impact."""
     told = [f"steps = {steps}; this scene needs at least {each:.6g}." for each in np.ravel(needed)]
     return np.array(told, dtype=object).reshape(np.shape(needed)) if np.ndim(needed) else told[0]
 
 
 def in_groups(
-    normal: NormalMotion, steps: int, needed: Any, taken: Any, even: EvenMarch
+    normal: NormalMotion, steps: int, needed: Real, taken: Real, even: EvenMarch
 ) -> TangentialMotion:
     """Return the motion of impacts, each marched by ``even`` in the steps ``taken`` alone."""
     shape = normal.scene.shape
@@ -125,7 +125,7 @@ class FixedSteps(Integrator):
     def divide(self, normal: NormalMotion, count: int, *, graded: bool) -> Steps:
         """Return ``count`` steps of a normal motion, ``graded`` towards its ends or even."""
 
-    def _taken(self, needed: Any) -> Any:
+    def _taken(self, needed: Real) -> Any:
         """Return how many steps each impact takes: ``steps``, or more if these are too few."""
         return refined(self.steps, needed) if self.refine else float(self.steps)
 
@@ -143,6 +143,7 @@ class FixedSteps(Integrator):
         self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene
     ) -> tuple[Real, Real]:
         """Return the errors that the tangential law declares for as many steps."""
+        assert isinstance(tangential, SteppedTangentialLaw)
         taken = self._taken_together(together.needed_steps(scene, normal, tangential))
         return tangential.errors_in_steps(scene, normal, taken)
 
@@ -150,10 +151,11 @@ class FixedSteps(Integrator):
         self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene
     ) -> float:
         """Return the time that the tangential law declares for as many steps."""
+        assert isinstance(tangential, SteppedTangentialLaw)
         taken = self._taken_together(together.needed_steps(scene, normal, tangential))
         return tangential.seconds_in_steps(scene, normal, taken)
 
-    def _taken_together(self, needed: Any) -> Any:
+    def _taken_together(self, needed: Real) -> Any:
         """Return the steps of each impact in the approach without friction; infinite if refused."""
         most = MOST_STEPS if self.refine else self.steps
         return np.where(needed <= most, np.maximum(self.steps, needed), np.inf)

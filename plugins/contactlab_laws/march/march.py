@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -27,6 +26,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import filled, keep_freed_memory, locked, spread
 from contactlab.numeric.checks import Real, shown
+from contactlab.numeric.types import Array
 from contactlab_laws.march.division import one_by_one
 
 
@@ -78,7 +78,7 @@ def _all_at_once(
     return _ended(normal, law, change, response.friction_work, count, fault, response.shear_loss)
 
 
-def _show(normal: NormalMotion, steps: Steps, force: Any, observer: Observer) -> None:
+def _show(normal: NormalMotion, steps: Steps, force: Array, observer: Observer) -> None:
     """Show an observer the instants of a march whose forces are known."""
     scene = normal.scene
     slowed = force * (steps.kick / scene.pair.tangential_mass)
@@ -200,12 +200,12 @@ def _ended(
     )
 
 
-def _number(value: Any) -> str:
+def _number(value: Real) -> str:
     """Return a number, or the numbers of a batch, for a sentence."""
     return shown(value if np.ndim(value) else float(value))
 
 
-def _finite(value: Any) -> bool:
+def _finite(value: Real) -> bool:
     """Return whether all numbers are finite."""
     return math.isfinite(value) if isinstance(value, float) else bool(np.isfinite(value).all())
 

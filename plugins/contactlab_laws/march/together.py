@@ -7,6 +7,7 @@ so that single impacts are plain numbers.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -24,11 +25,13 @@ from contactlab.contracts import (
     Scene,
     SteppedTangentialLaw,
     TangentialMotion,
+    TangentialResponse,
     faults,
 )
 from contactlab.contracts.status import Status
 from contactlab.numeric.arrays import filled
 from contactlab.numeric.checks import shown
+from contactlab.numeric.types import Mask, Real
 from contactlab_laws.march.division import resolving
 
 #: A contact that lasts longer than so many times the approach without friction is given up.
@@ -40,7 +43,7 @@ TURNS, LEADING = 3, 0.4
 DEEPEST = 1e10
 
 
-def needed_steps(scene: Scene, normal: NormalMotion, law: Any) -> Any:
+def needed_steps(scene: Scene, normal: NormalMotion, law: SteppedTangentialLaw) -> Any:
     """Return the least steps in the approach without friction that resolve every oscillation."""
     # omega² <= k_n W_nn + k_t tr W_tt; both stiffnesses grow as the contact radius, and the energy
     # bounds the radius.
@@ -69,9 +72,9 @@ def march_together(
     scene: Scene,
     normal: NormalMotion,
     law: SteppedTangentialLaw,
-    count: Any,
+    count: Real,
     observer: Observer | None,
-    refused: tuple[Status, Any] = (Status.TOO_FEW_STEPS, ""),
+    refused: tuple[Status, str | Sequence[str]] = (Status.TOO_FEW_STEPS, ""),
 ) -> TangentialMotion:
     """Return the motion in ``count`` steps an approach without friction, one for each impact.
 
@@ -88,7 +91,7 @@ def march_together(
     return march.run(observer)
 
 
-def _nearer(tried: list[tuple[Any, Any]], answer: Any) -> Any:
+def _nearer(tried: list[tuple[Real, Real]], answer: Real) -> Real:
     """Return the rate of approach to try next, and note it; ``answer`` is what the last one gave.
 
     The rate that reproduces itself is sought by secants: a dashpot answers a rate by so much less
@@ -112,13 +115,13 @@ class _March:
         scene: Scene,
         normal: NormalMotion,
         law: SteppedTangentialLaw,
-        count: Any,
+        count: Real,
     ) -> None:
         self.scene, self.normal, self.law, self.shape = scene, normal, law, scene.shape
         self.axes = 1 if scene.planar else 2
         plain = not scene.shape
 
-        def entry(value: Any) -> Any:
+        def entry(value: Real) -> Any:
             return float(value) if plain else np.array(np.broadcast_to(value, scene.shape))
 
         self.step = entry(np.asarray(normal.duration) / count)
@@ -241,7 +244,7 @@ class _March:
                 )
                 return self.fail(Status.NOT_SEPARATED, sentence, self.alive)
 
-    def _unsettled(self, settled: Any, force: list[Any]) -> list[Any]:
+    def _unsettled(self, settled: Mask, force: list[Real]) -> list[Any]:
         """Mark impacts to which the law has no answer, and return the forces of the others."""
         lost = self.alive & ~np.broadcast_to(settled, self.shape)
         sentence = faults.sentence(self.law, "no division found", self.steps)
@@ -250,7 +253,7 @@ class _March:
         self.alive = self.alive & ~lost
         return [np.where(lost, 0.0, each) for each in force]
 
-    def _joined(self, components: list[Any]) -> Any:
+    def _joined(self, components: list[Real]) -> Any:
         """Return a displacement or velocity as the law takes it."""
         return components[0] if self.axes == 1 else np.stack(components, axis=-1)
 
@@ -260,7 +263,7 @@ class _March:
             return self.step
         return self.step * np.minimum((self.steps + 0.5) / self.leading, 1.0)
 
-    def _sampled(self, approach: Any, at: list[Any], force: list[Any], step: Any) -> Sampled:
+    def _sampled(self, approach: Real, at: list[Real], force: list[Real], step: Real) -> Sampled:
         """Return the motion where the forces act, as far as it is known."""
         inertia = self.W[1][1]
         if self.axes == 2:
@@ -268,7 +271,7 @@ class _March:
         slip, acting = self._joined(at[1:]), self._joined(force)
         return Sampled(approach, at[0], slip, acting, 0.5 * step * inertia)
 
-    def _components(self, response: Any) -> list[Any]:
+    def _components(self, response: TangentialResponse) -> list[Any]:
         """Return the components of a force, or refuse a malformed answer."""
         force, work = response.force, response.friction_work
         shape = self.shape if self.axes == 1 else (*self.shape, 2)
@@ -281,12 +284,12 @@ class _March:
         both = np.broadcast_to(force, shape)
         return [both[..., 0], both[..., 1]] if self.shape else both.tolist()
 
-    def _kick(self, pressure: Any, force: list[Any], step: Any) -> list[Any]:
+    def _kick(self, pressure: Real, force: list[Real], step: Real) -> list[Any]:
         """Return W (P, F) dt, the velocities that a step takes."""
         each = [pressure, *force]
         return [step * sum(w * f for w, f in zip(row, each, strict=True)) for row in self.W]
 
-    def fail(self, status: Status, detail: Any, where: Any) -> None:
+    def fail(self, status: Status, detail: object, where: Mask) -> None:
         """Mark impacts as failed."""
         if self.shape:
             self.status[where], self.detail[where] = status, detail

@@ -15,6 +15,7 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.contracts import Increment, NormalContact, TangentialResponse
 from contactlab.impact.scene import Scene
@@ -70,7 +71,9 @@ class State(NamedTuple):
     cross: Array | None = None
 
 
-def start(scene: Scene, springs: int, *, spanned: Any = None, vectors: bool = False) -> State:
+def start(
+    scene: Scene, springs: int, *, spanned: Real | None = None, vectors: bool = False
+) -> State:
     """Return contacts without traction; springs span at least the radius ``spanned`` in m."""
     shape, pair = scene.shape, scene.pair
     items = math.prod(shape)
@@ -204,7 +207,7 @@ def fitted(
         return size, held, 0.0
     size, held, lost = size.copy(), held.copy(), np.zeros_like(size)
 
-    def part(where: Any) -> Any:
+    def part(where: NDArray[np.bool_]) -> Any:
         return None if cross is None else cross[where]
 
     while outgrown.any():

@@ -136,7 +136,7 @@ class Springs(ProfileLaw):
 
         return tabulated(scene, e)
 
-    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Any) -> Real:
+    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Real) -> Real:
         """Return the error of springs that share a loss, measured for chi up to 6; else NaN."""
         measured = self.shares_loss(normal.law) and self.shear_loss == 1.0
         if not measured or self.grid == "doubling" or self.springs < LEAST_MEASURED:
@@ -145,7 +145,7 @@ class Springs(ProfileLaw):
         error = BY_SPRINGS * square / self.springs**2 + (BY_STEPS + BY_STEPS * square) / steps**2
         return np.where(np.asarray(scene.chi) <= LARGEST_CHI, error, math.nan)
 
-    def errors_in_steps(self, scene: Scene, normal: NormalMotion, steps: Any) -> tuple[Real, Real]:
+    def errors_in_steps(self, scene: Scene, normal: NormalMotion, steps: Real) -> tuple[Real, Real]:
         """Return the errors of springs that share a loss, measured on random bodies; else NaN."""
         measured = self.shares_loss(normal.law) and self.shear_loss == 1.0
         if not measured or self.springs < LEAST_MEASURED:
@@ -162,7 +162,7 @@ class Springs(ProfileLaw):
         restitution = np.where(known, error, math.nan)
         return 0.5 * (1.0 + chi + eta) * restitution, restitution
 
-    def seconds_in_steps(self, scene: Scene, normal: NormalMotion, steps: Any) -> float:
+    def seconds_in_steps(self, scene: Scene, normal: NormalMotion, steps: Real) -> float:
         """Return the time of springs that share a loss; NaN of others, which are faster."""
         followed = np.isfinite(np.broadcast_to(steps, scene.shape))
         if not self.shares_loss(normal.law) or not followed.any():

@@ -21,7 +21,7 @@ from contactlab.contracts import Increment, NormalContact, TangentialResponse
 from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab_laws.jaeger.bundle import spring_fields
 from contactlab_laws.jaeger.partial_slip import Scales
 from contactlab_laws.jaeger.step import common
@@ -129,7 +129,7 @@ def start(
     scene: Scene,
     law: NormalLaw,
     springs: int,
-    radius: Any,
+    radius: Real,
     *,
     shear_loss: float,
     spanned: float | None = 1.0,

@@ -9,7 +9,7 @@ import numpy as np
 
 from contactlab.contracts import AllStepsResponse, NormalMotion, Steps
 from contactlab.impact.scene import Scene
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab_laws.jaeger.step import ROUNDING
 from contactlab_laws.springs import viscous
 from contactlab_laws.springs.viscous import TINY
@@ -60,7 +60,7 @@ def advance_all(
         return None
     wide = (count, items)
 
-    def rows(column: Any) -> Array:
+    def rows(column: Real) -> Array:
         table: Array = np.asarray(column)
         if table.size == count:
             return table.reshape(count, 1)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 FORMAT = 3
 
@@ -29,7 +29,7 @@ class Stored(NamedTuple):
     built: str
 
     @classmethod
-    def today(cls, **arrays: Any) -> Stored:
+    def today(cls, **arrays: ArrayLike) -> Stored:
         """Return the content of a table built by the installed version."""
         from importlib import metadata  # takes 20 ms to import; only builders need it
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cache, cached_property
-from typing import Any
+from typing import Any, TypeAlias
 
 import attrs
 import numpy as np
@@ -124,6 +124,10 @@ class Patches:
         return single
 
 
+#: The value of a patch at plain numbers a and b.
+Value: TypeAlias = Callable[[float, float], float]
+
+
 class Single:
     """A patch of two coordinates in plain numbers, until it is worth compiling.
 
@@ -136,7 +140,9 @@ class Single:
     patch : int
     """
 
-    def __init__(self, origin: Array, terms: Array, all_of_them: Any, patch: int) -> None:
+    def __init__(
+        self, origin: Array, terms: Array, all_of_them: list[Value] | dict[int, Value], patch: int
+    ) -> None:
         self.left, self.low = origin.tolist()
         self.rows = terms[::-1, ::-1].tolist()  # from the highest power down
         self.patch, self.all_of_them, self.calls = patch, all_of_them, 0

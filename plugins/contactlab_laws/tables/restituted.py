@@ -118,7 +118,7 @@ def full_slip(speed: Array, chi: Array, e: Real) -> Array:
     return np.asarray(speed - 2.0 * chi * (1.0 + e))
 
 
-def sticks(speed: Any, chi: Any, e: Any) -> Any:
+def sticks(speed: Real, chi: Real, e: Real) -> Any:
     """Return whether impacts do not slip throughout."""
     return speed < np.maximum(border(chi, e), 1.0)
 

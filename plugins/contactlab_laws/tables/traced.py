@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.compose.rebound import RESTITUTED_CHI
+from contactlab.numeric.types import Array
 from contactlab_laws.tables import elastic, restituted
 from contactlab_laws.tables import regions as of
 from contactlab_laws.tables.file import read
@@ -50,7 +51,7 @@ def elastic_constants() -> dict[str, Any]:
     }
 
 
-def _shifting(origins: Any, count: int) -> Any:
+def _shifting(origins: Array, count: int) -> Array:
     """Return matrices of u^n by powers of u less each origin, shape (origins, count, count)."""
     powers = np.array([[math.comb(n, k) for k in range(count)] for n in range(count)], dtype=float)
     exponents = np.subtract.outer(np.arange(count), np.arange(count))

@@ -75,7 +75,7 @@ class Contact(NamedTuple):
     spacing: Array
     rest: Array
 
-    def total(self, values: Array, at_edge: Any) -> Any:
+    def total(self, values: Array, at_edge: Array) -> Any:
         """Return the integral of values, 0 out of contact, by trapezoids up to the edge."""
         last = values[self.outer, np.arange(values.shape[1])]
         inner = values.sum(axis=0) - 0.5 * (values[0] + last)
@@ -149,7 +149,7 @@ def _enter(
     np.copyto(w, drift * part, where=enters)
 
 
-def _friction(contact: Contact, w: Array, reach: Any, room: Array) -> Array:
+def _friction(contact: Contact, w: Array, reach: Array, room: Array) -> Array:
     """Return the forces of springs w + a psi within their limits, in ``room``."""
     np.add(w, reach, out=room)
     np.maximum(room, -contact.limit, out=room)

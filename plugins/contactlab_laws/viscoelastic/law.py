@@ -26,7 +26,7 @@ ONE_FOR_ALL = ("restitution", "relaxation_time")
 PAIRS = "must be two or more pairs of speed and e"
 
 
-def measured(table: Any) -> tuple[tuple[float, float], ...]:
+def measured(table: object) -> tuple[tuple[float, float], ...]:
     """Return a table of speeds and restitutions as pairs, or refuse it."""
     remedy = "write [[speed, e], [speed, e]], speeds in m/s"
     try:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebval
 
 from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Array
 
 #: g by Chebyshev polynomials of (e^(1/3) - 0.6)/0.4, from ``LEAST`` up: e to 2e-10.
 TERMS = (
@@ -52,13 +53,13 @@ def restitution_of(number: Real) -> Any:
     return _float(e)
 
 
-def _ratio(e: Any) -> Any:
+def _ratio(e: Array) -> Any:
     """Return g."""
     series = chebval((np.cbrt(np.maximum(e, LEAST)) - 0.6) / 0.4, TERMS)
     asymptote = FIRST * (1.0 - e**0.6) * (1.0 + SECOND * np.cbrt(e) ** 2)
     return np.where(e >= LEAST, series, asymptote)
 
 
-def _float(value: Any) -> Any:
+def _float(value: Array) -> Any:
     """Return a scalar as a float."""
     return float(value) if np.ndim(value) == 0 else value

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import attrs
 import numpy as np
+from numpy.typing import ArrayLike
 
 from contactlab.numeric.types import Array
 from contactlab_laws.tables.elastic import DEEPEST, NODES
@@ -107,7 +108,7 @@ def build(path: Path, *, tolerance: float = TOLERANCE, workers: int = 1) -> None
     cells = np.array([progress.done[k] for k in order], dtype=np.int16)
     terms = np.array([progress.terms[k] for k in order])
     stuck, slip = progress.cuts
-    arrays = {"stuck": stuck, "slip": slip, "cells": cells, "terms": terms}
+    arrays: dict[str, ArrayLike] = {"stuck": stuck, "slip": slip, "cells": cells, "terms": terms}
     write(path, Stored.today(tolerance=tolerance, **arrays))
     kept.unlink()
 
