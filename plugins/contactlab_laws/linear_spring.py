@@ -121,7 +121,11 @@ class LinearSpring(SteppedTangentialLaw):
         return in_plane(self, scene, normal) if vectors else self.start(scene, normal)
 
     def advance(
-        self, state: Any, increment: Increment, before: NormalContact, after: NormalContact
+        self,
+        state: State | InPlane,
+        increment: Increment,
+        before: NormalContact,
+        after: NormalContact,
     ) -> tuple[TangentialResponse, Any]:
         """Return the force, and the friction work: the work that the spring does not store."""
         if isinstance(state, InPlane):

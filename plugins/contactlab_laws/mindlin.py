@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple, TypeAlias
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.contracts import (
     Increment,
@@ -103,6 +104,10 @@ def with_dashpot(
     return cut(force, limit)
 
 
+#: Displacements, velocities or forces: numbers along a line, or complex ones of a plane.
+Along: TypeAlias = Real | NDArray[np.complex128]
+
+
 class InPlane(NamedTuple):
     """A law's state whose displacements and forces are vectors, held as complex numbers."""
 
@@ -110,7 +115,7 @@ class InPlane(NamedTuple):
     shape: tuple[int, ...]
 
 
-def in_plane(law: Any, scene: Scene, normal: NormalMotion) -> InPlane:
+def in_plane(law: SteppedTangentialLaw, scene: Scene, normal: NormalMotion) -> InPlane:
     """Return the state at first touch of a law of one spring, for vectors."""
     own, zero = law.start(scene, normal), np.zeros(scene.shape or (1,), dtype=complex)
     names = {"held", "spring", "force"} & set(own._fields)
@@ -118,7 +123,11 @@ def in_plane(law: Any, scene: Scene, normal: NormalMotion) -> InPlane:
 
 
 def moved_in_plane(
-    law: Any, state: InPlane, increment: Increment, before: NormalContact, after: NormalContact
+    law: SteppedTangentialLaw,
+    state: InPlane,
+    increment: Increment,
+    before: NormalContact,
+    after: NormalContact,
 ) -> tuple[TangentialResponse, InPlane]:
     """Return the answer to a step whose displacement and velocity have the shape (..., 2)."""
     shape = state.shape
@@ -127,18 +136,20 @@ def moved_in_plane(
     step: Any = increment._replace(displacement=moved, velocity=velocity)  # type: ignore[arg-type]
     response, own = law.advance(state.own, step, before, after)
     force = np.stack((response.force.real, response.force.imag), axis=-1).reshape(*shape, 2)
-    work = response.friction_work.reshape(shape) if shape else response.friction_work.item()
-    return TangentialResponse(force, work), InPlane(own, shape)
+    work = np.asarray(response.friction_work)
+    return TangentialResponse(force, work.reshape(shape) if shape else work.item()), InPlane(
+        own, shape
+    )
 
 
-def along(force: Any, slip: Any) -> Any:
+def along(force: Along, slip: Along) -> Any:
     """Return force times slip: the product, or the scalar product of complex numbers."""
     if isinstance(slip, np.ndarray) and slip.dtype.kind == "c":
-        return (force.conj() * slip).real
+        return (np.conj(force) * slip).real
     return force * slip
 
 
-def cut(value: Any, limit: Any) -> Any:
+def cut(value: Along, limit: Real) -> Any:
     """Return ``value`` within plus and minus ``limit``; of a complex number the length."""
     if isinstance(value, np.ndarray) and value.dtype.kind == "c":
         size = np.abs(value)
@@ -267,7 +278,11 @@ class MindlinCap(SteppedTangentialLaw):
         return in_plane(self, scene, normal) if vectors else self.start(scene, normal)
 
     def advance(
-        self, state: Any, increment: Increment, before: NormalContact, after: NormalContact
+        self,
+        state: State | InPlane,
+        increment: Increment,
+        before: NormalContact,
+        after: NormalContact,
     ) -> tuple[TangentialResponse, Any]:
         """Return the force after the step, and the work of the mean force on the slip."""
         if isinstance(state, InPlane):

@@ -7,6 +7,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.numeric.checks import Real
 from contactlab.numeric.types import Array
@@ -128,7 +129,7 @@ def of_each(bundle: Bundle, before: Real, after: Array, pressure: Real) -> Geome
 
 
 def spring_fields(
-    radius: Array, deflection: Array, limit: Array, *, metres: Real = 1.0
+    radius: Array, deflection: NDArray[np.number], limit: Array, *, metres: Real = 1.0
 ) -> dict[str, Any]:
     """Return the fields of springs, w and l in units of ``metres``, all of one shape.
 

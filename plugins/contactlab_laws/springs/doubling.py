@@ -23,7 +23,7 @@ from contactlab.numeric.arrays import flat
 from contactlab.numeric.checks import Real
 from contactlab.numeric.types import Array
 from contactlab_laws.jaeger.bundle import spring_fields
-from contactlab_laws.springs.turning import energy, turned
+from contactlab_laws.springs.turning import Vectors, energy, turned
 
 #: Contacts whose radius is below this times that of the pair just touch: no friction. The cells of
 #: a smaller contact could underflow.
@@ -50,7 +50,7 @@ class Memory(NamedTuple):
 
     size: Array
     radius: Array
-    deflection: Array
+    deflection: Vectors
     limit: Array
     steepness: Array | float = 0.0
 
@@ -129,7 +129,7 @@ def advance(
 
 def moved(
     before: Memory,
-    displacement: Array,
+    displacement: Vectors,
     radius: Array,
     limit: Array,
     *,
@@ -137,7 +137,7 @@ def moved(
     modulus: Array,
     spans: bool = False,
     cross: Array | None = None,
-) -> tuple[Array, Array, Memory]:
+) -> tuple[Any, Array, Memory]:
     """Return force (N), friction work (J), both of shape (items,), and the springs after a step.
 
     Parameters
@@ -192,13 +192,13 @@ def moved(
 
 def fitted(
     size: Array,
-    held: Array,
+    held: Vectors,
     radius: Array,
     unit: Real,
     *,
     spans: bool = False,
     cross: Array | None = None,
-) -> tuple[Array, Array, Real]:
+) -> tuple[Array, Vectors, Real]:
     """Return A and w with A/4 < b <= A, and the energy lost in merging over 2 G*, in m³."""
     if not size.all():
         size = np.where(size > 0.0, size, _least_size(radius, unit))
@@ -246,8 +246,11 @@ def fields(state: State) -> dict[str, Any]:
     size, _, deflection, limit, _ = state.memory
     springs = len(deflection)
     places = np.multiply.outer(np.arange(springs) + 0.5, size / springs)
-    rows = (each.T.reshape(*state.shape, springs) for each in (places, deflection, limit))
-    return spring_fields(*rows)
+
+    def rows(each: Vectors) -> Any:
+        return each.T.reshape(*state.shape, springs)
+
+    return spring_fields(rows(places), rows(deflection), rows(limit))
 
 
 def _least_size(radius: Array, unit: Real) -> Array:

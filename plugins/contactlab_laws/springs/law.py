@@ -26,7 +26,7 @@ from contactlab.contracts import (
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real, Rule, choice, count, flag, quantity, refuse
 from contactlab_laws.differences import table as differences
-from contactlab_laws.jaeger.law import ProfileLaw
+from contactlab_laws.jaeger.law import ProfileLaw, State
 from contactlab_laws.march.together import deepest
 from contactlab_laws.springs import doubling, viscous, viscous_steps
 
@@ -212,18 +212,40 @@ class Springs(ProfileLaw):
             )
         return doubling.start(scene, self._even(), spanned=spanned, vectors=vectors)
 
-    def _viscous(self, scene: Scene, normal: NormalMotion, unit: Real, **how: Any) -> viscous.State:
+    def _viscous(
+        self,
+        scene: Scene,
+        normal: NormalMotion,
+        unit: Real,
+        *,
+        spanned: float | None,
+        grows: bool,
+        vectors: bool = False,
+    ) -> viscous.State:
         """Return springs that share the loss of the normal law, lengths in units of ``unit``."""
         law: Any = normal.law
-        springs = self._even() if how["grows"] else self.springs
-        return viscous.start(scene, law, springs, unit, shear_loss=self.shear_loss, **how)
+        springs = self._even() if grows else self.springs
+        return viscous.start(
+            scene,
+            law,
+            springs,
+            unit,
+            shear_loss=self.shear_loss,
+            spanned=spanned,
+            grows=grows,
+            vectors=vectors,
+        )
 
     def _even(self) -> int:
         """Return the number of springs, one more if odd: a doubling grid merges pairs."""
         return self.springs + self.springs % 2
 
     def advance(
-        self, state: Any, increment: Increment, before: NormalContact, after: NormalContact
+        self,
+        state: State | doubling.State | viscous.State,
+        increment: Increment,
+        before: NormalContact,
+        after: NormalContact,
     ) -> tuple[TangentialResponse, Any]:
         """Return the force after the step."""
         if isinstance(state, viscous.State):
@@ -242,9 +264,10 @@ class Springs(ProfileLaw):
             return viscous_steps.advance_all(self.start(scene, normal), scene, normal, steps)
         return super().advance_all(scene, normal, steps)
 
-    def fields(self, state: Any) -> Mapping[str, NDArray[Any]]:
+    def fields(self, state: State | doubling.State | viscous.State) -> Mapping[str, NDArray[Any]]:
         """Return radius, displacement and limit (m), stuck and slipping of every spring."""
         if isinstance(state, viscous.State):
             return viscous.fields(state)
-        own = isinstance(state, doubling.State)
-        return doubling.fields(state) if own else super().fields(state)
+        if isinstance(state, doubling.State):
+            return doubling.fields(state)
+        return super().fields(state)

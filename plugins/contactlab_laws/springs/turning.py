@@ -13,11 +13,15 @@ stiffness along the first axis.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.numeric.types import Array
+
+#: Displacements or forces of the tangent plane, as complex numbers; along one line real ones.
+Vectors: TypeAlias = NDArray[np.number]
 
 #: Share of the step after which springs are cut first, and what that cut weighs at the end.
 EARLY = 1.0 - math.sqrt(0.5)
@@ -32,7 +36,9 @@ STEPS, FAR = 2, 1e60
 BLOCK = 4096
 
 
-def turned(held: Any, move: Any, least: Any, most: Any, cross: Any = None) -> tuple[Any, Any]:
+def turned(
+    held: Vectors, move: Vectors, least: Array, most: Array, cross: Array | None = None
+) -> tuple[Vectors, Array]:
     """Return w after a step, and twice the friction work over the stiffness of one spring.
 
     Parameters
@@ -54,8 +60,14 @@ def turned(held: Any, move: Any, least: Any, most: Any, cross: Any = None) -> tu
 
 
 def dragged(
-    held: Any, move: Any, pull: Any, first: Any, most: Any, decay: Any, cross: Any = None
-) -> Any:
+    held: Vectors,
+    move: Vectors,
+    pull: Vectors,
+    first: Array,
+    most: Array,
+    decay: Array,
+    cross: Array | None = None,
+) -> Vectors:
     """Return w of viscous springs after a step (theory §15): the force is w + A w'.
 
     Parameters
@@ -74,16 +86,17 @@ def dragged(
     moved, pull = stretched(move, cross), stretched(pull, cross)
     share = EARLY * decay / (1.0 + EARLY * decay)
     early = beyond(held + EARLY * moved + pull, first + EARLY * (most - first), cross)
-    trial = held + moved - WEIGHT * share * early
+    trial: Vectors = held + moved - WEIGHT * share * early
     return trial - share * beyond(trial + pull, most, cross)
 
 
-def beyond(force: Any, limit: Any, cross: Any = None) -> Any:
+def beyond(force: Vectors, limit: Array, cross: Array | None = None) -> Vectors:
     """Return what forces exceed their limit by, complex: where a force slips to is closest."""
     size = np.abs(force)
     slips = size > limit
     if cross is None:
-        return force * np.where(slips, 1.0 - limit / (size + TINY), 0.0)
+        whole: Vectors = force * np.where(slips, 1.0 - limit / (size + TINY), 0.0)
+        return whole
     over = np.zeros_like(force)
     parts = force.real, force.imag, limit, cross
     along, across, limits, ratio = (np.broadcast_to(each, force.shape)[slips] for each in parts)
@@ -96,17 +109,17 @@ def beyond(force: Any, limit: Any, cross: Any = None) -> Any:
     return over
 
 
-def stretched(move: Any, cross: Any) -> Any:
+def stretched(move: Vectors, cross: Array | None) -> Vectors:
     """Return displacements times the stiffness over that along the first axis."""
     return move if cross is None else move.real + 1j * (cross * move.imag)
 
 
-def relaxed(force: Any, cross: Any) -> Any:
+def relaxed(force: Vectors, cross: Array | None) -> Vectors:
     """Return the displacements that ``stretched`` made forces of."""
     return force if cross is None else force.real + 1j * (force.imag / cross)
 
 
-def energy(force: Any, cross: Any) -> Any:
+def energy(force: Vectors, cross: Array | None) -> Array:
     """Return abs(w)² of springs, on an ellipse force times displacement."""
     return (force.conj() * relaxed(force, cross)).real
 

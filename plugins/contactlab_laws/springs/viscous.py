@@ -13,6 +13,7 @@ for. The force is the share of Coulomb's limit, so that slip throughout is exact
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,7 +27,7 @@ from contactlab_laws.jaeger.bundle import spring_fields
 from contactlab_laws.jaeger.partial_slip import Scales
 from contactlab_laws.jaeger.step import common
 from contactlab_laws.springs.doubling import crossing, fitted
-from contactlab_laws.springs.turning import beyond, dragged, relaxed, stretched
+from contactlab_laws.springs.turning import Vectors, beyond, dragged, relaxed, stretched
 
 #: Rates below this times that at first touch say nothing of A: the law is asked at this one.
 SLOWEST = 1e-3
@@ -83,10 +84,10 @@ class Memory(NamedTuple):
     edge: Any
     excess: Any
     time: Any
-    lead: Array
-    share: Array
+    lead: Vectors
+    share: Vectors
     weight: Array
-    deflection: Array
+    deflection: Vectors
 
 
 class State(NamedTuple):
@@ -172,17 +173,16 @@ def advance(
     sampled = increment.sampled
     vectors = memory.deflection.dtype.kind == "c"
 
-    def row(value: Any) -> Any:
+    def row(value: Real) -> Array:
         return flat(value, shape) if shape else np.atleast_1d(np.asarray(value, dtype=float))
 
-    def tangential(value: Any) -> Any:
+    def tangential(value: Real) -> Any:
         if not vectors:
             return row(value)
         value = np.asarray(value)
         return row(value[..., 0]) + 1j * row(value[..., 1])
 
-    approach, rate = (None, None) if sampled is None else sampled[:2]
-    contact = told(state, after, approach, rate, row)
+    contact = told(state, after, None if sampled is None else sampled[:2], row)
     limit, acting = (row(each) for each in (after.friction_load, increment.friction_load))
     friction = scales.force / scales.normal_force
     still = np.zeros(memory.deflection.shape[1:])
@@ -208,23 +208,29 @@ def advance(
     return TangentialResponse(acts, work, True, loss), state._replace(memory=memory)
 
 
-def _shaped(values: Array, shape: tuple[int, ...]) -> Any:
+def _shaped(values: Vectors, shape: tuple[int, ...]) -> Any:
     """Return values of shape (items,) in the shape of the batch, or as a plain number."""
     return values.reshape(shape) if shape else values.item()
 
 
-def told(state: State, contact: NormalContact, approach: Any, rate: Any, spread: Any) -> Contact:
+def told(
+    state: State,
+    contact: NormalContact,
+    motion: tuple[Real, Real] | None,
+    spread: Callable[[Real], Array],
+) -> Contact:
     """Return what contacts tell the springs, in the arrangement of ``spread``.
 
-    Their rates of approach are in m/s; None of a path that is slow.
+    ``motion`` is approach in m and its rate in m/s; None of a path that is slow.
     """
     scales = state.scales
     b, excess = limits(
         spread(contact.radius) / scales.radius, spread(contact.friction_load) / scales.normal_force
     )
-    if rate is None:
+    if motion is None:
         return Contact(b * b, 0.0 * excess, 0.0 * excess)
     # the viscous force over the rate, asked while the surfaces approach: no tension cuts it there
+    approach, rate = motion
     rate = np.maximum(np.abs(rate), SLOWEST * state.speed)
     asked, _ = state.law.respond(state.parts, approach, rate)
     _, push = limits(
@@ -258,11 +264,11 @@ class Drive(NamedTuple):
     ``cross`` is that of ``State``.
     """
 
-    move: Array
+    move: Vectors
     drift: Array
     acted: Array
-    slip: Array
-    force: Array
+    slip: Vectors
+    force: Vectors
     mobility: Array
     limit: Array
     acting: Array
@@ -272,7 +278,7 @@ class Drive(NamedTuple):
 
 def moved(
     before: Memory, contact: Contact, drive: Drive, grows: bool, splits: bool
-) -> tuple[Array, Array, Array, Memory]:
+) -> tuple[Vectors, Array, Array, Memory]:
     """Return force (N), friction work and loss in shear (scaled), and the springs after a step."""
     items = before.deflection.shape[1:]
     # A in the middle of the step, and at its end
@@ -321,8 +327,8 @@ def moved(
 
 
 def solved(
-    deflection: Array, most: Array, lead: Array, drive: Drive, per_total: Array, *, out: Array
-) -> tuple[Array, Array, Array]:
+    deflection: Vectors, most: Array, lead: Array, drive: Drive, per_total: Array, *, out: Vectors
+) -> tuple[Vectors, Vectors, Vectors]:
     """Return share of Coulomb's limit, tractions, and the slip velocity that they belong to.
 
     From the force of the last step one turn is of second order; where the force moves the slip
@@ -355,16 +361,15 @@ def solved(
     return found, traction, slip
 
 
-def _real(first: Any, second: Any) -> Any:
+def _real(first: Vectors, second: Vectors) -> Any:
     """Return the products, of complex numbers the inner products."""
     return (np.conj(first) * second).real if np.iscomplexobj(first) else first * second
 
 
-def _cut(traction: Any, most: Any, cross: Any = None) -> Any:
+def _cut(traction: Vectors, most: Array, cross: Array | None = None) -> Vectors:
     """Cut tractions to their limit, in place, and return them."""
     if traction.dtype.kind == "c":
-        traction -= beyond(traction, most, cross)
-        return traction
+        return np.subtract(traction, beyond(traction, most, cross), out=traction)
     np.minimum(traction, most, out=traction)
     return np.maximum(traction, -most, out=traction)
 
@@ -403,7 +408,7 @@ def entered(
     return part, np.where(entering, excess + (before[1] - excess) * part, least)
 
 
-def relaxing(first: Array, most: Array, decay: Any) -> tuple[Array, Array]:
+def relaxing(first: Array, most: Array, decay: Array) -> tuple[Array, Array]:
     """Return the share of w that relaxes in a step, and the limit of what comes in its place.
 
     The limit of the springs goes evenly from ``first`` to ``most``.
@@ -412,14 +417,16 @@ def relaxing(first: Array, most: Array, decay: Any) -> tuple[Array, Array]:
     return gone, first * gone + (most - first) * (1.0 - gone / np.maximum(decay, TINY))
 
 
-def _slipped(held: Array, move: Any, _: Any, first: Array, most: Array, decay: Any) -> Array:
+def _slipped(
+    held: Vectors, move: Vectors, _: Vectors, first: Array, most: Array, decay: Array
+) -> Vectors:
     """Return w along one line: held by the limit, which goes evenly from ``first`` to ``most``."""
     gone, span = relaxing(first, most, decay)
     free = held * (1.0 - gone)
     return np.asarray(np.minimum(np.maximum(held + move, free - span), free + span))
 
 
-def alone(pull: Array, excess: Array, share: Array) -> Array:
+def alone(pull: Vectors, excess: Array, share: Vectors) -> Vectors:
     """Return the share of a contact that is smaller than a cell: of its edge, or as it was."""
     begun = excess > 0.0
     ratio = pull / np.where(begun, excess, 1.0)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array, Real
 from contactlab_laws.jaeger.step import ROUNDING
 from contactlab_laws.springs import viscous
+from contactlab_laws.springs.turning import Vectors
 from contactlab_laws.springs.viscous import TINY
 
 #: Most springs times steps, or impacts times steps, of a run; longer ones go step by step.
@@ -66,7 +68,7 @@ def advance_all(
             return table.reshape(count, 1)
         return np.broadcast_to(table, (count, *shape)).reshape(wide)
 
-    contact = viscous.told(state, steps.contact, steps.approach, steps.rate, rows)
+    contact = viscous.told(state, steps.contact, (steps.approach, steps.rate), rows)
     drift, kick, acting = (rows(each) for each in (steps.drift, steps.kick, steps.friction_load))
     time = contact.time
     middle = np.concatenate((time[:1], 0.5 * (time[1:] + time[:-1])))
@@ -114,8 +116,17 @@ def _grid(springs: int, edge: Array, excess: Array, decay: Array) -> _Grid | Non
     )
 
 
+#: Of all steps: drift, kick, friction load, relaxation time, and what makes such rows.
+Columns: TypeAlias = tuple[Array, Array, Array, Array, Callable[[Real], Array]]
+
+
 def _march(
-    state: viscous.State, scene: Scene, grid: _Grid, steps: Steps, columns: Any, items: int
+    state: viscous.State,
+    scene: Scene,
+    grid: _Grid,
+    steps: Steps,
+    columns: Columns,
+    items: int,
 ) -> AllStepsResponse:
     """Return the forces of all steps, a few passes over the springs for each."""
     drift, kick, acting, time, rows = columns
@@ -129,6 +140,7 @@ def _march(
     mobility, drift, lead = 0.5 * kick / mass, drift * scale, time * scale
     springs = len(state.memory.deflection)
     w, moved, traction, before = np.zeros((4, springs, items))
+    last_share: Vectors
     force, earlier, last_share = np.zeros((3, items))
     change, gained, work = np.zeros((3, items))
     weight, ones, last = np.zeros(1), np.ones(springs), 0
@@ -156,7 +168,7 @@ def _march(
             move, drift[k], acted[k], slip, force, mobility[k], limit[k], acting[k], scale
         )
         most = grid.most[k, :now, None]
-        share, f, _ = viscous.solved(held, most, lead[k], drive, grid.per_total[k], out=f)
+        share, _, _ = viscous.solved(held, most, lead[k], drive, grid.per_total[k], out=f)
         if grid.per_total[k] == 0.0:
             share = viscous.alone(lead[k] * drive.slip, grid.excess[k], last_share)
         last_share = share

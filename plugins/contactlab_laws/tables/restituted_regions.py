@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose.rebound import RESTITUTED_CHI
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Array
 from contactlab_laws.tables.file import Stored
 from contactlab_laws.tables.patches import Patches, powers_of_chebyshev
 
@@ -43,7 +43,7 @@ PER_WIDTH = np.array([1.0 / (each.high - each.low) for each in REGIONS])
 NODES = (8, 6, 6)
 
 
-def border(chi: Real, e: Real) -> Any:
+def border(chi: Any, e: Any) -> Any:
     """Return psi1 from which an impact that has slipped first slips throughout; for chi > 1/2."""
     return 2.0 * chi * (1.0 + e) - e
 

@@ -8,6 +8,7 @@ number, so that derivatives of what is not chosen are finite.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -17,6 +18,7 @@ from contactlab.compose.rebound import RESTITUTED_CHI
 from contactlab.numeric.types import Array
 from contactlab_laws.tables import elastic, restituted
 from contactlab_laws.tables import regions as of
+from contactlab_laws.tables.array_api import Library, Operand, Traced
 from contactlab_laws.tables.file import read
 from contactlab_laws.tables.restituted_regions import LOW, NODES, PER_WIDTH, SLIPPING, border
 
@@ -74,7 +76,7 @@ def restituted_constants() -> dict[str, Any]:
     }
 
 
-def rebound(xp: Any, constants: Any, psi1: Any, chi: Any) -> Any:
+def rebound(xp: Library, constants: Mapping[str, Traced], psi1: Traced, chi: Traced) -> Traced:
     """Return psi2 of elastic impacts, NaN where the table ends.
 
     Parameters
@@ -93,7 +95,15 @@ def rebound(xp: Any, constants: Any, psi1: Any, chi: Any) -> Any:
     return xp.where(inside, sign * psi2, xp.nan)
 
 
-def rebound_with_loss(xp: Any, constants: Any, psi1: Any, chi: Any, e: Any, *, joined: bool) -> Any:
+def rebound_with_loss(
+    xp: Library,
+    constants: Mapping[str, Traced],
+    psi1: Traced,
+    chi: Traced,
+    e: Traced,
+    *,
+    joined: bool,
+) -> Traced:
     """Return psi2 of impacts with a restitution, NaN where the table ends.
 
     Parameters
@@ -128,7 +138,7 @@ def rebound_with_loss(xp: Any, constants: Any, psi1: Any, chi: Any, e: Any, *, j
     rest = xp.where(x < 0.5, 1.0 - 2.0 * x, 1.0)
     slow = xp.where((p > 0.0) & (p < 1.0), p, 1.0)
     dead = xp.where(x < 0.5, rest * slow ** (1.0 / rest), 0.0)
-    psi2 = xp.where(e == 0.0, xp.where(p > 0.0, dead, 0.0), psi2)
+    psi2 = xp.where(e <= 0.0, xp.where(p > 0.0, dead, 0.0), psi2)
     psi2 = xp.where(psi2 < full, full, psi2)
     psi2 = xp.where(psi2 > p, p, xp.where(psi2 < -p, -p, psi2))
     end = border(x, e)
@@ -136,7 +146,7 @@ def rebound_with_loss(xp: Any, constants: Any, psi1: Any, chi: Any, e: Any, *, j
     return xp.where(inside, sign * psi2, xp.nan)
 
 
-def _elastic(xp: Any, constants: Any, p: Any, x: Any) -> Any:
+def _elastic(xp: Library, constants: Mapping[str, Traced], p: Traced, x: Traced) -> Traced:
     """Return psi2 of psi1 = p >= 0 and 0 < chi <= LARGEST_CHI."""
     full = p - 4.0 * x
     slips, big = p > 1.0, x >= 0.5
@@ -154,7 +164,7 @@ def _elastic(xp: Any, constants: Any, p: Any, x: Any) -> Any:
     tiny = xp.where(near & (delta > 0.0) & ~big, ratio, HARMLESS) ** 0.2
     wide = xp.where(delta > 0.0, delta, 1.0)
 
-    def chosen(*cases: Any) -> Any:
+    def chosen(*cases: Operand) -> Traced:
         """Return the case of each impact: late, long, above or below a cut; then those p <= 1."""
         slip_late, slip_long, slip_on, slip_back, stuck_on, stuck_back, small_near, small_far = (
             cases
@@ -196,7 +206,9 @@ def _elastic(xp: Any, constants: Any, p: Any, x: Any) -> Any:
     return xp.where(through, full, psi2)
 
 
-def _partial(xp: Any, constants: Any, p: Any, x: Any, e: Any) -> Any:
+def _partial(
+    xp: Library, constants: Mapping[str, Traced], p: Traced, x: Traced, e: Traced
+) -> Traced:
     """Return psi2 by the table of restitutions, of impacts that stick at some time."""
     end, slips = border(x, e), p > 1.0
     inner = slips & (p < end)
@@ -221,18 +233,25 @@ def _partial(xp: Any, constants: Any, p: Any, x: Any, e: Any) -> Any:
         each - _taken(xp, constants["origins"][k, ...], patch, shape)
         for k, each in enumerate((u, x, e))
     ]
-    size = NODES[0] * NODES[1] * NODES[2]
-    value = _sum(xp, constants["terms"], patch * size, NODES, local, shape)
+    first = patch * (NODES[0] * NODES[1] * NODES[2])
+    value = _sum(xp, constants["terms"], first, NODES, local, shape)
     return xp.where(slips, value, p * value)
 
 
-def _sum(xp: Any, terms: Any, first: Any, counts: Any, local: Any, shape: Any) -> Any:
+def _sum(
+    xp: Library,
+    terms: Traced,
+    first: Traced,
+    counts: Sequence[int],
+    local: Sequence[Traced],
+    shape: tuple[int, ...],
+) -> Traced:
     """Return polynomials of local coordinates by Horner's rule; terms begin at ``first``."""
     count, *others = counts
     width = 1
     for other in others:
         width *= other
-    total = None
+    total: Traced | None = None
     for power in range(count - 1, -1, -1):
         start = first + power * width
         term = (
@@ -241,10 +260,11 @@ def _sum(xp: Any, terms: Any, first: Any, counts: Any, local: Any, shape: Any) -
             else _taken(xp, terms, start, shape)
         )
         total = term if total is None else total * local[0] + term
+    assert total is not None
     return total
 
 
-def _across(xp: Any, x: Any, cut: Any, top: float) -> tuple[Any, Any]:
+def _across(xp: Library, x: Traced, cut: Traced, top: float) -> tuple[Traced, Traced]:
     """Return whether chi is above a cut, and the second coordinate on its side."""
     above, beyond = x >= cut, x > cut
     root = xp.where(beyond & (cut < top), (x - cut) / xp.where(cut < top, top - cut, 1.0), HARMLESS)
@@ -252,7 +272,7 @@ def _across(xp: Any, x: Any, cut: Any, top: float) -> tuple[Any, Any]:
     return above, xp.where(beyond, root**0.5, xp.where(above, 0.0, below))
 
 
-def _polynomial(terms: Any, argument: Any) -> Any:
+def _polynomial(terms: Traced, argument: Traced) -> Traced:
     """Return the polynomial with ``terms``, lowest first."""
     total = terms[-1, ...]
     for power in range(terms.shape[0] - 2, -1, -1):
@@ -260,17 +280,17 @@ def _polynomial(terms: Any, argument: Any) -> Any:
     return total
 
 
-def _index(xp: Any, share: Any, size: int) -> Any:
+def _index(xp: Library, share: Traced, size: int) -> Traced:
     """Return the places of coordinates in [0, 1] in a grid."""
     place = xp.astype(share * size, xp.int32)
     return xp.where(place < 0, 0, xp.where(place < size, place, size - 1))
 
 
-def _flat(index: Any) -> Any:
+def _flat(index: Traced) -> Traced:
     """Return an index as one axis: ``take`` of the standard needs one."""
     return index.reshape(-1)
 
 
-def _taken(xp: Any, values: Any, index: Any, shape: Any) -> Any:
+def _taken(xp: Library, values: Traced, index: Traced, shape: tuple[int, ...]) -> Traced:
     """Return ``values`` at an index of one axis, in the shape of the impacts."""
     return xp.take(values, index, axis=0).reshape(shape)

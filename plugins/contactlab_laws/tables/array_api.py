@@ -1,0 +1,72 @@
+"""Types of a library of the array API standard, as far as the tables use one."""
+
+from __future__ import annotations
+
+from typing import Protocol, TypeAlias, Union
+
+
+class Traced(Protocol):
+    """An array of any library: numbers, truths or places."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Sizes of its axes."""
+
+    @property
+    def dtype(self) -> object:
+        """Type of its entries, as the library has it."""
+
+    def reshape(self, *shape: int | tuple[int, ...]) -> Traced:
+        """Return the entries in another shape."""
+
+    def __getitem__(self, index: object, /) -> Traced: ...
+    def __neg__(self) -> Traced: ...
+    def __abs__(self) -> Traced: ...
+    def __invert__(self) -> Traced: ...
+    def __add__(self, other: Operand, /) -> Traced: ...
+    def __radd__(self, other: Operand, /) -> Traced: ...
+    def __sub__(self, other: Operand, /) -> Traced: ...
+    def __rsub__(self, other: Operand, /) -> Traced: ...
+    def __mul__(self, other: Operand, /) -> Traced: ...
+    def __rmul__(self, other: Operand, /) -> Traced: ...
+    def __truediv__(self, other: Operand, /) -> Traced: ...
+    def __rtruediv__(self, other: Operand, /) -> Traced: ...
+    def __pow__(self, other: Operand, /) -> Traced: ...
+    def __and__(self, other: Operand, /) -> Traced: ...
+    def __or__(self, other: Operand, /) -> Traced: ...
+    def __lt__(self, other: Operand, /) -> Traced: ...
+    def __le__(self, other: Operand, /) -> Traced: ...
+    def __gt__(self, other: Operand, /) -> Traced: ...
+    def __ge__(self, other: Operand, /) -> Traced: ...
+
+
+#: What stands beside an array in a sum or a comparison.
+Operand: TypeAlias = Union[float, "Traced"]
+
+
+class Library(Protocol):
+    """The functions of the standard that the tables use."""
+
+    nan: float
+    int32: object
+
+    def isfinite(self, x: Traced, /) -> Traced:
+        """Return where numbers are finite."""
+
+    def where(self, condition: Traced, x1: Operand, x2: Operand, /) -> Traced:
+        """Return ``x1`` where the condition holds, else ``x2``."""
+
+    def ones_like(self, x: Traced, /) -> Traced:
+        """Return ones of the shape and type of ``x``."""
+
+    def zeros_like(self, x: Traced, /) -> Traced:
+        """Return zeros of the shape and type of ``x``."""
+
+    def full(self, shape: tuple[int, ...], fill_value: float, *, dtype: object) -> Traced:
+        """Return an array filled with a number."""
+
+    def astype(self, x: Traced, dtype: object, /) -> Traced:
+        """Return the entries in another type."""
+
+    def take(self, x: Traced, indices: Traced, /, *, axis: int) -> Traced:
+        """Return the entries at some places of an axis."""
