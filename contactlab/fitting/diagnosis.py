@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import attrs
 import numpy as np
@@ -17,7 +16,7 @@ from contactlab.fitting.parameters import SHEAR_LOSS
 from contactlab.fitting.problem import Problem
 from contactlab.fitting.slips import loosened, lossy, slips
 from contactlab.impact.coupling import LEFT_OUT, coupling_shift
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab.outcome.columns import QUANTITIES
 
 #: The chance below which a pattern is reported beside outliers, which explain the residuals better.
@@ -94,7 +93,7 @@ def _others(
 
 def _seen(
     problem: Problem, table: Measurements, values: Array
-) -> tuple[Mapping[str, Any], patterns.Pattern]:
+) -> tuple[Mapping[str, Real], patterns.Pattern]:
     """Return the error of each quantity, and what scatter makes with the least chance."""
     scales = problem.scales(problem.residuals(values[None]))
     pattern = patterns.pattern(problem, values, scales, table.given)

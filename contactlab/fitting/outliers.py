@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import attrs
 import numpy as np
@@ -47,7 +47,7 @@ class Outliers(NamedTuple):
     values: Array
 
 
-def robust(problem: Problem, values: Array) -> tuple[Array, dict[str, Any]]:
+def robust(problem: Problem, values: Array) -> tuple[Array, dict[str, Array]]:
     """Return robust values, shape (parameters,), and the scatter by quantity.
 
     Notes
@@ -66,14 +66,14 @@ def robust(problem: Problem, values: Array) -> tuple[Array, dict[str, Any]]:
     return minimum(problem, first, scales, loss="soft_l1"), scales
 
 
-def scatter(problem: Problem, values: Array) -> dict[str, Any]:
+def scatter(problem: Problem, values: Array) -> dict[str, Array]:
     """Return the scatter of each quantity, in its unit, from its median absolute residual.
 
     Stated errors set the ratios of the scatter within a quantity.
     """
     number = sum(problem.counts.values())
     wider = math.sqrt(number / max(number - len(values), 1))
-    scales: dict[str, Real] = {}
+    scales: dict[str, Array] = {}
     sizes = problem.sizes()
     for name, rows in problem.residuals(values[None]).items():
         errors = problem.errors.get(name, np.ones(rows.shape[1]))

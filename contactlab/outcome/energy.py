@@ -7,6 +7,7 @@ from typing import Any
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
@@ -177,7 +178,7 @@ def _with_unbalanced(motion: Motion, scene: Scene, bound: Real, alone: Mask) -> 
     return motion
 
 
-def _sentences(sentence: str, *numbers: Real) -> Any:
+def _sentences(sentence: str, *numbers: Real) -> str | NDArray[np.object_]:
     """Return the sentence of each impact with its numbers filled in, in the shape of the first."""
     shape = np.shape(numbers[0])
     if not shape:

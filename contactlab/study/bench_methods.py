@@ -74,7 +74,7 @@ class Method:
         name = self.tangential if self.whole else f"{self.tangential} / {self.integrator}"
         return name if self.normal == DEFAULT_NORMAL else f"{name}, {self.normal}"
 
-    def resolutions(self, *, quick: bool = False) -> list[dict[str, dict[str, Any]]]:
+    def resolutions(self, *, quick: bool = False) -> list[Options]:
         """Return options of tangential law and integrator by kind, coarse to fine."""
         law = _law("tangential", self.tangential).resolution
         steps = None if self.whole else _law("integrator", self.integrator).resolution
@@ -86,9 +86,9 @@ class Method:
         elif steps:
             values = STEPS
         per_part = self._steps_per_part(law, steps)
-        ladder: list[dict[str, dict[str, Any]]] = []
+        ladder: list[Options] = []
         for value in values:
-            options: dict[str, dict[str, Any]] = {"tangential": {}, "integrator": {}}
+            options: dict[str, dict[str, float]] = {"tangential": {}, "integrator": {}}
             if steps is not None:
                 options["integrator"][steps] = value
             if values is PARTS:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from importlib import resources
-from typing import Any
 
 import attrs
 import numpy as np
@@ -38,7 +37,7 @@ class Source:
 
     name: str
     kind: str
-    normals: Mapping[str, Mapping[str, Any]] = attrs.field(factory=lambda: {DEFAULT_NORMAL: {}})
+    normals: Mapping[str, Mapping[str, object]] = attrs.field(factory=lambda: {DEFAULT_NORMAL: {}})
     bounds: Mapping[tuple[str, str], float] = attrs.field(factory=dict)
 
     def read(self) -> SceneFile:

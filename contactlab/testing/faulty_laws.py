@@ -27,6 +27,7 @@ from contactlab.contracts import (
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Array
 
 #: Calls of a law after which it raises ``TooManyCallsError``.
 MOST_CALLS = 3_000_000
@@ -111,7 +112,7 @@ class Nowhere(Stretch):
     change: float = 0.0
     work: float = 0.0
 
-    def states(self, contact: ScaledContact) -> tuple[Any, Any]:
+    def states(self, contact: ScaledContact) -> tuple[Array, Array]:
         """Return no change and no force."""
         return 0.0 * contact.force, 0.0 * contact.force
 
@@ -190,7 +191,7 @@ class SpoiledHertz(ClosedFormNormalLaw):
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure", "elastic_hertz"})
 
-    law: Any = attrs.field(factory=lambda: REGISTRY.create("normal.hertz"))
+    law: ClosedFormNormalLaw = attrs.field(factory=lambda: REGISTRY.create("normal.hertz"))
 
     def start(self, scene: Scene) -> Any:
         """Return the state of Hertz's law."""

@@ -172,7 +172,7 @@ class Slide(Stretch):
     work: float
     ratio: float
 
-    def states(self, contact: ScaledContact) -> tuple[Any, Any]:
+    def states(self, contact: ScaledContact) -> tuple[Array, Array]:
         """Return the change of velocity, from ratio · (V - 1), and the force."""
         return self.ratio * (contact.rate - 1.0), contact.force
 

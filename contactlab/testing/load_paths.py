@@ -102,7 +102,7 @@ class Answers(NamedTuple):
 
     force: Array
     work: Array
-    state: Any
+    state: object
 
 
 @attrs.frozen

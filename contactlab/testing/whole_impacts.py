@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import NormalMotion, TangentialLaw, WholeImpact
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import spread
+from contactlab.numeric.types import Real
 from contactlab.testing.check import NotApplicableError, apply_if, check, hold, within
 from contactlab.testing.compare import well_formed
 from contactlab.testing.impacts import CHI, PSI1
@@ -163,7 +164,7 @@ def whole_impact_form(law: TangentialLaw) -> None:
 
 def changes(
     law: TangentialLaw, marches: list[Way], impact: Scene, normal: NormalMotion
-) -> Iterator[tuple[Way | None, Any, str]]:
+) -> Iterator[tuple[Way | None, Real, str]]:
     """Iterate over changes of slip velocity (m/s) by ways and whole-impact answers, in words."""
     for way in marches:
         yield way, way.run(impact).motion.slip_velocity_change, str(way)

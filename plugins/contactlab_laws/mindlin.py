@@ -88,7 +88,7 @@ DAMPED_GAIN = {
 }
 
 
-def critical_share(share: float, stiffness: Real, mass: Real) -> Any:
+def critical_share(share: float, stiffness: Real, mass: Real) -> Real:
     """Return 2 share sqrt(stiffness mass), the constant of a dashpot in N s/m."""
     return 2.0 * share * np.sqrt(stiffness * mass)
 
@@ -111,7 +111,7 @@ Along: TypeAlias = Real | NDArray[np.complex128]
 class InPlane(NamedTuple):
     """A law's state whose displacements and forces are vectors, held as complex numbers."""
 
-    own: Any
+    own: object
     shape: tuple[int, ...]
 
 
@@ -322,7 +322,7 @@ class MindlinCap(SteppedTangentialLaw):
         )
 
 
-def _mean_radius(before: Real, after: Real) -> Any:
+def _mean_radius(before: Real, after: Real) -> Real:
     """Return the mean contact radius over a step in which its square changes evenly."""
     total = before + after
     squares = before * before + before * after + after * after

@@ -52,7 +52,7 @@ class Relaxing(NormalLaw):
         """True for a restitution: then motions of all impacts are one but for their scale."""
         return self.restitution is not None
 
-    def restitution_in(self, scene: Scene) -> Any:
+    def restitution_in(self, scene: Scene) -> Real | None:
         """Return e of each impact, where no relaxation time is given."""
         return self.restitution
 

@@ -157,7 +157,7 @@ class Annulus(PartialSlip):
         table = self._tables()
         stuck, slipping = memory.division()
 
-        def column(value: Real) -> Any:
+        def column(value: Real) -> Array:
             return np.asarray(value)[..., None]
 
         xi = memory.traction @ table.compliance.T

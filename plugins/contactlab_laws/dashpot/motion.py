@@ -48,10 +48,10 @@ def stretching(share: Kind) -> Kind:
 class ScaledSample(NamedTuple):
     """zeta, V, force and dT/dt in units of the undamped impact; t is the phase over pi."""
 
-    approach: Any
-    rate: Any
-    force: Any
-    pace: Any
+    approach: Real
+    rate: Real
+    force: Real
+    pace: Real
 
 
 @attrs.frozen

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import Any
 
 import attrs
 import numpy as np
@@ -65,7 +64,7 @@ class Oscillator:
         """Minus V at the end; x is sqrt(e) at most, and 2 beta e at the end."""
         return restitution(self.damping)
 
-    def at(self, time: Real) -> tuple[Any, Any, Any]:
+    def at(self, time: Real) -> tuple[Real, Real, Real]:
         """Return x, V and x + 2 beta V; the first and the last are never negative."""
         beta = self.damping
         square = (1.0 - beta) * (1.0 + beta)

@@ -6,14 +6,14 @@ import csv
 from decimal import ROUND_CEILING, Decimal
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
 from contactlab.impact.scene import Scene
-from contactlab.numeric.types import Real
+from contactlab.numeric.types import Array, Real
 
 FILE = Path(__file__).with_name("differences.csv")
 #: Differences of psi2 below this are not worth a sentence.
@@ -153,6 +153,7 @@ def _largest(normal: NormalMotion, measured: tuple[Row, ...], shared: bool) -> f
     return float(np.nanmax(sizes)) if np.isfinite(sizes).any() else 0.0
 
 
-def _restitution(normal: NormalMotion) -> Any:
+def _restitution(normal: NormalMotion) -> Array:
     """Return e of each impact."""
-    return -np.asarray(normal.final_rate) / np.asarray(normal.scene.normal_speed)
+    e: Array = -np.asarray(normal.final_rate) / np.asarray(normal.scene.normal_speed)
+    return e

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,9 +61,9 @@ class Instants(NamedTuple):
 class Units(NamedTuple):
     """Units of each impact: time in s, force in N of the largest Hertz contact of its radius."""
 
-    time: Any
-    force: Any
-    length: Any
+    time: Array
+    force: Array
+    length: Array
 
 
 def units(normal: NormalMotion) -> Units:

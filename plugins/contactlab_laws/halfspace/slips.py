@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,8 +26,8 @@ class Slips(NamedTuple):
     last: Array
     before: Array
     first: Array
-    steps: tuple[Any, Any]
-    inside: NDArray[Any]
+    steps: tuple[Real, Real]
+    inside: Array
 
 
 def begun(slip: Array) -> Slips:

@@ -143,14 +143,14 @@ def _whole_impact(options: Options, every: NormalMotion, left: NDArray[np.bool_]
     scales: Any = unit, momentum, scene.friction_coefficient, scene.chi
     scales = np.broadcast_arrays(*map(np.atleast_1d, scales), change)[:4]
 
-    def spread(values: Array) -> Any:
+    def spread(values: Array) -> Real:
         if not shape:
             return float(values[0])
         whole = np.zeros(shape)
         whole[left] = values
         return whole
 
-    def course(load_impulse: Real, load: Real) -> tuple[Any, Any]:
+    def course(load_impulse: Real, load: Real) -> tuple[Real, Real]:
         outer = np.broadcast_shapes(np.shape(load_impulse), np.shape(load), shape)
         passed, acting = (np.broadcast_to(each, outer) for each in (load_impulse, load))
         gained, force = np.zeros(outer), np.zeros(outer)
@@ -194,7 +194,7 @@ def _whole_impact(options: Options, every: NormalMotion, left: NDArray[np.bool_]
     )
 
 
-def _along(impulse: Real, knots: Array, shares: Array) -> tuple[Any, Any]:
+def _along(impulse: Real, knots: Array, shares: Array) -> tuple[Real, Real]:
     """Return the integral of the share over the impulse, and the share, at ``impulse``."""
     # The share is linear in the impulse between the knots.
     share = np.interp(impulse, knots, shares)

@@ -127,7 +127,7 @@ class ProfileLaw(PartialSlip):
             full[:, : len(rows)] = rows.T
             return full.reshape(*shape, len(squares))
 
-        def column(value: Real) -> Any:
+        def column(value: Real) -> Array:
             return np.asarray(value)[..., None]
 
         deflection, limit = of_all(memory.deflection), of_all(memory.limit)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -49,7 +49,7 @@ def common(value: Real, shape: tuple[int, ...]) -> Real:
     return np.broadcast_to(value, shape).reshape(-1)
 
 
-def float_of_one(value: Real) -> Any:
+def float_of_one(value: Real) -> Real:
     """Return an array of one number as a float: arithmetic with a float is faster."""
     return value if isinstance(value, float) or value.size > 1 else value.item()
 

@@ -144,7 +144,7 @@ class Adaptive(Integrator):
         law: SteppedTangentialLaw,
         count: Array,
         before: TangentialMotion,
-    ) -> tuple[TangentialMotion, Any]:
+    ) -> tuple[TangentialMotion, Array]:
         """Return motion and steps of each impact, doubled from ``before``, in ``count`` steps."""
         finer = np.where(2.0 * count <= MOST_STEPS, 2.0 * count, np.inf)
         sentence = "A velocity still changes by more than the tolerance at the most steps."
@@ -219,7 +219,7 @@ class Adaptive(Integrator):
         return np.where(ratio >= SMOOTH, smooth, WANDERS * np.maximum(last, 0.5 * earlier))
 
 
-def _rates(motion: TangentialMotion) -> tuple[Any, Any]:
+def _rates(motion: TangentialMotion) -> tuple[Array, Array]:
     """Return the rate of approach at the end, and the largest change of a slip velocity."""
     slip = np.asarray(motion.slip_velocity_change)
     if slip.ndim > np.ndim(motion.status):

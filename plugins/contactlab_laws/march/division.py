@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
@@ -36,7 +35,7 @@ LONGEST_KEPT = 4000
 GRADED, LEAST_RADIUS = 512, 1e-6
 
 
-def resolving(radians: Real, law: TangentialLaw) -> Any:
+def resolving(radians: Real, law: TangentialLaw) -> Real:
     """Return the least steps that resolve a tangential oscillation through ``radians``."""
     steps = radians / LARGEST_PHASE_STEP
     if "partial_slip" not in law.offers:
@@ -74,7 +73,7 @@ def _midpoints(normal: NormalMotion, count: int, graded: bool) -> Steps:
     return _parted(sampled(normal, halves[1::2], kick, impulse[1:] - impulse[:-1]), ends)
 
 
-def _graded(normal: NormalMotion, count: int) -> Any:
+def _graded(normal: NormalMotion, count: int) -> Array:
     """Return fractions of the duration at the ends and middles of steps even in dt/b.
 
     The greatest approach is at an end of a step: the contact radius has a kink there.
@@ -91,7 +90,7 @@ def _graded(normal: NormalMotion, count: int) -> Any:
     return np.stack(found, axis=-1).reshape(-1, *shape)
 
 
-def _even(u: Array, fractions: Array, rate: Array, radius: Array, count: int) -> Any:
+def _even(u: Array, fractions: Array, rate: Array, radius: Array, count: int) -> Array:
     """Return the fractions of one motion."""
     inner = np.maximum(radius[1::2], LEAST_RADIUS * radius.max())
     along = np.concatenate(([0.0], np.cumsum(np.diff(fractions[::2]) / inner)))
@@ -104,7 +103,7 @@ def _even(u: Array, fractions: Array, rate: Array, radius: Array, count: int) ->
             np.linspace(middle, along[-1], 2 * (count - first) + 1)[1:],
         )
     )
-    return np.sin(0.5 * math.pi * np.interp(wanted, along, u[::2])) ** 2
+    return np.asarray(np.sin(0.5 * math.pi * np.interp(wanted, along, u[::2])) ** 2)
 
 
 def _endpoints(normal: NormalMotion, count: int) -> Steps:

@@ -39,7 +39,7 @@ RAISE = 1.25
 EvenMarch = Callable[[NormalMotion, int], TangentialMotion]
 
 
-def needed_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene | None = None) -> Any:
+def needed_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene | None = None) -> Real:
     """Return the least steps an impact that resolve omega = sqrt(stiffness/mass), batch shape.
 
     ``scene`` is that of ``normal`` unless friction changes the approach.
@@ -59,7 +59,7 @@ def needed_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene | None =
     return np.maximum(resolving(omega * normal.duration, law), float(LEAST_STEPS))
 
 
-def refined(steps: int, needed: Real) -> Any:
+def refined(steps: int, needed: Real) -> Real:
     """Return ``steps``, or the first number >= ``needed`` of a sequence from it."""
     # With a sequence the impacts of a batch fall into a few groups of equal steps.
     if isinstance(needed, float) and needed <= steps:
@@ -125,7 +125,7 @@ class FixedSteps(Integrator):
     def divide(self, normal: NormalMotion, count: int, *, graded: bool) -> Steps:
         """Return ``count`` steps of a normal motion, ``graded`` towards its ends or even."""
 
-    def _taken(self, needed: Real) -> Any:
+    def _taken(self, needed: Real) -> Real:
         """Return how many steps each impact takes: ``steps``, or more if these are too few."""
         return refined(self.steps, needed) if self.refine else float(self.steps)
 
@@ -155,7 +155,7 @@ class FixedSteps(Integrator):
         taken = self._taken_together(together.needed_steps(scene, normal, tangential))
         return tangential.seconds_in_steps(scene, normal, taken)
 
-    def _taken_together(self, needed: Real) -> Any:
+    def _taken_together(self, needed: Real) -> Real:
         """Return the steps of each impact in the approach without friction; infinite if refused."""
         most = MOST_STEPS if self.refine else self.steps
         return np.where(needed <= most, np.maximum(self.steps, needed), np.inf)

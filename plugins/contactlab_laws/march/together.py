@@ -43,7 +43,7 @@ TURNS, LEADING = 3, 0.4
 DEEPEST = 1e10
 
 
-def needed_steps(scene: Scene, normal: NormalMotion, law: SteppedTangentialLaw) -> Any:
+def needed_steps(scene: Scene, normal: NormalMotion, law: SteppedTangentialLaw) -> Real:
     """Return the least steps in the approach without friction that resolve every oscillation."""
     # omega² <= k_n W_nn + k_t tr W_tt; both stiffnesses grow as the contact radius, and the energy
     # bounds the radius.
@@ -121,7 +121,7 @@ class _March:
         self.axes = 1 if scene.planar else 2
         plain = not scene.shape
 
-        def entry(value: Real) -> Any:
+        def entry(value: Real) -> Real:
             return float(value) if plain else np.array(np.broadcast_to(value, scene.shape))
 
         self.step = entry(np.asarray(normal.duration) / count)
@@ -244,7 +244,7 @@ class _March:
                 )
                 return self.fail(Status.NOT_SEPARATED, sentence, self.alive)
 
-    def _unsettled(self, settled: Mask, force: list[Real]) -> list[Any]:
+    def _unsettled(self, settled: Mask, force: list[Real]) -> list[Real]:
         """Mark impacts to which the law has no answer, and return the forces of the others."""
         lost = self.alive & ~np.broadcast_to(settled, self.shape)
         sentence = faults.sentence(self.law, "no division found", self.steps)
@@ -253,11 +253,11 @@ class _March:
         self.alive = self.alive & ~lost
         return [np.where(lost, 0.0, each) for each in force]
 
-    def _joined(self, components: list[Real]) -> Any:
+    def _joined(self, components: list[Real]) -> Real:
         """Return a displacement or velocity as the law takes it."""
         return components[0] if self.axes == 1 else np.stack(components, axis=-1)
 
-    def _width(self) -> Any:
+    def _width(self) -> Real:
         """Return the width of the next step in s."""
         if self.elastic:
             return self.step
@@ -271,7 +271,7 @@ class _March:
         slip, acting = self._joined(at[1:]), self._joined(force)
         return Sampled(approach, at[0], slip, acting, 0.5 * step * inertia)
 
-    def _components(self, response: TangentialResponse) -> list[Any]:
+    def _components(self, response: TangentialResponse) -> list[Real]:
         """Return the components of a force, or refuse a malformed answer."""
         force, work = response.force, response.friction_work
         shape = self.shape if self.axes == 1 else (*self.shape, 2)
@@ -284,7 +284,7 @@ class _March:
         both = np.broadcast_to(force, shape)
         return [both[..., 0], both[..., 1]] if self.shape else both.tolist()
 
-    def _kick(self, pressure: Real, force: list[Real], step: Real) -> list[Any]:
+    def _kick(self, pressure: Real, force: list[Real], step: Real) -> list[Real]:
         """Return W (P, F) dt, the velocities that a step takes."""
         each = [pressure, *force]
         return [step * sum(w * f for w, f in zip(row, each, strict=True)) for row in self.W]

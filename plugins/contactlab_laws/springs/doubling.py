@@ -207,7 +207,7 @@ def fitted(
         return size, held, 0.0
     size, held, lost = size.copy(), held.copy(), np.zeros_like(size)
 
-    def part(where: NDArray[np.bool_]) -> Any:
+    def part(where: NDArray[np.bool_]) -> Array | None:
         return None if cross is None else cross[where]
 
     while outgrown.any():
@@ -226,7 +226,7 @@ def fitted(
     return size, held, lost
 
 
-def part_of_step(places: Array, before: Array, after: Array) -> Any:
+def part_of_step(places: Array, before: Array, after: Array) -> Array | float:
     """Return the part of the step in which each spring moves with the surfaces."""
     # A spring that the growing contact meets moves from then on only.
     growth = after - before

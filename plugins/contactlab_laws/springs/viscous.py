@@ -54,9 +54,9 @@ class Contact(NamedTuple):
         A times the loss in shear, in s.
     """
 
-    edge: Any
-    excess: Any
-    time: Any
+    edge: Array
+    excess: Array
+    time: Array
 
 
 class Memory(NamedTuple):
@@ -80,10 +80,10 @@ class Memory(NamedTuple):
         w.
     """
 
-    size: Any
-    edge: Any
-    excess: Any
-    time: Any
+    size: Array
+    edge: Array
+    excess: Array
+    time: Array
     lead: Vectors
     share: Vectors
     weight: Array
@@ -115,10 +115,10 @@ class State(NamedTuple):
 
     shape: tuple[int, ...]
     scales: Scales
-    radius: Any
-    speed: Any
+    radius: Real
+    speed: Real
     law: NormalLaw
-    parts: Any
+    parts: object
     shear_loss: float
     grows: bool
     splits: bool
@@ -176,7 +176,7 @@ def advance(
     def row(value: Real) -> Array:
         return flat(value, shape) if shape else np.atleast_1d(np.asarray(value, dtype=float))
 
-    def tangential(value: Real) -> Any:
+    def tangential(value: Real) -> Vectors:
         if not vectors:
             return row(value)
         value = np.asarray(value)
@@ -186,7 +186,7 @@ def advance(
     limit, acting = (row(each) for each in (after.friction_load, increment.friction_load))
     friction = scales.force / scales.normal_force
     still = np.zeros(memory.deflection.shape[1:])
-    rates = still, still, still
+    rates: tuple[Vectors, Vectors, Array] = still, still, still
     if sampled is not None:
         rates = tangential(sampled.slip), tangential(sampled.force), row(sampled.mobility)
     drive = Drive(
@@ -272,7 +272,7 @@ class Drive(NamedTuple):
     mobility: Array
     limit: Array
     acting: Array
-    scale: Any
+    scale: Real
     cross: Array | None = None
 
 
@@ -320,8 +320,8 @@ def moved(
     # springs that entered count as if they had moved all the time: the force is their mean
     gained = _real(mean, relaxed(deflection - held, drive.cross) / np.maximum(part, TINY))
     work = _real(mean, drive.move) - gained
-    lead = lead * stretched(slip, drive.cross)
-    after = Memory(size, edge, excess, contact.time, lead, share, weight, deflection)
+    carried = lead * stretched(slip, drive.cross)
+    after = Memory(size, edge, excess, contact.time, carried, share, weight, deflection)
     force = drive.acting * share
     return force, np.maximum(work.sum(axis=0), 0.0), gained.sum(axis=0), after
 

@@ -110,7 +110,7 @@ class Viscoelastic(Relaxing, Tabulated):
         if self.restitution is None and self.relaxation_time is None:
             self.restitution_in(scene)
 
-    def restitution_in(self, scene: Scene) -> Any:
+    def restitution_in(self, scene: Scene) -> Real | None:
         """Return e of each impact at its speed of approach."""
         if self.restitution is not None:
             return self.restitution

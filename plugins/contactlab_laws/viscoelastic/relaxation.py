@@ -5,8 +5,6 @@ a = (e^(-3/5) - 1)/g, where g lies between 1.0923 and 1.1351.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.polynomial.chebyshev import chebval
 
@@ -27,7 +25,7 @@ FIRST, SECOND = 0.8**-0.4, 1.4306172
 TURNS = 8
 
 
-def number_of(restitution: Real) -> Any:
+def number_of(restitution: Real) -> Real:
     """Return a = A v1/(C² R) at a restitution, a float or an array; 0 at e = 1.
 
     Parameters
@@ -39,7 +37,7 @@ def number_of(restitution: Real) -> Any:
     return _float(np.expm1(-0.6 * np.log(e)) / _ratio(e) + 0.0)  # no -0
 
 
-def restitution_of(number: Real) -> Any:
+def restitution_of(number: Real) -> Real:
     """Return e at a = A v1/(C² R) >= 0, a float or an array; 1 at a = 0.
 
     Parameters
@@ -53,13 +51,13 @@ def restitution_of(number: Real) -> Any:
     return _float(e)
 
 
-def _ratio(e: Array) -> Any:
+def _ratio(e: Array) -> Array:
     """Return g."""
     series = chebval((np.cbrt(np.maximum(e, LEAST)) - 0.6) / 0.4, TERMS)
     asymptote = FIRST * (1.0 - e**0.6) * (1.0 + SECOND * np.cbrt(e) ** 2)
     return np.where(e >= LEAST, series, asymptote)
 
 
-def _float(value: Array) -> Any:
+def _float(value: Array) -> Real:
     """Return a scalar as a float."""
     return float(value) if np.ndim(value) == 0 else value
