@@ -9,6 +9,8 @@ from typing import Any
 
 from docutils import nodes
 from latex2mathml.converter import convert
+from PIL import Image
+from sphinx_gallery.directives import imgsgnode
 
 import contactlab
 from contactlab.cli.guide import PAGES, PARTS, text
@@ -115,6 +117,8 @@ SPACES = {
 TYPED = re.compile(r"contactlab guide ([a-z][a-z-]*)(?: (\d+))?")
 #: Letters of a formula from which on it has a line of its own on a phone, where it can be scrolled.
 LONG = 24
+#: Width over height of a picture from which on it has panels beside each other.
+PANELS = 1.8
 
 
 def linked(app: Any, doctree: nodes.document, page: str) -> None:
@@ -135,6 +139,20 @@ def linked(app: Any, doctree: nodes.document, page: str) -> None:
         reference = nodes.reference("", "", internal=True, refuri=uri)
         literal.replace_self(reference)
         reference += literal
+
+
+def scrolled(app: Any, doctree: nodes.document, _: str) -> None:
+    """Give panels side by side a place that scrolls on a phone, where they keep their size."""
+    for node in [*doctree.findall(nodes.image), *doctree.findall(imgsgnode)]:
+        path = Path(app.srcdir, node["uri"].lstrip("/"))
+        if not path.is_file():
+            continue
+        with Image.open(path) as picture:
+            width, height = picture.size
+        if width > PANELS * height and path.suffix == ".png":
+            place = nodes.container(classes=["panels"])
+            node.replace_self(place)
+            place += node
 
 
 def mathml(latex: str, display: str) -> str:
@@ -167,4 +185,5 @@ def setup(app: Any) -> None:
     app.connect("viewcode-follow-imported", not_followed)
     app.connect("autodoc-skip-member", left_out)
     app.connect("doctree-resolved", linked)
+    app.connect("doctree-resolved", scrolled)
     app.connect("autodoc-process-docstring", attributes_apart, priority=900)

@@ -203,6 +203,23 @@ def test_on_a_phone_wide_formulas_are_scrolled_and_say_so(site, opened):
     assert wide > 5
 
 
+def test_on_a_phone_panels_side_by_side_keep_their_size(site, opened):
+    page = opened(site / "load-paths.html")
+    screen = {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True}
+    page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", screen)
+    try:
+        picture, place = page.execute_script(
+            "const img = document.querySelector('article img[src*=hysteresis]');"
+            "const place = img.closest('.panels');"
+            "return [img.width, [place.clientWidth, getComputedStyle(place).overflowX]]"
+        )
+    finally:
+        page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    assert picture > 650
+    assert place[0] < 390
+    assert place[1] == "auto"
+
+
 def test_symbols_within_a_line_have_the_size_of_its_letters(site, opened):
     page = opened(site / "theory-impact.html")
     sizes = page.execute_script(
