@@ -47,12 +47,12 @@ def finite(text: str) -> float:
 
 def _range_hint(text: str) -> str:
     """Return how to write a range if the text looks like one, else nothing."""
-    ends = re.fullmatch(
+    written = re.fullmatch(
         r"([+-]?[\d.]+) *(?:-|:|,|\.\.|to) *([+-]?[\d.]+)(?::[\d.]+)?", text.strip()
     )
-    if not ends:
+    if not written:
         return ""
-    example = f"{ends[1]}:{ends[2]}:71"
+    example = f"{written[1]}:{written[2]}:71"
     return f"; a range is START:STOP:COUNT, {example}, in contactlab sweep and compare"
 
 

@@ -127,7 +127,7 @@ def summary(topic: str) -> str:
 def sections(markdown: str) -> dict[str, str]:
     """Return the numbered sections of a topic by number, each with its heading."""
     starts = list(SECTION.finditer(markdown))
-    ends = [*(start.start() for start in starts), len(markdown)][1:]
+    stops = [*(start.start() for start in starts), len(markdown)][1:]
     return {
-        start[1]: markdown[start.start() : end] for start, end in zip(starts, ends, strict=True)
+        start[1]: markdown[start.start() : end] for start, end in zip(starts, stops, strict=True)
     }

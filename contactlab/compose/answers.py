@@ -33,11 +33,11 @@ ROUNDING = 1e-12
 INSTANTS = 201
 
 
-class Answer(NamedTuple):
+class Answered(NamedTuple):
     """A whole-impact answer and the impacts that it is taken for."""
 
     where: Mask
-    known: WholeImpact
+    answer: WholeImpact
 
 
 def answers(
@@ -46,7 +46,7 @@ def answers(
     *,
     history: bool | str,
     accuracy: float | None = None,
-) -> list[Answer]:
+) -> list[Answered]:
     """Return the answers of ``tangential`` to whole impacts, each impact in one of them at most.
 
     The list is empty if fields are requested, or the history of a batch: tractions and stick/slip
@@ -62,20 +62,20 @@ def answers(
     if not shape:
         if normal.status is not Status.SUCCESS:
             return []
-        for known in tangential.whole_impacts(scene, normal):
-            if known.where and (always or _serves(known, scene, history, accuracy)):
-                return [Answer(ONE, _checked(known, tangential, shape))]
+        for answer in tangential.whole_impacts(scene, normal):
+            if answer.where and (always or _serves(answer, scene, history, accuracy)):
+                return [Answered(ONE, _checked(answer, tangential, shape))]
         if always:
             raise _unanswered(tangential)
         return []
     left = separated(normal)
     given = []
-    for known in tangential.whole_impacts(scene, normal):
-        where = left & np.broadcast_to(known.where, shape)
+    for answer in tangential.whole_impacts(scene, normal):
+        where = left & np.broadcast_to(answer.where, shape)
         if not always:
-            where &= _serves(known, scene, history, accuracy)
+            where &= _serves(answer, scene, history, accuracy)
         if where.any():
-            given.append(Answer(where, _checked(known, tangential, shape)))
+            given.append(Answered(where, _checked(answer, tangential, shape)))
             left &= ~where
     if always and left.any():
         raise _unanswered(tangential)
@@ -93,7 +93,7 @@ def separated(normal: NormalMotion) -> Mask:
     return np.array(np.broadcast_to(success, shape))
 
 
-def show(normal: NormalMotion, known: Sequence[Answer], observer: Observer) -> None:
+def show(normal: NormalMotion, answered: Sequence[Answered], observer: Observer) -> None:
     """Show ``observer`` the impacts that have whole-impact answers, at ``INSTANTS`` of each.
 
     NaN stands for slip velocity and force where an answer has no ``course``.
@@ -103,7 +103,7 @@ def show(normal: NormalMotion, known: Sequence[Answer], observer: Observer) -> N
     phases = np.linspace(0.0, np.pi, INSTANTS).reshape(-1, *(1 for _ in scene.shape))
     columns = _columns(normal, phases)
     change, force = np.full((2, *shape), np.nan)
-    for where, answer in known:
+    for where, answer in answered:
         if answer.normal is not None:
             pairs = zip(_columns(answer.normal, phases), columns, strict=True)
             columns = [np.where(where, *pair) for pair in pairs]
@@ -120,7 +120,7 @@ def show(normal: NormalMotion, known: Sequence[Answer], observer: Observer) -> N
         *rows, strict=True
     ):
         touching = NormalContact(load, radius, overlap, friction_load)
-        fields = partial(_fields, known, passed, scene.shape)
+        fields = partial(_fields, answered, passed, scene.shape)
         observer(Sample(time, approach, rate, touching, velocity, acting, fields))
 
 
@@ -130,12 +130,14 @@ def _columns(normal: NormalMotion, phases: Real) -> list[Any]:
     return [time, approach, rate, *contact, impulse]
 
 
-def _fields(known: Sequence[Answer], impulse: Real, shape: tuple[int, ...]) -> Mapping[str, Any]:
+def _fields(
+    answered: Sequence[Answered], impulse: Real, shape: tuple[int, ...]
+) -> Mapping[str, Any]:
     """Return the fields of whole-impact answers at one instant; NaN for impacts without."""
     fields: dict[str, Any] = {}
     if not shape:
-        return {} if known[0].known.fields is None else known[0].known.fields(impulse)
-    for where, answer in known:
+        return {} if answered[0].answer.fields is None else answered[0].answer.fields(impulse)
+    for where, answer in answered:
         if answer.fields is None:
             continue
         for name, values in answer.fields(impulse).items():
@@ -145,18 +147,18 @@ def _fields(known: Sequence[Answer], impulse: Real, shape: tuple[int, ...]) -> M
     return fields
 
 
-def _serves(known: WholeImpact, scene: Scene, history: bool | str, accuracy: float | None) -> Any:
+def _serves(answer: WholeImpact, scene: Scene, history: bool | str, accuracy: float | None) -> Any:
     """Return where an answer is as accurate as a march, and has a course if one is asked for."""
-    if history and known.course is None:
+    if history and answer.course is None:
         return False
-    error = known.psi2_error
+    error = answer.psi2_error
     if accuracy is None or (isinstance(error, float) and not error > accuracy):
         return True
     excessive: Any = error > accuracy * (1.0 + ROUNDING) * psi_magnitude(scene)
     return ~excessive if scene.shape else not excessive
 
 
-def _checked(known: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) -> WholeImpact:
+def _checked(answer: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) -> WholeImpact:
     """Return an answer that is made of real numbers.
 
     Raises
@@ -164,14 +166,14 @@ def _checked(known: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) -> 
     LawFaultError
         If it is not.
     """
-    entries: tuple[Any, ...] = known.slip_velocity_change, known.friction_work
+    entries: tuple[Any, ...] = answer.slip_velocity_change, answer.friction_work
     if law.normal_spin:
-        entries = (*entries, known.normal_spin_change)
+        entries = (*entries, answer.normal_spin_change)
     for entry in entries:
         if faults.malformed(entry, shape):
             sentence = faults.sentence(law, f"the answer {shown(entry)} to a whole impact", 1)
             raise faults.LawFaultError(Status.MALFORMED, sentence)
-    return known
+    return answer
 
 
 def _unanswered(law: TangentialLaw) -> faults.LawFaultError:

@@ -251,8 +251,8 @@ class Collision(Answer):
         outcome = outcome if self.collided else "separate, passed through"
         return f"Collision(velocity={self.velocity}, spin={self.spin}; {outcome})"
 
-    def _ends(self) -> tuple[Any, Any]:
-        return (Status.SUCCESS, "") if self.known is None else self.known._ends()
+    def _statuses(self) -> tuple[Any, Any]:
+        return (Status.SUCCESS, "") if self.known is None else self.known._statuses()
 
     @property
     def status(self) -> Any:
@@ -296,8 +296,8 @@ def _moved(encounter: Encounter, result: ImpactResult, met: Mask) -> dict[str, A
             before = getattr(encounter, name, 0.0)
             if name == "normal_velocity":
                 before = encounter.meeting().approach
-            ends = np.shape(value)[1:]
-            whole = np.array(np.broadcast_to(before, (*encounter.shape, *ends)))
+            trailing = np.shape(value)[1:]
+            whole = np.array(np.broadcast_to(before, (*encounter.shape, *trailing)))
             whole[met] = value
             moved[name] = whole
     return moved | {"collided": met}

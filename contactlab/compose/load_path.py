@@ -79,7 +79,7 @@ class LoadPath(Answer):
     detail: str
     _states: tuple[Any, ...] = attrs.field(repr=False)
 
-    def _ends(self) -> tuple[Any, Any]:
+    def _statuses(self) -> tuple[Any, Any]:
         return self.status, self.detail
 
     @property

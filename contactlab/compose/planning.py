@@ -11,7 +11,7 @@ import attrs
 import numpy as np
 
 from contactlab.compose import together
-from contactlab.compose.answers import Answer, Mask, separated
+from contactlab.compose.answers import Answered, Mask, separated
 from contactlab.compose.composition import Laws
 from contactlab.compose.normal_motion import normal_motion, normal_or_failed
 from contactlab.compose.normal_spin_words import with_normal_spin
@@ -75,29 +75,29 @@ BOOKS_OFF = 0.01
 SOURCES = {source: name for name, source in ENDS.items()}
 
 
-def columns_of(normal: NormalMotion, laws: Laws, known: Sequence[Answer]) -> PlanColumns:
+def columns_of(normal: NormalMotion, laws: Laws, answered: Sequence[Answered]) -> PlanColumns:
     """Return the columns of the plan: why impacts are not marched, and the declared error."""
     shape = normal.scene.shape
     if not shape:
         code: Any = MARCHED if normal.status is Status.SUCCESS else ENDLESS
-        marched: Any = code == MARCHED and not known
-        code = 0 if known else code
+        marched: Any = code == MARCHED and not answered
+        code = 0 if answered else code
     else:
         code = np.where(separated(normal), MARCHED, ENDLESS)
-        for place, answer in enumerate(known):
-            code[answer.where] = place
+        for place, one in enumerate(answered):
+            code[one.where] = place
         marched = code == MARCHED
     reasons = tuple(
-        Reason(each.reason, each.balanced, each.fields is not None) for _, each in known
+        Reason(each.reason, each.balanced, each.fields is not None) for _, each in answered
     )
     # the load impulse of a frictionless impact is M_n v1 (1 + e), at most twice M_n v1
     restitution: Any = CLOSED_FORM + 2.0 * normal.accuracy
-    for each in known:
-        if each.known.normal is not None:
+    for each in answered:
+        if each.answer.normal is not None:
             restitution = math.nan  # the law changed the normal motion, and declares no error of it
     if shape:
         restitution = np.full(shape, restitution)
-    return PlanColumns(code, _error(normal, laws, known, marched), reasons, restitution)
+    return PlanColumns(code, _error(normal, laws, answered, marched), reasons, restitution)
 
 
 def plan_of(
@@ -247,17 +247,17 @@ def _cautions(
     said = [*unit_slips(whole), *unlikely(whole), *rigid_bodies(whole)]
     asked: list[str] = []
     if some(masks.ended):
-        ends = _ends(laws.normal, central, None if coupled else motion, known)
+        normal = _motion_of(laws.normal, central, None if coupled else motion, known)
         for law in (laws.normal, laws.tangential):
-            asked += _asked(law, law.cautions, whole, ends)
+            asked += _asked(law, law.cautions, whole, normal)
         if coupled and laws.tangential.shares_loss(laws.normal):
-            asked += _of_grip(laws.tangential, together.at_smaller_slip(part), known, ends)
+            asked += _of_grip(laws.tangential, together.at_smaller_slip(part), known, normal)
         if coupled:  # that of yield and of a large contact hold for any bodies
-            said += NormalLaw.cautions(laws.normal, whole, ends)
+            said += NormalLaw.cautions(laws.normal, whole, normal)
     if some(masks.marched):
         marched = part if every(masks.marched) else part.take(masks.marched)
-        ends = _ends(laws.normal, central, None if coupled else motion, masks.marched)
-        asked += _asked(laws.integrator, laws.integrator.remarks, ends, laws.tangential, marched)
+        normal = _motion_of(laws.normal, central, None if coupled else motion, masks.marched)
+        asked += _asked(laws.integrator, laws.integrator.remarks, normal, laws.tangential, marched)
     for law in (laws.normal, laws.tangential):
         if not law.elliptic:
             said += of_ellipse(whole, type(law).__name__)
@@ -274,19 +274,19 @@ def _cautions(
     return (*clauses, *(Clause(text, np.ones(scene.shape, dtype=bool)) for text in vectors))
 
 
-def _of_grip(law: TangentialLaw, central: Scene, known: Mask, ends: NormalMotion) -> list[str]:
+def _of_grip(law: TangentialLaw, central: Scene, known: Mask, normal: NormalMotion) -> list[str]:
     """Return what a law that shares the loss says, beside what all say, of the smaller slip."""
     scene = central if every(known) else central.take(known)
-    usual = TangentialLaw.cautions(law, scene, ends)
-    return [text for text in _asked(law, law.cautions, scene, ends) if text not in usual]
+    usual = TangentialLaw.cautions(law, scene, normal)
+    return [text for text in _asked(law, law.cautions, scene, normal) if text not in usual]
 
 
-def _ends(law: NormalLaw, scene: Scene, motion: Motion | None, where: Mask) -> Any:
+def _motion_of(law: NormalLaw, scene: Scene, motion: Motion | None, where: Mask) -> Any:
     """Return the normal motion of some impacts: by its ends after a run, else made now."""
     part = scene if every(where) else scene.take(where)
     if motion is None:
         return normal_or_failed(law, part)
-    return _Ends(law, part, motion if every(where) else taken(motion, scene.shape, where))
+    return _AfterRun(law, part, motion if every(where) else taken(motion, scene.shape, where))
 
 
 def _asked(law: Law, question: Callable[..., tuple[str, ...]], *about: object) -> list[str]:
@@ -316,7 +316,7 @@ def _books(laws: Laws, scene: Scene, motion: Motion) -> list[Clause]:
     return [Clause(text, where, (np.asarray(share),))]
 
 
-class _Ends:
+class _AfterRun:
     """The normal motion of a run by its end and its maxima; the rest is made when it is asked."""
 
     def __init__(self, law: NormalLaw, scene: Scene, motion: Motion) -> None:
@@ -394,15 +394,15 @@ def _no_history(history: bool | str, columns: PlanColumns, marched: Mask) -> str
     return None
 
 
-def _error(normal: NormalMotion, laws: Laws, known: Sequence[Answer], marched: Mask) -> Any:
+def _error(normal: NormalMotion, laws: Laws, answered: Sequence[Answered], marched: Mask) -> Any:
     """Return the declared numerical error of psi2: of one impact a float, of a batch an array."""
     scene = normal.scene
     rounding = CLOSED_FORM * psi_magnitude(scene) + normal.accuracy * 4.0 * scene.chi
     if not (scene.shape or marched):
-        return float(rounding + sum(answer.known.psi2_error for answer in known))
+        return float(rounding + sum(one.answer.psi2_error for one in answered))
     error: Any = spread(rounding, scene.shape)
-    for answer in known:
-        error = error + np.where(answer.where, answer.known.psi2_error, 0.0)
+    for one in answered:
+        error = error + np.where(one.where, one.answer.psi2_error, 0.0)
     if some(marched):
         with np.errstate(all="ignore"):
             declared = laws.integrator.psi2_error(normal, laws.tangential, scene)

@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 
 from contactlab.compose import together
-from contactlab.compose.answers import Answer, answers, show
+from contactlab.compose.answers import Answered, answers, show
 from contactlab.compose.composition import Laws
 from contactlab.compose.normal_motion import normal_or_failed
 from contactlab.compose.pieces import Piece
@@ -43,7 +43,7 @@ class Prepared(NamedTuple):
     """Normal motion, whole-impact answers and columns of the plan, made before the march."""
 
     normal: NormalMotion
-    known: list[Answer]
+    answered: list[Answered]
     columns: PlanColumns
     books_bound: Any
 
@@ -113,10 +113,10 @@ def _along(
     laws: Laws, scene: Scene, history: bool | str, recorder: Recorder | None
 ) -> tuple[PlanColumns, Motion, Any]:
     """Return columns, motion and bound of the books of impacts along a known normal motion."""
-    normal, known, columns, bound = prepare(laws, scene, history)
+    normal, answered, columns, bound = prepare(laws, scene, history)
     if scene.shape:
         _halved_if_failed(normal, recorder)
-    tangential = _tangential(laws, normal, known, columns.marched, recorder)
+    tangential = _tangential(laws, normal, answered, columns.marched, recorder)
     return columns, Motion.along(normal, tangential), bound
 
 
@@ -226,9 +226,9 @@ def prepare(laws: Laws, scene: Scene, history: bool | str) -> Prepared:
         if coupled:
             columns = together.columns_of(laws, scene, normal)
             return Prepared(normal, [], columns, together.books_bound(laws, normal.scene))
-        known = answers(normal, laws.tangential, history=history, accuracy=accuracy)
+        answered = answers(normal, laws.tangential, history=history, accuracy=accuracy)
         bound = laws.tangential.books_bound(scene)
-        return Prepared(normal, known, columns_of(normal, laws, known), bound)
+        return Prepared(normal, answered, columns_of(normal, laws, answered), bound)
 
 
 def _parts(size: int, *, most: int) -> list[slice]:
@@ -237,18 +237,22 @@ def _parts(size: int, *, most: int) -> list[slice]:
 
 
 def _tangential(
-    laws: Laws, normal: NormalMotion, known: list[Answer], marched: Mask, recorder: Recorder | None
+    laws: Laws,
+    normal: NormalMotion,
+    answered: list[Answered],
+    marched: Mask,
+    recorder: Recorder | None,
 ) -> TangentialMotion:
     """Return the tangential motion, by whole-impact answers where there are any, else marched."""
     shape = normal.scene.shape
     if every(marched):
         return _march(laws, normal, recorder)
     if recorder is not None and not some(marched):
-        show(normal, known, recorder)
+        show(normal, answered, recorder)
     if not shape:
-        if not known:
+        if not answered:
             return TangentialMotion.nothing((), normal.status, normal.detail)
-        answer = known[0].known
+        answer = answered[0].answer
         return TangentialMotion(
             slip_velocity_change=float(answer.slip_velocity_change),
             friction_work=float(answer.friction_work),
@@ -258,7 +262,7 @@ def _tangential(
             counters={} if answer.counter is None else {answer.counter: 1},
             normal=answer.normal,
         )
-    motion = _answered(normal, known)
+    motion = _joined(normal, answered)
     if not some(marched):
         return motion
     parts = [(np.ones(shape, dtype=bool), motion), (marched, _march(laws, normal.take(marched)))]
@@ -291,18 +295,18 @@ def _march(laws: Laws, normal: NormalMotion, observer: Observer | None = None) -
     return TangentialMotion.joined([part(each) for each in _parts(*shape, most=ONE_BY_ONE)], shape)
 
 
-def _answered(normal: NormalMotion, known: list[Answer]) -> TangentialMotion:
+def _joined(normal: NormalMotion, answered: list[Answered]) -> TangentialMotion:
     """Return the tangential motion of a batch by its whole-impact answers, NaN elsewhere."""
     shape = normal.scene.shape
     change, work = np.full((2, *shape), math.nan)
-    turns = not all(are_zeros(answer.normal_spin_change) for _, answer in known)
+    turns = not all(are_zeros(answer.normal_spin_change) for _, answer in answered)
     spin_change = np.full(shape, math.nan) if turns else zeros(shape)
     status, detail = (
         np.array(np.broadcast_to(np.asarray(entry, dtype=object), shape))
         for entry in (normal.status, normal.detail)
     )
     counters: Counter[str] = Counter()
-    for where, answer in known:
+    for where, answer in answered:
         np.copyto(change, answer.slip_velocity_change, where=where)
         np.copyto(work, answer.friction_work, where=where)
         if turns:
@@ -315,8 +319,8 @@ def _answered(normal: NormalMotion, known: list[Answer]) -> TangentialMotion:
         if answer.counter is not None:
             counters[answer.counter] += int(np.count_nonzero(where))
     own = None
-    if any(answer.normal is not None for _, answer in known):
-        parts = [(where, each.normal and each.normal.take(where)) for where, each in known]
+    if any(answer.normal is not None for _, answer in answered):
+        parts = [(where, each.normal and each.normal.take(where)) for where, each in answered]
         own = Ends.merged([(np.ones(shape, dtype=bool), None), *parts], shape)
     return TangentialMotion(
         slip_velocity_change=change,

@@ -107,10 +107,10 @@ def one_axis(shape: tuple[int, ...]) -> None:
 
 def _gaps(pieces: Iterable[Piece], size: int) -> list[Chunk]:
     """Return the chunks that no piece covers."""
-    ends = [(0, 0), *sorted(piece.chunk for piece in pieces), (size, size)]
+    chunks = [(0, 0), *sorted(piece.chunk for piece in pieces), (size, size)]
     return [
         Chunk(before, after)
-        for (_, before), (after, _) in itertools.pairwise(ends)
+        for (_, before), (after, _) in itertools.pairwise(chunks)
         if before < after
     ]
 

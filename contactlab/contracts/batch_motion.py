@@ -97,12 +97,12 @@ class BatchMotion:
             if name in cls._marked("rare") and all(are_zeros(value) for _, value in columns):
                 entries[name] = zeros(shape)
                 continue
-            ends: tuple[int, ...] = ()
+            trailing: tuple[int, ...] = ()
             if name in cls._marked("vectors"):
                 axes = [np.ndim(motion.status) for _, motion in parts]
-                columns, ends = _vectors_alike(columns, axes)
+                columns, trailing = _vectors_alike(columns, axes)
             kind = float if name in cls.numbers() else object
-            entries[name] = merged(columns, shape, kind, ends)
+            entries[name] = merged(columns, shape, kind, trailing)
         return cls(**entries, counters=dict(counters))
 
     @classmethod

@@ -60,8 +60,8 @@ class Body(NamedTuple):
         """Return the centre of mass and the point that touches, as in ``outline``: shape (2, 2)."""
         velocity, spin = self.before if time < 0.0 else self.after
         centre = self.centre + velocity * time
-        ends = np.stack((centre, centre - _rotation(spin * time) @ self.centre))
-        return np.stack((ends[:, 1], -ends[:, 0]), axis=-1)
+        path = np.stack((centre, centre - _rotation(spin * time) @ self.centre))
+        return np.stack((path[:, 1], -path[:, 0]), axis=-1)
 
 
 def body_of(collision: Collision, axes: Array) -> Body:
@@ -187,8 +187,8 @@ def _course(axes: Axes, result: ImpactResult) -> Callable[[float], None]:
     time = np.concatenate(([0.0], history.time / duration, [1.0]))
     speed = float(np.asarray(result.scene.normal_speed))
     unit = unit_in("m/s", result.scene)
-    ends = result.scene.slip_velocity, result.rebound_slip_velocity
-    slip = np.vstack([np.atleast_1d(each) for each in (ends[0], *history.slip_velocity, ends[1])])
+    outer = result.scene.slip_velocity, result.rebound_slip_velocity
+    slip = np.vstack([np.atleast_1d(each) for each in (outer[0], *history.slip_velocity, outer[1])])
     last = float(result.normal_velocity)
     approach = np.concatenate(([speed], history.normal_velocity, [last]))
     names = ["slip"] if slip.shape[1] == 1 else ["slip along t1", "slip along t2"]

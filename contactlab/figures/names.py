@@ -96,12 +96,12 @@ def name_curves(
             return False
         place, start = found
         if start is not None:
-            ends = axes.transData.inverted().transform(
+            points = axes.transData.inverted().transform(
                 [start, place - [0.0, np.sign((place - start)[1]) * 0.5 * size[1]]]
             )
             rules.append(np.linspace(start, place, 40))
             leaders += axes.plot(
-                *ends.T, color=line.get_color(), linewidth=0.6, scalex=False, scaley=False
+                *points.T, color=line.get_color(), linewidth=0.6, scalex=False, scaley=False
             )
         low = place - 0.5 * size
         taken.append(np.array([low, low + size]))

@@ -124,8 +124,8 @@ def _forces(axes: Axes, result: ImpactResult) -> Axes:
 def _path(axes: Axes, result: ImpactResult) -> Axes:
     """Draw slip over approach in the plane, and the slip vector in space."""
     scene, history = result.scene, result.history
-    ends = scene.slip_velocity, result.rebound_slip_velocity
-    slip = np.concatenate(([ends[0]], history.slip_velocity, [ends[1]]))
+    outer = scene.slip_velocity, result.rebound_slip_velocity
+    slip = np.concatenate(([outer[0]], history.slip_velocity, [outer[1]]))
     unit = unit_in("m/s", scene)
     zero_line(axes)
     if slip.ndim == 1:

@@ -167,12 +167,12 @@ def _scaled(
 ) -> tuple[Any, Array]:
     """Return slip velocity and inverse mass in units with v1 = R = C = 1/W_nn = 1."""
     shapes = {"psi1": np.shape(psi1), "chi": np.shape(chi), "lam": np.shape(lam)}
-    for name, ends in (("psi1", (2,)), ("chi", (2, 2)), ("lam", (2,))) if in_space else ():
-        whole = shapes[name] or ends  # lam may be 0
-        if whole[-len(ends) :] != ends:
-            rule = f"must end with {ends} in space"
+    for name, trailing in (("psi1", (2,)), ("chi", (2, 2)), ("lam", (2,))) if in_space else ():
+        whole = shapes[name] or trailing  # lam may be 0
+        if whole[-len(trailing) :] != trailing:
+            rule = f"must end with {trailing} in space"
             raise refuse(f"{name}.shape", whole, rule, "in the plane all are numbers")
-        shapes[name] = whole[: -len(ends)]
+        shapes[name] = whole[: -len(trailing)]
     shapes |= {"rho": np.broadcast_shapes(np.shape(mu), np.shape(kappa))}
     shapes |= {"cross_stiffness_ratio": np.shape(cross)}
     shape = batch.common_shape(

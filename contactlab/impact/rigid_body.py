@@ -34,22 +34,22 @@ def _tensor(value: Numbers | None, field: attrs.Attribute[object]) -> Array | No
     """Return a read-only array of shape (..., 3, 3), or (..., 3) of principal moments."""
     if value is None:
         return None
-    unit, ends = field.metadata["unit"], field.metadata["ends"]
-    remedy = f"give an array of shape (..., {str(ends)[1:-1].rstrip(',')})" + (
+    unit, trailing = field.metadata["unit"], field.metadata["trailing"]
+    remedy = f"give an array of shape (..., {str(trailing)[1:-1].rstrip(',')})" + (
         f" in {unit}" if unit != "1" else ""
     )
     array = np.array(real(field.name, value, remedy=remedy, empty=True))
-    if array.shape[-len(ends) :] != ends:
-        raise refuse(f"{field.name}.shape", array.shape, f"must end with {ends}", remedy)
+    if array.shape[-len(trailing) :] != trailing:
+        raise refuse(f"{field.name}.shape", array.shape, f"must end with {trailing}", remedy)
     array.flags.writeable = False
     return array
 
 
-def _array(unit: str, ends: tuple[int, ...]) -> Any:
-    """Return an attrs field for checked arrays that end with the axes ``ends``."""
+def _array(unit: str, trailing: tuple[int, ...]) -> Any:
+    """Return an attrs field for checked arrays that end with the axes ``trailing``."""
     converter = attrs.Converter(_tensor, takes_field=True)
     return attrs.field(
-        default=None, converter=converter, eq=key, metadata={"unit": unit, "ends": ends}
+        default=None, converter=converter, eq=key, metadata={"unit": unit, "trailing": trailing}
     )
 
 

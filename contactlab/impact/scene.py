@@ -207,11 +207,11 @@ class Scene(Motions):
         vectors: dict[str, tuple[int, ...]] = {"inverse_mass": (3, 3)}
         if not self.planar:
             vectors["tangential_velocity"] = (2,)
-        for name, ends in vectors.items():
+        for name, trailing in vectors.items():
             given = np.asarray(getattr(self, name))
-            if given.shape[-len(ends) :] != ends:
-                raise refuse(f"{name}.shape", given.shape, f"must end with {ends}")
-            whole = batch.locked(np.broadcast_to(given, (*self.shape, *ends)))
+            if given.shape[-len(trailing) :] != trailing:
+                raise refuse(f"{name}.shape", given.shape, f"must end with {trailing}")
+            whole = batch.locked(np.broadcast_to(given, (*self.shape, *trailing)))
             object.__setattr__(self, name, whole)
         W: Any = self.inverse_mass
         inverse_mass.check(W)

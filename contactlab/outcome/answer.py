@@ -98,13 +98,13 @@ class Answer(Checked):
     __slots__ = ()
 
     @abstractmethod
-    def _ends(self) -> tuple[Any, Any]:
+    def _statuses(self) -> tuple[Any, Any]:
         """Return statuses and details of what was run."""
 
     @property
     def failures(self) -> dict[int, str]:
         """A sentence for each impact that failed, by its index in C order."""
-        statuses, details = (np.ravel(np.array(entry, dtype=object)) for entry in self._ends())
+        statuses, details = (np.ravel(np.array(entry, dtype=object)) for entry in self._statuses())
         return {
             index: f"{status.value} {detail}".strip()
             for index, (status, detail) in enumerate(np.broadcast(statuses, details))
@@ -113,10 +113,10 @@ class Answer(Checked):
 
     @property
     def _of_many(self) -> bool:
-        return bool(np.ndim(self._ends()[0]))
+        return bool(np.ndim(self._statuses()[0]))
 
     def _status_at(self, index: int) -> Status:
-        status: Status = np.ravel(np.array(self._ends()[0], dtype=object))[index]
+        status: Status = np.ravel(np.array(self._statuses()[0], dtype=object))[index]
         return status
 
 

@@ -200,12 +200,12 @@ def columns(result: WithScene) -> list[tuple[str, str, Any]]:
 def components(name: str, values: object, shape: tuple[int, ...]) -> list[tuple[str, Any]]:
     """Return the components of vectors and matrices, each under a name: ``"psi1_2"``."""
     array = np.asarray(values)
-    ends = array.shape[len(shape) :] if array.shape[: len(shape)] == shape else ()
-    if not ends:
+    trailing = array.shape[len(shape) :] if array.shape[: len(shape)] == shape else ()
+    if not trailing:
         return [(name, values)]
     return [
         (f"{name}_{''.join(str(place + 1) for place in index)}", array[(..., *index)])
-        for index in np.ndindex(*ends)
+        for index in np.ndindex(*trailing)
     ]
 
 

@@ -168,7 +168,7 @@ def without_failures(motion: Motion) -> Motion:
     numbers = {}
     for name in Motion.numbers():
         value = np.asarray(getattr(motion, name))
-        ends = value.shape[len(shape) :]
-        kept = np.where(good.reshape((*shape, *(1 for _ in ends))), value, math.nan)
-        numbers[name] = locked(spread(kept, (*shape, *ends)))
+        trailing = value.shape[len(shape) :]
+        kept = np.where(good.reshape((*shape, *(1 for _ in trailing))), value, math.nan)
+        numbers[name] = locked(spread(kept, (*shape, *trailing)))
     return attrs.evolve(motion, **numbers)

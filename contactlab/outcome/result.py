@@ -80,8 +80,8 @@ class ImpactResult(Answer):
             if psi2.ndim > len(scene.shape):
                 finite, what = scene.size_of(psi2), "abs(psi2)"
             finite = finite[np.isfinite(finite)]
-            ends = f" from {finite.min():.6g} to {finite.max():.6g}" if finite.size else " unknown"
-            return f"{np.size(self.motion.status)} impacts, {what}{ends}"
+            span = f" from {finite.min():.6g} to {finite.max():.6g}" if finite.size else " unknown"
+            return f"{np.size(self.motion.status)} impacts, {what}{span}"
         told = scene.groups
         if told.pop("eta", None) is not None:
             del told["rho"]
@@ -333,7 +333,7 @@ class ImpactResult(Answer):
     def _first_lines(self) -> list[str]:
         return [repr(self), f"numerical error of psi2: {error_words(self)}"]
 
-    def _ends(self) -> tuple[Any, Any]:
+    def _statuses(self) -> tuple[Any, Any]:
         return self.motion.status, self.motion.detail
 
     @property

@@ -126,9 +126,9 @@ class SweepFolder(Checked):
 
         The same sweep into the same folder computes them.
         """
-        ends = [(about.first, about.stop) for _, about in self._abouts]
-        last = self.impacts if self.impacts is not None else max((b for _, b in ends), default=0)
-        pairs = itertools.pairwise([(0, 0), *ends, (last, last)])
+        spans = [(about.first, about.stop) for _, about in self._abouts]
+        last = self.impacts if self.impacts is not None else max((b for _, b in spans), default=0)
+        pairs = itertools.pairwise([(0, 0), *spans, (last, last)])
         return [(before, after) for (_, before), (after, _) in pairs if before < after]
 
     @property

@@ -16,7 +16,7 @@ from contactlab.numeric.types import Array
 from contactlab.testing.check import check, within, worst
 from contactlab.testing.load_paths import FRICTION
 from contactlab.testing.normal import STEPS, respond
-from contactlab.testing.ways import Answer, Way, ways
+from contactlab.testing.ways import Solved, Way, ways
 
 #: Radius (m), shear modulus (Pa), Poisson's ratio and mass (kg) of a ball.
 BALL = {"radius": 0.0127, "shear_modulus": 8e10, "poisson_ratio": 0.3, "mass": 0.067}
@@ -105,7 +105,7 @@ def _hold_spin(way: Way) -> None:
             )
 
 
-def _gap(scene: Scene, expected: Answer, answer: Answer) -> float:
+def _gap(scene: Scene, expected: Solved, answer: Solved) -> float:
     """Return the difference of two changes of slip velocity, in psi; infinity for NaN."""
     changes = [each.motion.slip_velocity_change for each in (expected, answer)]
     return worst(changes[0] - changes[1]) * float(scene.psi_scale)

@@ -44,7 +44,7 @@ ROUNDING = 1e-9
 COUPLING = 1e-10
 
 
-class Answer(NamedTuple):
+class Solved(NamedTuple):
     """Change of psi, motion, and friction work over the unit of energy, of one way."""
 
     change: Any
@@ -77,7 +77,7 @@ class Way(NamedTuple):
             return self.law.resolution is None
         return bool(self.integrator.accuracy)
 
-    def run(self, impact: Scene, recorder: Observer | None = None) -> Answer:
+    def run(self, impact: Scene, recorder: Observer | None = None) -> Solved:
         """Return the answer for the impacts of a scene.
 
         An integrator is called directly, because a simulation would use whole-impact answers.
@@ -95,7 +95,7 @@ class Way(NamedTuple):
         hold_success(motion, f"{_which(impact)}: {{}} ({self})")
         unit = impact.pair.tangential_mass / np.square(impact.psi_scale)
         change = impact.psi(motion.slip_velocity_change)
-        return Answer(change, motion, motion.friction_work / unit)
+        return Solved(change, motion, motion.friction_work / unit)
 
 
 def _coupled(impact: Scene) -> Scene:
@@ -220,7 +220,7 @@ def _marches(way: Way) -> bool:
 
 def meet(
     way: Way, psi1: Real, chi: Real, *, units: Units | None = None, recorder: Observer | None = None
-) -> Answer:
+) -> Solved:
     """Return the answer of one way for an impact, by psi1 and chi.
 
     Parameters
