@@ -19,7 +19,10 @@ from tests.present import PACKAGE
 
 FOLDER = Path(__file__).parents[1] / "examples" / "lammps"
 PAGE = (FOLDER / "README.md").read_text("utf-8")
-SCRIPTS = ("build", "dem05", "rebounds", "loss", "checks", "cost", "gas", "dense_flow", "drum")
+SCRIPTS = (
+    *("build", "dem05", "moments", "rebounds", "loss", "checks"),
+    *("cost", "gas", "dense_flow", "drum"),
+)
 
 
 def shown():
@@ -30,8 +33,8 @@ def shown():
     )
 
 
-#: Scripts of many grains, as ``gas`` is.
-LIKE_GAS = ("cost", "loss", "dense_flow", "drum")
+#: Scripts of many grains, as ``gas`` is, and one with the options of ``dem05``.
+LIKE_GAS = ("cost", "loss", "dense_flow", "drum", "moments")
 
 
 @pytest.mark.parametrize(
@@ -82,14 +85,22 @@ def merging():
     return module("merge")
 
 
+@pytest.fixture(scope="module")
+def kernel(tmp_path_factory):
+    """Return examples/lammps/loss.py as a module, and the compiled kernel that it follows."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(FOLDER)
+        loss = module("loss")
+    return loss, loss.kernel(tmp_path_factory.mktemp("kernel"))
+
+
 @needs_c
 @pytest.mark.parametrize(("springs", "bound"), [(8, 0.015), *longer((50, 2e-3))])
-def test_impacts_in_the_steps_of_lammps(springs, bound, monkeypatch, tmp_path):
+def test_impacts_in_the_steps_of_lammps(springs, bound, kernel):
     """Velocity Verlet with velocities of half a step ago: 200 steps, contacts of ten sizes."""
-    monkeypatch.syspath_prepend(FOLDER)
-    loss = module("loss")
+    loss, library = kernel
     expected = [loss.PSI2[psi1] for psi1 in loss.settings()[0]]
-    found = loss.alone(loss.kernel(tmp_path), springs, 200)
+    found = loss.alone(library, springs, 200)
     assert np.abs(found - expected).max() <= bound
 
 
@@ -168,6 +179,7 @@ def test_a_tree_of_before_2026_has_no_tests_of_impacts(merging, tree):
     shutil.rmtree(tree / "unittest" / "granular")
     merging.merge(tree)
     assert not (tree / "unittest" / "granular").exists()
+    assert "partial_slip" not in "".join(contents(tree).values())
 
 
 def points(merging, name):
@@ -195,21 +207,44 @@ def test_the_points_of_the_analytic_model_are_psi2(merging):
         assert psi2 - psi1 == pytest.approx(-2.0 * chi * (1.0 + e), abs=1e-3)
 
 
-@pytest.mark.parametrize(("file", "e"), [("springs", 0.9), ("springs-elastic", 1.0)])
+def recorded(name, e):
+    """Return an impact file and its last velocities along and up, and spins, shape (n, 3)."""
+    text = (FOLDER / f"dem05-mindlin-{name}-3d.yaml").read_text("utf-8")
+    block = r"^    1 +\d+ +(\S+) +(\S+) +(\S+)$"
+    last = {
+        each: np.array(re.findall(block, text.partition(f"run_{each}:")[2], re.M)[:6], dtype=float)
+        for each in ("vel", "omega")
+    }
+    assert f"  en {e}\n" in text
+    return text, np.stack([last["vel"][:, 0], last["vel"][:, 2], last["omega"][:, 1]], axis=-1)
+
+
+IMPACTS = pytest.mark.parametrize(("file", "e"), [("springs", 0.9), ("springs-elastic", 1.0)])
+
+
+@IMPACTS
 def test_impacts_recorded_in_lammps_are_within_the_tolerance(file, e, monkeypatch):
     monkeypatch.syspath_prepend(FOLDER)
-    text = (FOLDER / f"dem05-mindlin-{file}-3d.yaml").read_text("utf-8")
-    last = {
-        name: np.array(
-            [line.split()[2:] for line in text.partition(f"run_{name}:")[2].splitlines()[6:11]],
-            dtype=float,
-        )
-        for name in ("vel", "omega")
-    }
-    found = np.stack([last["vel"][:, 0], last["vel"][:, 2], last["omega"][:, 1]], axis=-1)
-    expected = module("dem05").exact(e, springs=100)[:5]
+    text, found = recorded(file, e)
+    expected = module("dem05").exact(e, springs=100)
     assert found == pytest.approx(expected, rel=0.0085)
     assert "analytic_tol: 0.015" in text
+
+
+@needs_c
+@IMPACTS
+def test_impacts_recorded_in_lammps_are_those_of_the_kernel(file, e, kernel):
+    """LAMMPS compares with what is recorded to 1e-10: a kernel that changed needs a new record."""
+    loss, library = kernel
+    _, found = recorded(file, e)
+    slips = np.array([0.2, 0.4, 0.7, 1.0, 4.0, 6.0])
+    alpha = -np.sqrt(5.0) * np.log(e) / np.hypot(np.pi, np.log(e))
+    wall = loss.Wall(radius=0.5, young=1e5, mu=0.3, alpha=alpha, limited=False)
+    start = np.stack([np.full(6, np.pi / 6.0), np.ones(6), slips, np.full(6, 0.5505)], axis=-1)
+    made = loss.followed(library, 8, start, wall=wall, time=2e-4, count=800)
+    lost = (slips - made[:, 1]) / 3.5
+    expected = np.stack([slips - lost, made[:, 0], 5.0 * lost], axis=-1)
+    assert found == pytest.approx(expected, rel=1e-10)
 
 
 def test_sources_of_another_year_are_told(merging, tree, tmp_path):

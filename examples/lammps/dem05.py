@@ -1,7 +1,8 @@
 """Oblique impacts on a wall, LAMMPS's benchmark DEM-05, from partial slip to gross slip.
 
 The spin after the impact by each tangential sub-model, beside contactlab with the same restitution
-and its loss shared by pressure and shear: errors in per cent. The input script is ``in.oblique``.
+and its loss shared by pressure and shear: errors in per cent. Then the restitution that a damping
+makes of its coefficient. The input script is ``in.oblique``.
 
 Examples
 --------
@@ -45,10 +46,17 @@ def exact(restitution: float, springs: int = 400) -> Array:
     return np.stack([made.velocity[:, 0], made.velocity[:, 2], made.spin[:, 1]], axis=-1)
 
 
-def in_lammps(lammps: Engine, law: str, restitution: float, step: float = 2e-4) -> Array:
+def in_lammps(
+    lammps: Engine,
+    law: str,
+    coefficient: float,
+    *,
+    damping: str = "coeff_restitution",
+    step: float = 2e-4,
+) -> Array:
     """Return velocities along and up, and spins, shape (n, 3), in LAMMPS."""
     given = {"pair": lammps.pair, "wall": lammps.wall, "law": f'"{law}"'}
-    given |= {"e": f"{restitution}", "dt": f"{step}"}
+    given |= {"e": f"{coefficient}", "damping": damping, "dt": f"{step}"}
     head = "".join(f"variable {name} index {value}\n" for name, value in given.items())
     with folder() as name:
         lammps.run(head + DECK.read_text("utf-8"), Path(name))
@@ -62,11 +70,18 @@ def main() -> None:
     lammps = engine(given)
     for restitution in (1.0, 0.9):
         true = exact(restitution)
-        print(f"\ne = {restitution}: vx" + "".join(f"{slip:9.1f}" for slip in SLIPS))
-        print(f"{'exact spin':20}" + "".join(f"{spin:9.4f}" for spin in true[:, 2]))
+        print(f"\n{f'e = {restitution}: vx':22}" + "".join(f"{slip:9.1f}" for slip in SLIPS))
+        print(f"{'exact spin':22}" + "".join(f"{spin:9.4f}" for spin in true[:, 2]))
         for name, law in LAWS.items():
             error = 100.0 * (in_lammps(lammps, law, restitution)[:, 2] / true[:, 2] - 1.0)
-            print(f"{name:20}" + "".join(f"{each:+8.1f}%" for each in error))
+            print(f"{name:22}" + "".join(f"{each:+8.1f}%" for each in error))
+    print("\nrestitution of a coefficient, in steps of 2e-4 and 2e-5")
+    for damping, coefficient in (("coeff_restitution", 0.9), ("tsuji", 0.9), ("tsuji", 0.8621)):
+        made = [
+            in_lammps(lammps, LAWS["mindlin"], coefficient, damping=damping, step=step)[0, 1]
+            for step in (2e-4, 2e-5)
+        ]
+        print(f"{damping:20}{coefficient:8}" + "".join(f"{each:9.5f}" for each in made))
 
 
 if __name__ == "__main__":

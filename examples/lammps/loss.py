@@ -16,6 +16,7 @@ import ctypes
 import subprocess
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from engine import DUMP, SPRINGS, Array, Engine, Grains, arguments, engine, folder, friction, read
@@ -42,6 +43,19 @@ double springs_step(double *state, int n, const double *moved, const double *nor
                                         force, elastic, damping, velocity, time);
 }
 """
+
+
+class Wall(NamedTuple):
+    """What spheres meet: their radius, Young's modulus of both, friction, Tsuji's damping.
+
+    ``limited``: the damping makes no normal force that pulls.
+    """
+
+    radius: float
+    young: float
+    mu: float
+    alpha: float
+    limited: bool
 
 
 def coefficient() -> float:
@@ -129,36 +143,53 @@ def kernel(path: Path) -> ctypes.CDLL:
     return library
 
 
-def alone(library: ctypes.CDLL, springs: int, steps: int) -> Array:
-    """Return psi2 by the kernel: velocity Verlet, forces from the velocities of half a step ago."""
-    triple, time = ctypes.c_double * 3, DURATION / steps
-    normal, young = triple(0.0, 0.0, 1.0), YOUNG / (2.0 * (1.0 - POISSON**2))
-    shear = 8.0 * YOUNG / (4.0 * (2.0 - POISSON) * (1.0 + POISSON))
-    alpha, answers = TSUJI(coefficient()), []
-    for mass, speed, first, height in zip(*starts(), strict=True):
+def followed(
+    library: ctypes.CDLL, springs: int, start: Array, *, wall: Wall, time: float, count: int
+) -> Array:
+    """Return velocities up and of slip, shape (n, 2), after impacts by the kernel alone.
+
+    ``start``: mass, speed of approach, slip and height of each sphere, shape (n, 4). The steps are
+    those of velocity Verlet; forces take velocities of half a step ago, as LAMMPS does.
+    """
+    triple = ctypes.c_double * 3
+    normal, young = triple(0.0, 0.0, 1.0), wall.young / (2.0 * (1.0 - POISSON**2))
+    shear = 8.0 * wall.young / (4.0 * (2.0 - POISSON) * (1.0 + POISSON))
+    answers = []
+    for mass, speed, first, height in start:
         state, force = (ctypes.c_double * (2 + 3 * springs))(), triple()
         fall, slip, load, pull, last = -speed, first, 0.0, 0.0, None
-        for _ in range(count(steps)):
+        for _ in range(count):
             fall += 0.5 * time * load / mass
             slip += 0.5 * time * 3.5 * pull / mass
             height += time * fall
             load = pull = 0.0
-            if height < RADIUS:
-                overlap = RADIUS - height
-                touch = np.sqrt(RADIUS * overlap)
+            if height < wall.radius:
+                overlap = wall.radius - height
+                touch = np.sqrt(wall.radius * overlap)
                 elastic = 4.0 / 3.0 * young * touch * overlap
-                damping = alpha * np.sqrt(mass * elastic / overlap)
-                load = max(elastic - damping * fall, 0.0)
+                damping = wall.alpha * np.sqrt(mass * elastic / overlap)
+                load = elastic - damping * fall
+                load = max(load, 0.0) if wall.limited else load
                 velocity = slip if last is None or state[0] == 0.0 else 1.5 * slip - 0.5 * last
                 library.springs_step(
-                    state, springs, triple(time * slip), normal, touch, MU * load, RADIUS, shear,
-                    force, MU * elastic, shear / (2.0 * young) * damping, triple(velocity), time,
+                    state, springs, triple(time * slip), normal, touch, wall.mu * max(load, 0.0),
+                    wall.radius, shear, force, wall.mu * elastic, shear / (2.0 * young) * damping,
+                    triple(velocity), time,
                 )  # fmt: skip
                 pull, last = force[0], slip
             fall += 0.5 * time * load / mass
             slip += 0.5 * time * 3.5 * pull / mass
-        answers.append(KAPPA * slip / (MU * speed))
+        answers.append((fall, slip))
     return np.array(answers)
+
+
+def alone(library: ctypes.CDLL, springs: int, steps: int) -> Array:
+    """Return psi2 by the kernel alone."""
+    wall = Wall(RADIUS, YOUNG, MU, TSUJI(coefficient()), limited=True)
+    start = np.stack(starts(), axis=-1)
+    time = DURATION / steps
+    slip = followed(library, springs, start, wall=wall, time=time, count=count(steps))[:, 1]
+    return KAPPA * slip / (MU * start[:, 1])
 
 
 def main() -> None:

@@ -103,6 +103,14 @@ which is the stiffness of the two materials in contact.  The ratio
 """
 MAW = """Maw, N., Barber, J. R., & Fawcett, J. N. (1976).
 The oblique impact of elastic spheres. Wear, 38(1), 101-114."""
+MODEL = r"""   * - partial_slip
+     - rebound for :math:`\nu = 0.3` from stick to gross slip, by a table of slip
+       velocities :math:`\psi_1` before and :math:`\psi_2` after it:
+       :math:`v_x' = v_x + (\psi_2 - \psi_1) \mu v_z / (3.5 \kappa)`,
+       :math:`\omega_y = \tfrac{5}{2} (v_x - v_x')/r`,
+       :math:`\kappa = 2 (1 - \nu)/(2 - \nu)`,
+       for :math:`e = 1` from :ref:`Maw et al <Maw1976>`
+"""
 WALL = (
     "   fix 7 all wall/gran granular hertz/material 1e8 0.8 0.3 "
     "tangential mindlin_springs NULL 0.0 0.5 8 damping tsuji zplane 0.0 NULL\n"
@@ -119,17 +127,18 @@ PAGES: dict[str, tuple[tuple[str, str], ...]] = {
     "doc/src/Bibliography.rst": (
         ("   Mattice", "\n**(Maw et al, 1976)**\n   " + MAW.replace("\n", " ") + "\n"),
     ),
-    "doc/utils/sphinx-config/false_positives.txt": (("Fava", "Fawcett\n"), ("Mattson", "Maw\n")),
+    "doc/utils/sphinx-config/false_positives.txt": (("Fava", "Fawcett\n"),),
     "unittest/granular/test_analytic_models.cpp": (
         ('"spin_no_friction: spurious vy";', PARTIAL_SLIP),
         ("#include <string>", "#include <utility>\n#include <vector>\n"),
     ),
+    "doc/src/Developer_unittest.rst": (("   * - oblique_impact", MODEL),),
     "src/.gitignore": (
         ("/gran_sub_mod_tangential.h", "".join(f"/{name}\n" for name in SUB_MODEL[::-1])),
     ),
 }  # fmt: skip
-#: Files that a tree lacks which is no clone, or of before 2026.
-MAYBE = ("src/.gitignore", "unittest/granular/test_analytic_models.cpp")
+#: Of what is inserted, what a tree of before 2026 has no place for.
+OF_IMPACTS = ("unittest/granular/test_analytic_models.cpp", "doc/src/Developer_unittest.rst")
 
 
 def plain(text: str) -> str:
@@ -160,12 +169,14 @@ def merge(lammps: Path) -> None:
         subprocess.run(["clang-format", "-i", *SUB_MODEL], cwd=granular, check=True)
     shutil.copy(HERE / UNIT_TEST, lammps / "unittest" / "force-styles" / "tests")
     shutil.copy(HERE / INPUT, lammps / "examples" / "granular")
-    if (lammps / "unittest" / "granular").exists():
+    impacts = (lammps / "unittest" / "granular").exists()
+    if impacts:
         for name in IMPACTS:
             shutil.copy(HERE / name, lammps / "unittest" / "granular" / "tests")
     for page, inserted in PAGES.items():
         path = lammps / page
-        if page in MAYBE and not path.exists():
+        # An archive has no .gitignore.
+        if (page in OF_IMPACTS and not impacts) or (path.name[0] == "." and not path.exists()):
             continue
         text = path.read_text("utf-8")
         for anchor, more in inserted:
