@@ -49,8 +49,10 @@ export function bounce(one, other, contact, normal, velocity, spin = ZERO, other
   u -= approach * x; v -= approach * y; w -= approach * z;
   const slip = Math.hypot(u, v, w), mobility = masses + r1 * c1 + r2 * c2, kappa = stiffnesses(one, other);
   const chi = 0.5 * kappa * mobility / masses;
-  if (!(r1 > 0 && masses > 0 && chi <= MOST && friction >= 0 && slip + friction + Math.abs(approach) <= LARGE
-    && restitution >= 0 && restitution <= 1 && Number.isFinite(restitution))) refuse(arguments);
+  if (!(r1 > 0 && masses > 0 && chi <= MOST && friction >= 0 && restitution >= 0 && restitution <= 1
+    && slip + friction + Math.abs(approach) <= LARGE * Math.min(1, masses) && Number.isFinite(restitution))) {
+    refuse(arguments);
+  }
   const after = {bounced: approach > 0, velocity: [...velocity], spin: [...spin],
     otherVelocity: [...otherVelocity], otherSpin: [...otherSpin]};
   if (!after.bounced) return after;

@@ -365,11 +365,13 @@ def test_what_is_no_number_is_refused_and_changes_nothing(bounced):
     assert np.array_equal(answers[:, 1:], rows[:, VECTORS], equal_nan=True)
 
 
-def test_a_normal_of_no_length_and_two_fixed_bodies_are_refused(bounced):
+def test_a_normal_of_no_length_fixed_bodies_and_too_large_impulses_are_refused(bounced):
     rows, _, _ = rows_and_laws(7, True, 0.6, FEW)
     rows[0, NORMAL] = 0.0
     rows[1, [1, 2]] = 0.0
-    assert (bounced(rows[:2])[:, 0] == -1).all()
+    rows[2:4, [1, 2]] = 1e290, 0.0  # a solid sphere, by its mass and a fast one
+    rows[2, 1], rows[3, VECTORS] = 1e304, rows[3, VECTORS] * 1e20
+    assert (bounced(rows[:4])[:, 0] == -1).all()
 
 
 def test_a_normal_of_any_length_is_a_normal(bounced):
@@ -402,6 +404,7 @@ SENTENCES = [
     ({"normal": "[0, 0, 0]"}, "normal = \\[0, 0, 0\\] must lead from the centre"),
     ({"velocity": "{x: 2, y: 0, z: -4}"}, "velocity = {x: 2, y: 0, z: -4} must be an array"),
     ({"velocity": "[1, 2, NaN]"}, "velocity = \\[1, 2, NaN\\] must be an array"),
+    ({"one": BALL.replace("0.065", "1e304") + "}"}, "are of a size that rounds away"),
     ({"velocity": "[1e308, 0, -1e308]"}, "are of a size that rounds away"),
     ({"spin": "{restitution: 0.7}"}, "spin = {restitution: 0.7} must be an array"),
     ({"more": "{restitution: 0.7}"}, "argument 9 = .* is one too many; restitution stands beside"),
