@@ -17,11 +17,11 @@ from contactlab.numeric.checks import refuse
 from contactlab.outcome.files import written
 
 #: Files of ``contactlab/kernels``: springs on a doubling grid (theory §13), bounces, exact impacts
-#: (theory §14), types, notes.
+#: and bodies of any shape (theory §14), types, notes.
 FILES = (
     "contactlab_springs.h", "contactlab_springs.mjs", "contactlab_springs.d.mts",
     "contactlab_bounce.h", "contactlab_bounce.mjs", "contactlab_bounce.d.mts",
-    "contactlab_impact.h",
+    "contactlab_impact.h", "contactlab_bodies.h",
     "package.json", "README.md", "LICENSE",
 )  # fmt: skip
 

@@ -21,7 +21,11 @@ def followed(request, tmp_path_factory):
     As attributes it has those of the watched impacts, and their instants, a row each.
     """
     folder = tmp_path_factory.mktemp("impact")
-    words = [COMPILER, *STRICT, *SANITIZERS] if request.param == "c99" else [COMPILER, "-x", "c++"]
+    words = (
+        [COMPILER, *STRICT, "-O0", *SANITIZERS]
+        if request.param == "c99"
+        else [COMPILER, "-x", "c++"]
+    )
     source = [f"-I{KERNELS}", HERE / "impact.c", "-o", folder / "impact", "-lm"]
     subprocess.run([*words, *source], check=True, timeout=120)
 

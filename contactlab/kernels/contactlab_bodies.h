@@ -1,0 +1,197 @@
+/* How two bodies of any shape leave each other: velocities and spins in and out.
+ *
+ * Hertz's contact with Coulomb friction and partial slip, elastic, exact to 1e-11 of the speed, several compressions
+ * and jams included, where slip keeps its line: bodies whose slip is in a plane of symmetry of both, and bodies whose
+ * centres are on the normal. Where slip may turn there is a status. Theory: section 14 of `contactlab guide theory`.
+ *
+ *     const contactlab_rigid rod = {2.0, {...}, {0, 0, 0.4}}, ground = {0};
+ *     int status = contactlab_bodies_bounce(&rod, &ground, 0.6, 0.8235, down, velocity, spin, still, none, NULL);
+ *
+ * It needs contactlab_impact.h beside it. C99 and C++, no allocation, no global.
+ *
+ * SPDX-License-Identifier: MIT
+ * Copyright (c) the authors of contactlab
+ */
+#ifndef CONTACTLAB_BODIES_H
+#define CONTACTLAB_BODIES_H
+
+#include "contactlab_impact.h"
+
+/* Statuses beside those of contactlab_impact.h: the bodies part along the normal, slip may leave its line, and a
+ * number is none or out of range. */
+enum { CONTACTLAB_BODIES_APART = 16, CONTACTLAB_BODIES_TURNS = 17, CONTACTLAB_BODIES_RANGE = 18 };
+
+/* A body in SI units and in the frame of all vectors: mass, inverse of the inertia tensor about the centre of mass, row
+ * by row, and the vector from there to the contact. With mass 0 it is held: nothing moves or turns it. */
+typedef struct { double mass, inverse_inertia[9], arm[3]; } contactlab_rigid;
+
+/* Parts of the inverse mass, and of the slip over the speed, that are rounding; and of the determinant that is none. */
+#define CONTACTLAB_BODIES_ROUNDING 1e-12
+#define CONTACTLAB_BODIES_SINGULAR 1e-14
+
+static inline double contactlab_bodies_dot(const double *a, const double *b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline void contactlab_bodies_cross(const double *a, const double *b, double *out)
+{
+  out[0] = a[1] * b[2] - a[2] * b[1];
+  out[1] = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* Adds to v and w what an impulse at the contact makes, both masses divided by `unit`. */
+static inline void contactlab_bodies_push(const contactlab_rigid *body, const double *impulse, double unit, double *v,
+                                          double *w)
+{
+  double moment[3];
+  int k;
+  if (!(body->mass > 0)) return;
+  contactlab_bodies_cross(body->arm, impulse, moment);
+  for (k = 0; k < 3; ++k) {
+    v[k] += 1 / body->mass / unit * impulse[k];
+    w[k] += contactlab_bodies_dot(body->inverse_inertia + 3 * k, moment) / unit;
+  }
+}
+
+/* The inverse mass W in 1/kg times f: what the contact points gain over each other by an impulse f and its opposite. */
+static inline void contactlab_bodies_yield(const contactlab_rigid *const *bodies, const double *f, double *out)
+{
+  int i, k;
+  for (k = 0; k < 3; ++k) out[k] = 0;
+  for (i = 0; i < 2; ++i) {
+    double v[3] = {0, 0, 0}, w[3] = {0, 0, 0}, rim[3];
+    contactlab_bodies_push(bodies[i], f, 1, v, w);
+    contactlab_bodies_cross(w, bodies[i]->arm, rim);
+    for (k = 0; k < 3; ++k) out[k] += v[k] + rim[k];
+  }
+}
+
+/* kappa, the tangential over the normal stiffness, of Young's moduli and Poisson's ratios: 2 (1 - nu)/(2 - nu) for like
+ * bodies. Only the ratio of the moduli counts. */
+static inline double contactlab_bodies_stiffness(double young, double poisson, double other_young, double other_poisson)
+{
+  const double one = (1 + poisson) / young, other = (1 + other_poisson) / other_young;
+  return 2 * (one * (1 - poisson) + other * (1 - other_poisson)) / (one * (2 - poisson) + other * (2 - other_poisson));
+}
+
+/* Finds the line t along which slip stays, zero where nothing slips, and whether friction changes the approach. Returns
+ * a status. `pull` is the part of W n along the surface, `slip` that of the velocity. */
+static inline int contactlab_bodies_line(const contactlab_rigid *const *bodies, const double *n, double pressed,
+                                         const double *pull, const double *slip, double approach, double *t,
+                                         int *coupled)
+{
+  const double little = CONTACTLAB_BODIES_ROUNDING, size = sqrt(contactlab_bodies_dot(pull, pull));
+  const double slips = sqrt(contactlab_bodies_dot(slip, slip));
+  double across[3], yielded[3], along, any[3] = {0, 0, 0};
+  int k, least = 0;
+  for (k = 1; k < 3; ++k) least = fabs(n[k]) < fabs(n[least]) ? k : least;
+  any[least] = 1;
+  contactlab_bodies_cross(n, any, across); /* two tangents, for the mean tangential mobility */
+  contactlab_bodies_cross(across, n, any);
+  contactlab_bodies_yield(bodies, across, yielded);
+  along = contactlab_bodies_dot(yielded, across);
+  contactlab_bodies_yield(bodies, any, yielded);
+  along = 0.5 * (along + contactlab_bodies_dot(yielded, any)) / contactlab_bodies_dot(any, any);
+  *coupled = size > little * sqrt(pressed * along);
+  for (k = 0; k < 3; ++k) t[k] = 0;
+  if (!*coupled && !(slips > little * (fabs(approach) + slips))) return CONTACTLAB_IMPACT_DONE;
+  for (k = 0; k < 3; ++k) t[k] = *coupled ? pull[k] / size : slip[k] / slips;
+  contactlab_bodies_cross(n, t, across);
+  if (fabs(contactlab_bodies_dot(slip, across)) > little * (approach + fabs(contactlab_bodies_dot(slip, t))))
+    return CONTACTLAB_BODIES_TURNS;
+  contactlab_bodies_yield(bodies, t, yielded);
+  if (fabs(contactlab_bodies_dot(yielded, across)) > little * contactlab_bodies_dot(yielded, t))
+    return CONTACTLAB_BODIES_TURNS;
+  return CONTACTLAB_IMPACT_DONE;
+}
+
+/* Sets velocities and spins of two bodies to those after their elastic collision. SI units; vectors have three numbers
+ * in one frame.
+ *
+ * one, other       the bodies
+ * friction         coefficient, at least 0
+ * stiffness        kappa, from contactlab_bodies_stiffness; of round contacts the curvature does not count
+ * normal           from the first body into the other; any length
+ * velocity, spin   of the first body's centre of mass, in m/s and rad/s; other_velocity, other_spin of the other's
+ * left             what the impact leaves in the units of theory section 1, or null. It lasts left->time d/v, d the
+ *                  largest approach of Hertz's impact at the speed v, (15 m v^2/(16 E sqrt(R)))^0.4, m = 1/W_nn
+ *
+ * Returns a status: 0 is an answer, else nothing is changed. Of bodies whose centres are on the normal spin about it
+ * passes through. Masses may be of any size up to 1e130 kg. */
+static inline int contactlab_bodies_bounce(const contactlab_rigid *one, const contactlab_rigid *other, double friction,
+                                           double stiffness, const double *normal, double *velocity, double *spin,
+                                           double *other_velocity, double *other_spin, contactlab_impact *left)
+{
+  const contactlab_rigid *bodies[2];
+  const double *speeds[2], *turns[2];
+  contactlab_impact out = {-1, 0, 0, 2.9432751843247043, 1, 1, 0};
+  double n[3], t[3], slip[3] = {0, 0, 0}, pull[3], yielded[3], impulse[3], sum = 0;
+  double pressed, approach, size, drag = 0, mobility = 1, push;
+  int i, k, coupled, status;
+  bodies[0] = one;
+  bodies[1] = other;
+  speeds[0] = velocity;
+  speeds[1] = other_velocity;
+  turns[0] = spin;
+  turns[1] = other_spin;
+  for (i = 0; i < 2; ++i) {
+    double rim[3];
+    if (!(bodies[i]->mass >= 0 && bodies[i]->mass <= 1e130)) return CONTACTLAB_BODIES_RANGE;
+    contactlab_bodies_cross(turns[i], bodies[i]->arm, rim);
+    for (k = 0; k < 3; ++k) {
+      slip[k] += (i ? -1 : 1) * (speeds[i][k] + rim[k]);
+      sum += fabs(speeds[i][k]) + fabs(turns[i][k]) + fabs(bodies[i]->arm[k]);
+    }
+    for (k = 0; k < 9; ++k) sum += 1e-130 * fabs(bodies[i]->inverse_inertia[k]);
+  }
+  size = fmax(fabs(normal[0]), fmax(fabs(normal[1]), fabs(normal[2]))); /* squares may be no numbers */
+  for (k = 0; k < 3; ++k) n[k] = normal[k] / size;
+  size = sqrt(contactlab_bodies_dot(n, n));
+  for (k = 0; k < 3; ++k) n[k] /= size;
+  if (!(size > 0 && sum <= 1e60 && friction >= 0 && friction <= 1e60)) return CONTACTLAB_BODIES_RANGE;
+  if (!(stiffness >= 0.1 && stiffness <= 10)) return CONTACTLAB_BODIES_RANGE;
+  contactlab_bodies_yield(bodies, n, pull);
+  pressed = contactlab_bodies_dot(n, pull);
+  approach = contactlab_bodies_dot(n, slip);
+  if (!(pressed > 1e-200 && pressed < 1e200)) return CONTACTLAB_BODIES_RANGE;
+  if (!(approach > 1e-100)) return CONTACTLAB_BODIES_APART;
+  for (k = 0; k < 3; ++k) {
+    slip[k] -= approach * n[k];
+    pull[k] -= pressed * n[k];
+  }
+  push = -2 * approach;
+  for (k = 0; k < 3; ++k) t[k] = 0;
+  if (friction > 0) {
+    const double unit = friction * approach / stiffness; /* of psi */
+    double change, pulled = 0, psi1, chi;
+    status = contactlab_bodies_line(bodies, n, pressed, pull, slip, approach, t, &coupled);
+    if (status) return status;
+    contactlab_bodies_yield(bodies, t, yielded);
+    mobility = contactlab_bodies_dot(t, yielded) / pressed;
+    if (coupled) pulled = contactlab_bodies_dot(t, pull) / pressed;
+    if (contactlab_bodies_dot(t, t) > 0) {
+      if (!(mobility - pulled * pulled > CONTACTLAB_BODIES_SINGULAR * mobility)) return CONTACTLAB_BODIES_RANGE;
+      chi = 0.5 * stiffness * mobility;
+      psi1 = contactlab_bodies_dot(slip, t) / unit;
+      if (!coupled) psi1 = fmin(psi1, 4 * chi + 1); /* it slips throughout */
+      if (!(fabs(psi1) <= 1e100)) return CONTACTLAB_BODIES_RANGE;
+      status = contactlab_impact_follow(psi1, chi, friction * pulled, stiffness * pulled / friction,
+                                        CONTACTLAB_IMPACT_EXACT, 20000, &out);
+      if (status) return status;
+      change = out.change * unit;
+      push = approach * (out.rate - 1);
+      drag = (change - pulled * push) / (mobility - pulled * pulled);
+      push -= pulled * drag;
+    }
+  }
+  for (k = 0; k < 3; ++k) impulse[k] = push * n[k] + drag * t[k];
+  contactlab_bodies_push(one, impulse, pressed, velocity, spin);
+  for (k = 0; k < 3; ++k) impulse[k] = -impulse[k];
+  contactlab_bodies_push(other, impulse, pressed, other_velocity, other_spin);
+  if (left) *left = out;
+  return CONTACTLAB_IMPACT_DONE;
+}
+
+#endif
