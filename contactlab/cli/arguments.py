@@ -318,7 +318,6 @@ def add_columns(parser: argparse.ArgumentParser) -> None:
 
 
 def _columns(text: str) -> list[str]:
-    """Return the names of all columns."""
     return [name.strip() for name in text.split(",")]
 
 

@@ -75,7 +75,6 @@ def _draw(path: Path, benchmark: Benchmark, **look: Unpack[shared.Drawing]) -> b
 
 
 def _content(benchmark: Benchmark) -> dict[str, object]:
-    """Return the content of the JSON."""
     rows, orders = json_value(benchmark.rows), json_value(benchmark.orders)
     return {"rows": rows, "orders": orders, "complete": benchmark.complete}
 

@@ -51,5 +51,4 @@ def in_space(collision: Collision) -> str:
 
 
 def _vector(numbers: Array) -> str:
-    """Return a vector as text."""
     return f"({', '.join(f'{number + 0.0:.6g}' for number in numbers.tolist())})"

@@ -68,6 +68,5 @@ def draw_load_paths(path: Path, paths: Loops, **look: Unpack[Drawing]) -> None:
 
 
 def _labels(axes: Axes) -> list[str]:
-    """Return the labels of the legend."""
     labels: list[str] = axes.get_legend_handles_labels()[1]
     return labels

@@ -120,7 +120,6 @@ def _worst(item: ModelError) -> tuple[float, float]:
 
 
 def _content(result: Stability) -> dict[str, object]:
-    """Return the content of the JSON."""
     return {
         "outcomes": json_value(result.outcomes),
         "model_errors": json_value(result.models),

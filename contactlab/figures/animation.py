@@ -194,6 +194,7 @@ def _sequence(result: ImpactResult) -> list[Frame]:
 
 def _spin(spin: Real) -> str:
     """Return a spin in words, in rad/s."""
+    # + 0.0: a spin of -0 has no sign
     return f"{float(spin) + 0.0:.3g} rad/s".replace("-", "\N{MINUS SIGN}")
 
 

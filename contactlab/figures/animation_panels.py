@@ -28,6 +28,7 @@ from contactlab.outcome.result import ImpactResult
 FLIGHT = 2.2
 #: Dots along the side of the picture of the contact.
 DISC = 160
+#: Spokes by which the turning of the sphere is seen.
 SPOKES = 4
 
 

@@ -26,6 +26,7 @@ from contactlab.numeric.types import Array
 FILM = {"t": "s", "x": "m", "y": "m", "z": "m", "angle": "rad"}
 #: Other names of columns.
 ALSO = {"time": "t", "angle_deg": "angle", "rotation": "angle", "height": "y"}
+#: Standard gravity in m/s²; on the ground it differs from it by up to 0.3 %.
 GRAVITY = 9.80665
 #: Shares by which the flights may fall faster or slower before it is told, and before the film is
 #: refused.

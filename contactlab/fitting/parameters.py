@@ -237,7 +237,6 @@ def _choices(setup: Setup) -> dict[str, Callable[[], Parameter]]:
 
 
 def _option(kind: str, field: attrs.Attribute[object], value: float) -> LawOption:
-    """Return the parameter of an option."""
     least, most = _range(field.metadata.get("rule"), value)
     finite = math.isfinite(least) and math.isfinite(most)
     return LawOption(

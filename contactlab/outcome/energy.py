@@ -157,7 +157,7 @@ def _with_unbalanced(motion: Motion, scene: Scene, bound: Real, alone: Mask) -> 
     start: Any = books.start
     if scene.turns:  # a spin that friction left has no part in what is judged
         left = scene.energies(motion.normal_velocity, motion.slip_velocity_change)
-        start = np.where(motion.normal_spin_change == 0.0, left[0], start)[()]
+        start = np.where(motion.normal_spin_change == 0.0, left[0], start)[()]  # a number for one
     for where, sentence, numbers in (
         (alone & (speed > LARGEST_RESTITUTION * scene.normal_speed),
          "The bodies part {:.4g} times as fast as they met.",

@@ -257,7 +257,7 @@ class ImpactResult(Answer):
         target = self.scene.target
         if isinstance(target, Sphere):
             return momentum / target.mass
-        return None if target is None else 0.0 * momentum + 0.0
+        return None if target is None else 0.0 * momentum + 0.0  # no -0
 
     @property
     def normal_restitution(self) -> Real:

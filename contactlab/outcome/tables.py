@@ -282,7 +282,6 @@ def _contact(result: ImpactResult) -> list[Row]:
 
 
 def _energy(result: ImpactResult) -> list[Row]:
-    """Return the energy books."""
     energy = result.energy
     rows: list[Row] = [
         ["start", energy.start, "J"],

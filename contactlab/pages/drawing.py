@@ -61,7 +61,6 @@ def _surface(curved: bool) -> str:
 
 
 def _circle() -> str:
-    """Return the sphere."""
     return f"<circle cx='0' cy='{-SCALE:g}' r='{SCALE:g}' fill='#cfe3f1' stroke='black'/>"
 
 

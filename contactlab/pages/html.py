@@ -57,7 +57,6 @@ def one_impact(result: ImpactResult) -> str:
 
 
 def _cell(item: object, digits: int) -> str:
-    """Return a cell of a table."""
     if isinstance(item, str):
         return f"<td>{escape(item)}</td>"
     return f'<td class="number">{escape(number(item, digits=digits))}</td>'

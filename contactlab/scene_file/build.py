@@ -91,7 +91,6 @@ def _present(table: Table, keys: tuple[str, ...]) -> dict[str, Any]:
 
 
 def _material(table: Table) -> Material:
-    """Return the material of a body."""
     material = table.table("material", known=MATERIAL_KEYS)
     material.require("poisson_ratio", "for example 0.3")
     if material.has("shear_modulus") == material.has("young_modulus"):

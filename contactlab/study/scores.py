@@ -132,7 +132,7 @@ def scores(comparison: Comparison, simulations: dict[str, Simulation]) -> list[S
                 worst=float(difference[place]) if finite.any() else np.nan,
                 where=float(psi1[place]),
                 numerical_error=_largest(comparison.numerical_error(run.name)),
-                energy_made=max(_largest(made), 0.0) + 0.0,
+                energy_made=max(_largest(made), 0.0) + 0.0,  # no -0
                 pressed_force=pressed_force(law),
                 run_time_per_impact=run.run_time_per_impact,
             )

@@ -176,7 +176,6 @@ def _cost(comparison: Compared) -> str:
 
 
 def _with_unit(entry: str) -> str:
-    """Return the heading of an entry with its unit."""
     unit = entry_unit(entry)
     return entry if unit in ("1", "deg") else f"{entry} ({unit})"
 

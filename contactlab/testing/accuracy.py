@@ -18,6 +18,7 @@ from contactlab.testing.ways import at_resolution, fitting
 
 #: Numbers of steps over which the order is regressed.
 LADDER = (40, 80, 160, 320)
+#: By so much the observed order may lie below the declared one.
 ORDER_ROOM = 0.3
 #: Bound of the relative error of the sliding impulse: for integrators of first and of higher order.
 FIRST_ORDER, BETTER = 1e-3, 1e-6

@@ -8,6 +8,7 @@ from contactlab.contracts import SteppedTangentialLaw
 from contactlab.testing.check import WHOLE, check, within
 from contactlab.testing.load_paths import Bench, Path, continue_from, drive, slack, straight
 
+#: Normal load zeta at which the memory is tried, and steps of a leg.
 LEVEL = 0.8
 STEPS = 40
 #: Steps out of contact before the bodies meet again.

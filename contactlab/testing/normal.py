@@ -21,6 +21,7 @@ from contactlab.testing.units import ODD_UNITS, Units, in_units
 
 #: Steps to the largest approach, which is that of a Hertz impact.
 STEPS = 60
+#: Rounding of force, radius and overlap, over the largest of each.
 ROUNDING = 1e-9
 ENTRIES = NormalContact._fields
 #: Quantities in which the contacts of a batch differ, and the stride over approaches there.

@@ -289,6 +289,7 @@ class MindlinCap(SteppedTangentialLaw):
             return moved_in_plane(self, state, increment, before, after)
         stiffness: Any = state.modulus * after.radius
         cap = state.friction_coefficient * after.friction_load
+        # x + (x == 0) divides without a branch and without a warning, one impact and many alike
         compliance = (stiffness > 0.0) / (stiffness + (stiffness == 0.0))
         kept, moved = state.held, increment.displacement
         rescaled = self.form.endswith("rescaled")

@@ -160,5 +160,6 @@ def _way_out(coupling: Array, drag: Array, mu: float) -> Array:
     def excess(g: float) -> float:
         return float(np.linalg.norm(np.linalg.solve(mu * drag + g * np.eye(2), coupling)) - 1.0)
 
+    # brentq wants an absolute tolerance: this one leaves the root to the relative one
     g = float(brentq(excess, 0.0, float(np.linalg.norm(coupling)), xtol=1e-300, rtol=1e-14))
     return -np.asarray(np.linalg.solve(mu * drag + g * np.eye(2), coupling))

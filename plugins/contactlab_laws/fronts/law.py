@@ -200,7 +200,6 @@ def _solved(scene: Scene, where: Mask) -> tuple[WholeImpact, ...]:
 
 
 def _from_table(scene: Scene, psi1: Any, chi: Real, *, where: Mask) -> WholeImpact:
-    """Return the answer of the table."""
     magnitude: Any = np.maximum(1.0, abs(psi1)) if scene.shape else max(1.0, abs(psi1))
     return from_change(
         scene,

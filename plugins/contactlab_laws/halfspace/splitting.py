@@ -30,6 +30,7 @@ RELAXATION, DEPTH = 1.5, 8
 MIXED, MOST = 60, 1500
 #: Ridge of the least squares of the mixing, over the trace.
 RIDGE = 1e-13
+#: Least divisor: a traction of length 0, or a contact without a limit.
 TINY = 1e-300
 
 

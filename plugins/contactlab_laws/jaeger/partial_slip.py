@@ -51,6 +51,7 @@ class Scales(NamedTuple):
         pair, friction = scene.pair, scene.friction_coefficient
         peak = (4.0 / 3.0) * pair.effective_modulus * radius**3 / pair.radius
         slip = friction * radius**2 / (pair.stiffness_ratio * pair.radius)
+        # 0 without friction, by no branch: numbers and arrays alike
         per_slip = (friction > 0.0) / (slip + (friction == 0.0))
         return cls(radius, per_slip, friction * peak, peak, friction * peak * slip)
 

@@ -101,6 +101,7 @@ def _nearer(tried: list[tuple[Real, Real]], answer: Real) -> Real:
     if len(tried) > 1:
         (before, _), (last, first) = tried[-2:]
         change = last - before
+        # no division by zero where a rate no longer changes: it is found
         slope = np.minimum((answer - first) / (change + (change == 0.0)), 0.0)
         rate = last + (answer - last) / (1.0 - slope)
     tried.append((rate, answer))

@@ -288,7 +288,7 @@ def moved(
     held, size, old = before.deflection, before.size, None
     ratio: Any = 1.0
     if grows or splits:
-        reach = np.sqrt(edge + 0.0 * size)
+        reach = np.sqrt(edge + 0.0 * size)  # one for each size, where all impacts share an edge
         size, held, _ = fitted(size, held, reach, 1.0, spans=not splits, cross=drive.cross)
     squares = squared_places(size, len(held))
     least = profile(squares, before.edge, before.excess)

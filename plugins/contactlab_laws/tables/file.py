@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+#: Number of the format; files of another are refused.
 FORMAT = 3
 
 

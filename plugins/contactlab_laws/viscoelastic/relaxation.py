@@ -59,5 +59,4 @@ def _ratio(e: Array) -> Array:
 
 
 def _float(value: Array) -> Real:
-    """Return a scalar as a float."""
     return float(value) if np.ndim(value) == 0 else value

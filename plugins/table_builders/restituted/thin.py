@@ -139,7 +139,6 @@ def _tree(terms: Array) -> Iterator[int]:
 
 
 def _leaf(terms: Array) -> list[int]:
-    """Return the numbers of a leaf."""
     sizes = np.sort(np.abs(terms), axis=None)
     least = sizes[np.searchsorted(sizes.cumsum(), LEFT_OUT)]
     units = np.where(np.abs(terms) < least, 0.0, np.rint(terms / UNIT)).astype(int)
