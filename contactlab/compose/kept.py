@@ -9,6 +9,7 @@ import os
 import pickle
 from collections.abc import Callable, Iterator, Mapping
 from enum import Enum
+from functools import singledispatch
 from importlib import metadata
 from pathlib import Path
 from typing import IO, Any
@@ -196,27 +197,47 @@ def _modules(tree: Any) -> set[str]:
     return names
 
 
-def _feed(tree: Any, update: Callable[[bytes], None]) -> None:
-    """Pass the bytes of a tree to ``update``."""
+def _feed(tree: object, update: Callable[[bytes], None]) -> None:
+    """Pass the class and the bytes of a tree to ``update``."""
     update(type(tree).__qualname__.encode())
-    if attrs.has(type(tree)):
-        for field in attrs.fields(type(tree)):
-            update(field.name.encode())
-            _feed(getattr(tree, field.name), update)
-    elif isinstance(tree, np.ndarray) and tree.dtype != object:
-        update(f"{tree.dtype.str}{tree.shape}".encode())
-        update(np.ascontiguousarray(tree).tobytes())
-    elif isinstance(tree, Mapping):
-        for name, value in tree.items():
-            _feed(name, update)
-            _feed(value, update)
-    elif isinstance(tree, list | tuple):
-        for value in tree:
-            _feed(value, update)
-    elif tree is None or isinstance(tree, int | float | str | bytes | Enum):
-        update(repr(tree).encode())
-    else:
+    _content(tree, update)
+
+
+@singledispatch
+def _content(tree: object, update: Callable[[bytes], None]) -> None:
+    """Pass the bytes of a tree to ``update``."""
+    kind: Any = type(tree)
+    if not attrs.has(kind):
         update(pickle.dumps(tree))
+        return
+    for field in attrs.fields(kind):
+        update(field.name.encode())
+        _feed(getattr(tree, field.name), update)
+
+
+@_content.register
+def _(tree: np.ndarray, update: Callable[[bytes], None]) -> None:
+    update(f"{tree.dtype.str}{tree.shape}".encode())
+    update(pickle.dumps(tree) if tree.dtype == object else np.ascontiguousarray(tree).tobytes())
+
+
+@_content.register(Mapping)
+def _(tree: Mapping[object, object], update: Callable[[bytes], None]) -> None:
+    for name, value in tree.items():
+        _feed(name, update)
+        _feed(value, update)
+
+
+@_content.register(list)
+@_content.register(tuple)
+def _(tree: list[object] | tuple[object, ...], update: Callable[[bytes], None]) -> None:
+    for value in tree:
+        _feed(value, update)
+
+
+@_content.register
+def _(tree: int | float | str | bytes | Enum | None, update: Callable[[bytes], None]) -> None:
+    update(repr(tree).encode())
 
 
 def _checksum(arrays: Mapping[str, Column]) -> str:
