@@ -361,12 +361,12 @@ def measured(arguments: argparse.Namespace, file: SceneFile) -> SceneFile:
         if arguments.column or arguments.columns:
             raise ValueError("--column: names headings of --measured DATA.csv, which is missing")
         return file
-    from contactlab.fitting import measurements  # only for --measured
+    from contactlab.fitting import beside  # only for --measured
 
     table = read_impacts(arguments.measured, arguments)
     for note in table.notes:
         print(f"contactlab: note: {note}", file=sys.stderr)
-    return measurements.with_measurements(file, table)
+    return beside.with_measurements(file, table)
 
 
 def add_progress(parser: argparse.ArgumentParser) -> None:

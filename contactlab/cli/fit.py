@@ -25,6 +25,7 @@ from contactlab.compose.composition import DEFAULT_NORMAL
 from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.compose.simulation import Simulation
 from contactlab.fitting import Fit, Ranked, fit, in_order, rank, read_flight
+from contactlab.fitting.beside import as_met
 from contactlab.fitting.estimation import default_laws, parameters_of
 from contactlab.fitting.model import SOME_FRICTION
 from contactlab.fitting.parameters import RESTITUTION
@@ -95,6 +96,7 @@ def execute(arguments: argparse.Namespace) -> int:
         raise ValueError("--columns: names those of DATA.csv; of a film --column 'HEADING=x' does")
     else:
         impacts = read_flight(data, columns=dict(arguments.column))
+    impacts = as_met(impacts, path)
     defaults = {"friction_coefficient": SOME_FRICTION}
     allow = arguments.allow_code
     file = read_scene(path, entries=impacts.given, defaults=defaults, allow_code=allow)

@@ -50,8 +50,6 @@ ENDINGS = sorted(
 )
 #: Words in brackets that are units, known or not.
 UNITS = {unit for pair in CONVERSIONS for unit in pair} | set(SAME_UNITS) | {"%", "percent"}
-#: Velocity of the struck surface at the contact, along the normal into it and along the surface.
-STRUCK = ("target_normal_velocity", "target_tangential_velocity")
 #: Other names of the entry ``angle_deg``.
 ANGLES = ("angle", "incidence_angle", "incidence_angle_deg")
 ERROR = "_error"
@@ -101,8 +99,6 @@ def read_heading(text: str, columns: Mapping[str, str]) -> Heading:
         return Heading("given", "angle_deg", _factor(text, name, unit, "deg"))
     if name in ENTRIES and not error:
         return Heading("given", name, _factor(text, name, unit, entry_unit(name)))
-    if name in STRUCK and not error:
-        return Heading("given", name, _factor(text, name, unit, "m/s"))
     if unit == "deg" and not name.endswith("_deg"):
         name = f"{name}_deg"
     if name in MEASURABLE:
@@ -119,7 +115,7 @@ def read_heading(text: str, columns: Mapping[str, str]) -> Heading:
 
 def known_names() -> str:
     """Return the names that a heading may have."""
-    before = [*(entry for entry in ENTRIES if "." not in entry), *STRUCK]
+    before = [entry for entry in ENTRIES if "." not in entry]
     return f"before the impact: {', '.join(before)}; after it: {', '.join(MEASURABLE)}; "
 
 
@@ -135,7 +131,7 @@ def name_and_unit(text: str) -> tuple[bool, str, str]:
     unit = SAME_UNITS.get(words[0], words[0]) if words else ""
     error = name.endswith(ERROR)
     name = name.removesuffix(ERROR)
-    if name not in ENTRIES and name not in (*QUANTITIES, *ANGLES, *STRUCK):
+    if name not in ENTRIES and name not in (*QUANTITIES, *ANGLES):
         for ending, ending_unit in ENDINGS:
             if name.endswith(ending) and unit in ("", ending_unit):
                 name, unit = name.removesuffix(ending), ending_unit

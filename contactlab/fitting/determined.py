@@ -11,6 +11,7 @@ import numpy as np
 from contactlab.fitting.model import Model
 from contactlab.fitting.parameters import Parameter, in_words
 from contactlab.fitting.problem import Problem
+from contactlab.impact.body_contact import seen
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array
 
@@ -31,6 +32,7 @@ ANGLES_DEG = np.array(
     [1.0, 2.0, 4.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0]
 )
 INCIDENCES = np.array([0.1, 0.3, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0])
+ANGLES_IN_WORDS = "angles of incidence (degrees)"
 #: Candidate quantities for a further measurement, all dimensionless.
 CANDIDATES = ("normal_restitution", "tangential_restitution")
 #: Share of the greatest effect from which on a measurement is worth while.
@@ -135,7 +137,7 @@ def _undetermined(model: Model, values: Array, places: list[int], reason: str) -
 def _telling_apart(model: Model, both: Array) -> str:
     """Return a sentence on the measurement that differs most between two sets of values."""
     scene, x, words = _candidates(model.setup.scene)
-    name = CANDIDATES[1] if scene.sphere is not None else "psi2"
+    name = CANDIDATES[1] if words != "psi1" else "psi2"
     first, second = model.at(scene).predicted(both, [name])[name]
     best = int(np.argmax(np.abs(first - second)))
     return (
@@ -148,7 +150,7 @@ def _advised(model: Model, values: Array, place: int) -> str:
     """Return a sentence on the measurement that depends most on a parameter."""
     parameter = model.parameters[place]
     scene, x, words = _candidates(model.setup.scene)
-    names = CANDIDATES if scene.sphere is not None else ("normal_restitution", "psi2")
+    names = CANDIDATES if words != "psi1" else ("normal_restitution", "psi2")
     effects = {name: _effect(model.at(scene), values, place, name) for name in names}
     greatest = {name: float(np.max(effect)) for name, effect in effects.items()}
     name = max(greatest, key=lambda key: greatest[key])
@@ -164,6 +166,8 @@ def _advised(model: Model, values: Array, place: int) -> str:
 
 def _candidates(scene: Scene) -> tuple[Scene, Array, str]:
     """Return candidate impacts at the measured speed, their incidence, and its name."""
+    if scene.along is not None:
+        return _candidates_of_bodies(scene), ANGLES_DEG, ANGLES_IN_WORDS
     if scene.sphere is None:
         chi = float(np.median(scene.chi))
         return Scene.nondimensional(psi1=INCIDENCES, chi=chi), INCIDENCES, "psi1"
@@ -176,7 +180,20 @@ def _candidates(scene: Scene) -> tuple[Scene, Array, str]:
         tangential_velocity=float(np.median(speed)) * np.sin(angle),
         spin=0.0,
     )
-    return impacts, ANGLES_DEG, "angles of incidence (degrees)"
+    return impacts, ANGLES_DEG, ANGLES_IN_WORDS
+
+
+def _candidates_of_bodies(scene: Scene) -> Scene:
+    """Return candidate impacts of a body, on a surface at rest."""
+    before = np.hypot(*seen(scene, scene.encounter.velocity))
+    speed, angle = float(np.median(before)), np.radians(ANGLES_DEG)[:, None]
+    met = scene.encounter.take(0)
+    n = met.normal / np.linalg.norm(met.normal)
+    velocity = speed * (np.cos(angle) * n + np.sin(angle) * np.asarray(scene.along))
+    rest = dict.fromkeys(("spin", "target_velocity", "target_spin"), np.zeros(3))
+    met = attrs.evolve(met, velocity=velocity, **rest)
+    impacts: Scene = attrs.evolve(met.scene, along=scene.along)
+    return impacts
 
 
 def _effect(model: Model, values: Array, place: int, quantity: str) -> Array:

@@ -116,7 +116,7 @@ def cautions(problem: Problem, values: Array) -> list[str]:
     result = problem.model.impacts(values)
     said = result.cautions
     said = [*said, *_sheared(problem)]
-    if not any(text.startswith(LEFT_OUT) for text in said):
+    if not (any(text.startswith(LEFT_OUT) for text in said) and result.scene.planar):
         return said
     change = coupling_shift(result.scene) / np.asarray(result.scene.psi_scale)
     velocity = result.motion.slip_velocity_change + change

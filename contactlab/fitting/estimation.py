@@ -12,6 +12,7 @@ import numpy as np
 
 from contactlab.compose.simulation import Simulation
 from contactlab.fitting import determined, nearby, tabulated
+from contactlab.fitting.beside import as_met
 from contactlab.fitting.diagnosis import (
     Diagnosis,
     cautions,
@@ -113,7 +114,7 @@ def fit(
     if scene is None:
         raise refuse("scene", None, "must be given", "a Scene, or a TOML file with the bodies")
     samples = whole("bootstrap", bootstrap, least=0, most=100_000)
-    table = read_measurements(measurements).only(quantities)
+    table = as_met(read_measurements(measurements), scene).only(quantities)
     laws = simulation_of(simulation)
     if laws is None:
         laws = default_laws(parameters)
@@ -396,7 +397,7 @@ def rank(
     ValueError
         If the measurements cannot be read. The failure of a single law is in its ``refusal``.
     """
-    table = read_measurements(measurements)
+    table = as_met(read_measurements(measurements), scene)
     own = parameters_of(table, scene, simulations, parameters)
     ranked = []
     for done, (name, simulation) in enumerate(simulations.items(), start=1):

@@ -10,7 +10,6 @@ import numpy as np
 
 from contactlab.fitting.csv_columns import (
     ERROR,
-    STRUCK,
     UnknownHeadingError,
     known_names,
     read_columns,
@@ -18,16 +17,10 @@ from contactlab.fitting.csv_columns import (
     read_text,
 )
 from contactlab.fitting.foreign_headings import ForeignHeadingsError, foreign
-from contactlab.fitting.struck import to_the_struck_body
+from contactlab.fitting.struck import VELOCITY, to_the_struck_body
 from contactlab.numeric.checks import check_place, real, refuse
 from contactlab.numeric.types import Array
 from contactlab.scene_file import SceneFile
-from contactlab.scene_file.measured import Measured
-
-#: A column that varies by less than this share of its mean was kept constant.
-SAME = 0.1
-#: Points of a sweep over the measured range, for a file that has none.
-SWEPT = 61
 
 
 @attrs.frozen(kw_only=True, eq=False)
@@ -48,6 +41,8 @@ class Measurements:
         Path of the file; empty for a mapping.
     notes : tuple of str
         Sentences on impacts and columns that were left out.
+    struck : tuple of str
+        Columns of the struck body's motion, to whose surface velocities are relative.
     """
 
     given: Mapping[str, Array]
@@ -56,6 +51,7 @@ class Measurements:
     unused: tuple[str, ...] = ()
     source: str = ""
     notes: tuple[str, ...] = ()
+    struck: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         """Return the number of impacts."""
@@ -181,7 +177,8 @@ def _from_columns(
     given, measured, errors = parts.values()
     _leave_out_duplicates(given, measured, unused)
     _check_columns(given, measured, errors, notes)
-    if given.keys() & set(STRUCK):
+    struck = tuple(given.keys() & set(VELOCITY))
+    if struck:
         to_the_struck_body(given, measured, errors)
     if "angle_deg" in given and "normal_speed" in given:
         slope = np.tan(np.radians(given.pop("angle_deg")))
@@ -193,6 +190,7 @@ def _from_columns(
         unused=tuple(unused),
         source=source,
         notes=notes,
+        struck=struck,
     )
 
 
@@ -269,66 +267,4 @@ def _from_scene_file(file: SceneFile) -> Measurements:
         measured=measured,
         errors={},
         source=str(file.path),
-    )
-
-
-def with_measurements(file: SceneFile, table: Measurements) -> SceneFile:
-    """Return a scene file whose measured series are the columns of a table.
-
-    The one column that varies, such as the angle, is the abscissa. The scene provides all other
-    entries, such as the speed. A file without a sweep gets one over the measured range.
-
-    Raises
-    ------
-    ValueError
-        If more than one column varies, or the speeds differ.
-    """
-    moving = [name for name, values in table.given.items() if not _constant(values)]
-    if len(moving) != 1:
-        varying = f"these vary by more than {SAME:.0%}: {', '.join(moving) or 'none'}"
-        raise ValueError(f"{table.source}: one column must vary, such as angle_deg; {varying}")
-    _check_speed(file, table)
-    x = table.given[moving[0]]
-    if not file.varied:
-        varied = {moving[0]: np.linspace(float(np.min(x)), float(np.max(x)), SWEPT)}
-        file = attrs.evolve(file, varied=varied, scene=file.scene_at(**varied))
-    return attrs.evolve(
-        file, measured=tuple(_series(table, name, moving[0], x) for name in table.measured)
-    )
-
-
-def _constant(values: Array) -> bool:
-    return bool(np.ptp(values) <= SAME * abs(float(np.mean(values))))
-
-
-def _check_speed(file: SceneFile, table: Measurements) -> None:
-    """Refuse a scene at another speed than the measurement."""
-    scene = file.of_spheres
-    own = {
-        "speed": np.hypot(scene.normal_speed, scene.tangential_velocity),
-        "normal_speed": np.asarray(scene.normal_speed),
-    }
-    for name in own.keys() & table.given.keys() - file.varied.keys():
-        measured, in_scene = float(np.mean(table.given[name])), float(np.mean(own[name]))
-        if abs(measured - in_scene) > SAME * measured:
-            raise ValueError(
-                f"{table.source}: {name} is {measured:.4g} m/s, and {in_scene:.4g} m/s in "
-                f"{file.path}; write the measured one in the scene"
-            )
-
-
-def _series(table: Measurements, quantity: str, against: str, x: Array) -> Measured:
-    """Return the measured numbers of one quantity over the entry ``against``."""
-    values = table.measured[quantity]
-    present = np.isfinite(values)
-    errors = table.errors.get(quantity, np.zeros(len(values)))
-    return Measured(
-        quantity=quantity,
-        against=against,
-        x=x[present],
-        values=values[present],
-        x_error=np.zeros(int(present.sum())),
-        error=errors[present],
-        label="measured",
-        source=table.source or "the data",
     )

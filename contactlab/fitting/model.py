@@ -44,6 +44,8 @@ class Model:
     @tabled.default
     def _(self) -> bool:
         """Return whether the table of rebounds holds at all values of the parameters."""
+        if self.setup.scene.inverse_mass is not None:
+            return False
         kinds = {getattr(parameter, "kind", "normal") for parameter in self.parameters}
         return kinds <= {"normal"} and tabulated.holds(self.setup.simulation)
 
@@ -120,9 +122,10 @@ class Model:
 
     def _impacts(self, setup: Setup) -> ImpactResult:
         """Return the impacts of a scene under its laws."""
-        if self.tabled or setup.simulation is None:
+        if self.tabled:
             return tabulated.impacts(setup.scene, setup.simulation)
-        return uninterrupted(setup.simulation.sweep(setup.scene)).check()
+        laws = setup.simulation or Simulation()
+        return uninterrupted(laws.sweep(setup.scene)).check()
 
     def impacts(self, values: Array) -> ImpactResult:
         """Return the impacts, shape (n,), at values of the parameters, shape (parameters,)."""
@@ -151,8 +154,9 @@ class Model:
     def laws(self, values: Array) -> str:
         """Return the laws in words, with the values of the parameters."""
         simulation = self._setup([float(f"{value:.6g}") for value in values]).simulation
-        if simulation is None:
+        if simulation is None and self.tabled:
             return TABULATED
+        simulation = simulation or Simulation()
         if self.tabled:
             return f"{simulation.normal!r}, partial slip (tabulated rebound)"
         return f"{simulation.normal!r}, {simulation.tangential!r}, {simulation.integrator!r}"
@@ -164,7 +168,8 @@ def scene_of(scene: object, given: Mapping[str, Array], count: int) -> Scene:
         scene = scene.path
     if not isinstance(scene, Scene):
         defaults = {"friction_coefficient": SOME_FRICTION}
-        batch = read_scene(scene, entries=given, defaults=defaults).of_spheres  # type: ignore[arg-type]
+        file = read_scene(scene, entries=given, defaults=defaults)  # type: ignore[arg-type]
+        batch = file.scene if file.scene.along else file.of_spheres
     else:
         batch = attrs.evolve(scene, **_velocities(given, scene)) if given else scene
     if not batch.shape:

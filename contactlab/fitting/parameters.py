@@ -214,10 +214,11 @@ def laws_with(option: str) -> list[str]:
 def _choices(setup: Setup) -> dict[str, Callable[[], Parameter]]:
     """Return makers of the parameters that scene and laws have, by name."""
     choices: dict[str, Callable[[], Parameter]] = {}
-    if isinstance(setup.scene.sphere, Sphere):
+    if isinstance(setup.scene.sphere, Sphere) or setup.scene.along:
         choices["friction_coefficient"] = lambda: FrictionCoefficient(
             name="friction_coefficient", least=FRICTION[0], most=FRICTION[1], starts=FRICTION_STARTS
         )
+    if isinstance(setup.scene.sphere, Sphere):
         choices["stiffness_ratio"] = lambda: StiffnessRatio(
             name="stiffness_ratio",
             least=STIFFNESS[0],

@@ -71,13 +71,17 @@ def unlikely_numbers(problem: Problem, table: Measurements) -> list[str]:
 def restitutions(problem: Problem, table: Measurements) -> list[str]:
     """Return a sentence if the normal restitution is above 1, or below that of elastic laws."""
     scene, laws = problem.model.setup
+    if scene.inverse_mass is not None:
+        return []  # friction changes the approach too
     e = table.measured.get("normal_restitution")
     error = table.errors.get("normal_restitution")
     name = "normal_restitution"
     if e is None and (out := table.measured.get("rebound_normal_velocity")) is not None:
         name, error = "rebound_normal_velocity", table.errors.get("rebound_normal_velocity")
+        first: Any = scene.sphere if scene.encounter is None else scene.encounter.body
         speed = np.asarray(scene.normal_speed)
-        e, error = -out / speed, None if error is None else error / speed
+        change = speed * (scene.pair.normal_mass / first.mass)  # of a body that moves off, less
+        e, error = (speed - out) / change - 1.0, None if error is None else error / change
     if e is None:
         return []
     mean, off = _mean(e, error)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from contactlab.fitting.csv_columns import STRUCK
 from contactlab.numeric.types import Array
+from contactlab.scene_file.entries import STRUCK_KEYS
 
+#: Columns of the struck body: its velocity along the normal and along the surface, and its spin.
+VELOCITY, SPIN = STRUCK_KEYS[:2], STRUCK_KEYS[2]
 #: Rebound angles, of which one may be measured beside the rebound speed.
 ANGLES = {"rebound_angle_deg": np.pi / 180.0, "rebound_angle": 1.0}
 NORMAL, TANGENTIAL, SPEED = (
@@ -30,7 +32,7 @@ def to_the_struck_body(
     """
     normal, tangential = _velocity(given)
     zero = np.zeros_like(normal)
-    u_n, u_t = (given.pop(name, zero) for name in STRUCK)
+    u_n, u_t = (given.pop(name, zero) for name in VELOCITY)
     if "tangential_restitution" in measured:  # of the centre, in the frame of the laboratory
         _refuse_errors(errors, "tangential_restitution", TANGENTIAL)
         along = measured.pop("tangential_restitution") * tangential
@@ -60,7 +62,7 @@ def to_the_struck_body(
     if not np.all(normal > 0.0):
         row = int(np.argmin(normal))
         raise ValueError(
-            f"{STRUCK[0]}: in impact {row + 1} the bodies part, at {-normal[row]:.4g} m/s; it is "
+            f"{VELOCITY[0]}: in impact {row + 1} the bodies part, at {-normal[row]:.4g} m/s; it is "
             "positive away from the sphere, negative towards it"
         )
     given["speed"] = np.hypot(normal, tangential)
@@ -78,7 +80,7 @@ def _velocity(given: dict[str, Array]) -> tuple[Array, Array]:
         speed, angle = given.pop("speed"), np.radians(given.pop("angle_deg"))
         return speed * np.cos(angle), speed * np.sin(angle)
     raise ValueError(
-        f"{STRUCK[0]}: needs the velocity of the sphere as columns too: speed and angle_deg, or "
+        f"{VELOCITY[0]}: needs the velocity of the sphere as columns too: speed and angle_deg, or "
         "normal_speed and tangential_velocity; 0 for a ball at rest"
     )
 

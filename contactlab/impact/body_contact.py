@@ -428,6 +428,21 @@ def in_space(axes: Array, vectors: Array) -> Array:
     return np.asarray(np.einsum("...ia,...i->...a", axes, vectors))
 
 
+def seen(scene: Scene, velocity: Array) -> tuple[Any, Any]:
+    """Return the components along the normal and ``scene.along`` of a velocity of the first body.
+
+    They are relative to the surface that it strikes, in m/s, numbers for one impact.
+    """
+    encounter, axes, t = scene.encounter, scene.frame, np.asarray(scene.along)
+    assert axes is not None
+    n = axes[..., 0, :]
+    _, arm = arms(encounter, n)
+    struck = encounter.target_velocity + cross(encounter.target_spin, np.asarray(arm))
+    off = np.broadcast_to(velocity - struck, n.shape)
+    normal, along = np.einsum("...i,...i->...", off, n), off @ t
+    return (normal, along) if scene.shape else (float(normal), float(along))
+
+
 def pushed(
     encounter: _Meeting, axes: Array, impulse: Array, couple: Real = 0.0
 ) -> dict[str, Array]:

@@ -99,6 +99,9 @@ class Scene(Motions):
         The encounter in space, which cautions and velocities in space look at.
     frame : array, shape (..., 3, 3), optional
         n, t1 and t2 as rows, in the frame of an encounter of bodies that are no spheres.
+    along : tuple of three floats, optional
+        Unit tangent of an encounter along which tangential velocities of the first body, and its
+        spin about the normal cross this tangent, are numbers in results, as those of a sphere are.
     inverse_mass : array, shape (..., 3, 3), optional
         W in 1/kg, of a scene without sphere and target: the acceleration of the relative motion at
         the contact for unit forces along n, t1 and t2.
@@ -130,6 +133,9 @@ class Scene(Motions):
     unit_friction: bool = instance(bool, default=False, kw_only=True, repr=False)
     encounter: Any = attrs.field(default=None, eq=False, repr=False, kw_only=True)
     frame: Array | None = attrs.field(default=None, eq=False, repr=False, kw_only=True)
+    along: tuple[float, float, float] | None = attrs.field(
+        default=None, eq=False, repr=False, kw_only=True
+    )
     inverse_mass: Array | None = attrs.field(
         default=None, converter=_tensors, eq=key, repr=False, kw_only=True
     )
@@ -156,6 +162,7 @@ class Scene(Motions):
         unit_friction: bool = False,
         encounter: object = None,
         frame: Array | None = None,
+        along: tuple[float, float, float] | None = None,
         inverse_mass: Numbers | None = None,
         planar: bool = True,
     ) -> None: ...
@@ -700,6 +707,9 @@ UNITS: dict[str, str] = {
     "w1": "1",
     "chi_w": "1",
     "tilt_deg": "deg",
+    "target_normal_velocity": "m/s",
+    "target_tangential_velocity": "m/s",
+    "target_spin": "rad/s",
     "curvature_radius": "m",
     "cross_radius": "m",
     "young_modulus": "Pa",

@@ -65,12 +65,15 @@ class Column(NamedTuple):
     def of(self, result: WithScene) -> NDArray[np.float64]:
         """Return the values as an array of the scene's shape, NaN if the scene defines no value.
 
-        Of vectors the length is returned.
+        Of vectors the length is returned; of spins the part that makes slip along ``scene.along``.
         """
-        value = self.read(result)
+        value, scene = self.read(result), result.scene
         number = np.nan if value is None else value
-        if np.ndim(number) > len(result.scene.shape):
-            number = np.linalg.norm(number, axis=-1)
+        if np.ndim(number) > len(scene.shape):
+            if scene.along is not None and scene.frame is not None and self.unit == "rad/s":
+                number = np.sum(number * np.cross(scene.frame[..., 0, :], scene.along), axis=-1)
+            else:
+                number = np.linalg.norm(number, axis=-1)
         return np.array(np.broadcast_to(np.asarray(number, dtype=np.float64), result.scene.shape))
 
     def unit_in(self, scene: Scene) -> str:

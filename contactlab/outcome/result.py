@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 
 from contactlab.impact.bodies import Sphere
-from contactlab.impact.body_contact import pushed
+from contactlab.impact.body_contact import pushed, seen
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import equal, taken
 from contactlab.numeric.checks import Real
@@ -153,11 +153,12 @@ class ImpactResult(Answer):
     def rebound_normal_velocity(self) -> Any:
         """Velocity of the sphere along the normal, in m/s; negative: away from the target.
 
-        None for bodies that are no spheres: see ``velocity_in_space`` and ``normal_velocity``.
+        None for bodies that are no spheres, but where the scene has a tangent ``along``: see
+        ``velocity_in_space`` and ``normal_velocity``.
         """
         speed, pair = self.scene.normal_speed, self.scene.pair
         if self.scene.frame is not None:
-            return None
+            return None if self.scene.along is None else seen(self.scene, self.velocity_in_space)[0]
         share = 1.0 if self.scene.sphere is None else pair.normal_mass / self.scene.sphere.mass
         return speed - share * (speed - self.motion.normal_velocity)
 
@@ -166,7 +167,7 @@ class ImpactResult(Answer):
         """Tangential velocity of the sphere's centre in m/s; None for a non-dimensional scene."""
         sphere = self.scene.sphere
         if sphere is None:
-            return None
+            return None if self.scene.along is None else seen(self.scene, self.velocity_in_space)[1]
         share = self.scene.pair.tangential_mass / sphere.mass
         return self.scene.tangential_velocity + share * self.motion.slip_velocity_change
 
@@ -267,8 +268,10 @@ class ImpactResult(Answer):
     @property
     def tangential_restitution(self) -> Any:
         """e_t = centre's tangential velocity after over before; NaN where zero before."""
-        after = self.rebound_tangential_velocity
-        return None if after is None else _ratio(after, self.scene.tangential_velocity)
+        after, before = self.rebound_tangential_velocity, self.scene.tangential_velocity
+        if self.scene.along is not None:
+            before = seen(self.scene, self.scene.encounter.velocity)[1]
+        return None if after is None else _ratio(after, before)
 
     @property
     def slip_restitution(self) -> Real:
@@ -281,6 +284,9 @@ class ImpactResult(Answer):
     def incidence_angle(self) -> Real:
         """Angle of the centre's path from the normal before the impact, in rad."""
         scene = self.scene
+        if scene.along is not None:
+            normal, along = seen(scene, scene.encounter.velocity)
+            return _angle(along, normal)
         return _angle(scene.along_slip(scene.tangential_velocity), scene.normal_speed)
 
     @property

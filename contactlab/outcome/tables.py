@@ -140,6 +140,8 @@ def sweep_section(
 def _shown(scene: Scene, names: Sequence[str]) -> Iterator[Column]:
     """Yield the columns of a table that a scene has, without vectors in space."""
     known = {column.name for column in columns_of(scene)}
+    if scene.along is not None:
+        known |= {"tangential_restitution", "rebound_angle"}
     for name in names:
         column = QUANTITIES[name]
         if name.removesuffix("_deg") in known and not (scene.sphere is None and name in IN_SPACE):

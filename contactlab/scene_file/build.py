@@ -14,6 +14,7 @@ from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import real, refuse, unit_remedy
 from contactlab.numeric.types import Array
+from contactlab.scene_file import plane
 from contactlab.scene_file.bodies import rigid_body
 from contactlab.scene_file.entries import (
     BODY_SECTIONS,
@@ -24,10 +25,15 @@ from contactlab.scene_file.entries import (
     SPHERE_KEYS,
     SPHERE_VECTORS,
     SPIN_KEYS,
+    STRUCK_KEYS,
     UNITS,
     VECTOR_KEYS,
 )
 from contactlab.scene_file.table import MATERIAL_KEYS, Table
+
+#: Key of the tangent of an impact of bodies by speeds, its other keys, and vectors to the contact.
+ALONG, CONTACTS = "along", ("contact", "target_contact")
+PLANE_KEYS = (*IMPACT_KEYS[:-1], *STRUCK_KEYS, "normal", ALONG, *CONTACTS)
 
 
 def build_scene(
@@ -56,14 +62,22 @@ def build_scene(
         return table.make(Scene.nondimensional, **groups), None
     root = Table({name: document[name] for name in sections}, "", known=BODY_SECTIONS)
     if "body" in sections or _is_rigid(document.get("target")):
+        given = document.get("impact")
+        if isinstance(given, Mapping) and ALONG in given:
+            impact = root.table("impact", known=PLANE_KEYS)
+            bodies, contacts = _bodies(root, impact)
+            contacts |= {key: impact.content[key] for key in CONTACTS if impact.has(key)}
+            return plane.of_bodies(impact, bodies, contacts)
         _refuse_speeds(document.get("impact"))
         impact = root.table("impact", known=("friction_coefficient", *VECTOR_KEYS))
-        encounter = _of_bodies(root, impact)
+        bodies, contacts = _bodies(root, impact)
+        encounter = _encounter(impact, *bodies, **contacts)
         return impact.make(lambda: encounter.scene), encounter
     sphere = _sphere(root.table("sphere", known=SPHERE_KEYS))
     target = _target(root)
-    impact = root.table("impact", known=dict.fromkeys((*IMPACT_KEYS, *SPHERE_VECTORS)))
-    if impact.has(*(key for key in SPHERE_VECTORS if key != "spin")):
+    keys = dict.fromkeys((*IMPACT_KEYS, *SPHERE_VECTORS, *STRUCK_KEYS))
+    impact = root.table("impact", known=keys)
+    if impact.has("velocity", "normal", "target_velocity"):
         encounter = _encounter(impact, sphere, target)
         return impact.make(lambda: encounter.scene), encounter
     return _impact(impact, sphere, target), None
@@ -74,8 +88,8 @@ def _refuse_speeds(impact: object) -> None:
     for key in IMPACT_KEYS[1:]:
         if key not in VECTOR_KEYS and isinstance(impact, Mapping) and key in impact:
             raise ValueError(
-                f"impact.{key}: is for spheres; a body takes velocity = [x, y, z] in m/s, "
-                "and fit takes no [body]"
+                f"impact.{key}: is for spheres; a body takes velocity = [x, y, z] in m/s, or "
+                f"beside {key} the direction of the tangential velocity, along = [x, y, z]"
             )
 
 
@@ -131,12 +145,12 @@ def _is_rigid(target: object) -> bool:
     return isinstance(target, Mapping) and target.get("kind") == "body"
 
 
-def _of_bodies(root: Table, impact: Table) -> Encounter:
-    """Return the encounter of two bodies, at least one of which is no sphere."""
+def _bodies(root: Table, impact: Table) -> tuple[list[Any], dict[str, Any]]:
+    """Return two bodies, at least one of which is no sphere, and their contacts by name."""
     if root.has("body", "sphere") and root.has("body") == root.has("sphere"):
         raise ValueError("sphere: cannot stand beside [body]; leave out one or the other")
     normal = impact.require("normal", "an impact of bodies needs normal = [x, y, z]")
-    vectors: dict[str, Any] = {}
+    contacts: dict[str, Any] = {}
     bodies: list[Any] = []
     outward = np.asarray(real(impact.at("normal"), normal))
     for name, key, sense in (("body", "contact", 1.0), ("target", "target_contact", -1.0)):
@@ -151,8 +165,8 @@ def _of_bodies(root: Table, impact: Table) -> Encounter:
             if contact is not None:
                 if impact.has(key):
                     raise ValueError(f"{impact.at(key)}: follows from the shape; leave it out")
-                vectors[key] = contact
-    return _encounter(impact, *bodies, **vectors)
+                contacts[key] = contact
+    return bodies, contacts
 
 
 def _encounter(
@@ -162,8 +176,8 @@ def _encounter(
     **contacts: Array,
 ) -> Encounter:
     """Return the encounter of an impact with velocity and normal as vectors."""
-    plane = [key for key in IMPACT_KEYS if key not in ("friction_coefficient", "spin")]
-    rivals = [key for key in plane if table.has(key)]
+    in_plane = [key for key in IMPACT_KEYS if key not in ("friction_coefficient", "spin")]
+    rivals = [key for key in (*in_plane, *STRUCK_KEYS[:2]) if table.has(key)]
     if rivals:
         raise ValueError(
             f"{table.path}: has vectors, and {rivals[0]} too; velocity and normal define "
@@ -184,16 +198,15 @@ def _impact(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Scene:
     """Return the scene of an impact with polar or normal and tangential velocity."""
     numbers = _numbers(table, ("friction_coefficient",))
     numbers |= _present(table, ("spin", "normal_spin"))
-    polar, cartesian = ("speed", "angle_deg"), ("normal_speed", "tangential_velocity")
-    if table.has(*polar) and table.has(*cartesian):
-        raise ValueError(
-            "impact: has both speed/angle_deg and normal_speed/tangential_velocity; "
-            "leave out one pair"
-        )
-    if table.has(*polar):
-        unit = "give speed in m/s and angle_deg in degrees from the normal"
-        numbers |= {key: table.number(key, remedy=unit) for key in polar}
+    normal, along = plane.velocity(table)
+    if table.has(*STRUCK_KEYS):
+        if table.has("target_spin") and isinstance(target, HalfSpace):
+            raise ValueError(f"{table.at('target_spin')}: a half-space does not spin; leave it out")
+        surface = plane.surface(table, (-getattr(target, "radius", 0.0), 0.0))
+        numbers |= {"normal_speed": normal - surface[0], "tangential_velocity": along - surface[1]}
+        return table.make(Scene, sphere=sphere, target=target, **numbers)
+    if table.has(*plane.POLAR):
+        numbers |= {key: table.content[key] for key in plane.POLAR}
         return table.make(Scene.at_angle, sphere=sphere, target=target, **numbers)
-    table.require("normal_speed", "give it in m/s, or give speed and angle_deg")
-    numbers |= _present(table, cartesian)
+    numbers |= _present(table, plane.CARTESIAN)
     return table.make(Scene, sphere=sphere, target=target, **numbers)

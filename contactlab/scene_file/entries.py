@@ -15,6 +15,9 @@ IMPACT_KEYS = (
     "friction_coefficient", "speed", "angle_deg", "normal_speed", "tangential_velocity", "spin",
     "normal_spin",
 )  # fmt: skip
+#: Velocity of the struck body along the normal and along the surface, and its spin, where those of
+#: the first body are numbers too.
+STRUCK_KEYS = ("target_normal_velocity", "target_tangential_velocity", "target_spin")
 #: Keys of an encounter in space; ``spin`` is a vector if ``velocity`` is given.
 SPHERE_VECTORS = ("velocity", "normal", "spin", "target_velocity", "target_spin")
 VECTOR_KEYS = (*SPHERE_VECTORS, "contact", "target_contact")
@@ -51,12 +54,13 @@ BODY_SECTIONS = ("sphere", "body", "target", "impact")
 #: Units for the remedies in messages; the classes of bodies and scenes check the values.
 UNITS = SCENE_UNITS | {
     "velocity": "m/s", "normal": "1", "target_velocity": "m/s", "target_spin": "rad/s",
+    "target_normal_velocity": "m/s", "target_tangential_velocity": "m/s",
 }  # fmt: skip
 
 
 def _entries() -> dict[str, str]:
     """Return the dotted path of every entry that may vary, by short and by dotted name."""
-    names = {key: f"impact.{key}" for key in IMPACT_KEYS}
+    names = {key: f"impact.{key}" for key in (*IMPACT_KEYS, *STRUCK_KEYS)}
     scaled = (*NONDIMENSIONAL_KEYS, "coupling_number", *COUPLING_KEYS, "spin_inertia")
     names |= {key: f"nondimensional.{key}" for key in scaled} | {TILT: f"body.{TILT}"}
     dotted = [*names.values(), *(f"nondimensional.{key}" for key in ("spin", *GROUP_KEYS))]
@@ -132,5 +136,6 @@ def without_rivals(tables: Mapping[str, object], names: Iterable[str]) -> dict[s
     if isinstance(impact, Mapping):
         for form, rival in (forms, forms[::-1]):
             if set(form) & set(names):
-                kept["impact"] = {k: v for k, v in impact.items() if k not in rival}
+                impact = {k: v for k, v in impact.items() if k not in rival}
+                kept["impact"] = impact
     return kept

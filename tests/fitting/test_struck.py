@@ -4,9 +4,19 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import Encounter, HalfSpace, Material, Scene, Simulation, Sphere
+from contactlab import (
+    Encounter,
+    HalfSpace,
+    Material,
+    RigidBody,
+    Scene,
+    Simulation,
+    Sphere,
+    read_scene,
+)
 from contactlab.cli.main import main
 from contactlab.fitting import fit, read_measurements
+from contactlab.outcome.columns import QUANTITIES
 
 STEEL = Material.named("steel")
 BALL, OTHER = Sphere(0.01, STEEL), Sphere(0.025, STEEL, mass=0.04)
@@ -77,6 +87,114 @@ def test_a_ball_at_rest_struck_by_a_plate_is_a_ball_that_strikes_it():
     np.testing.assert_allclose(
         read.measured["rebound_tangential_velocity"], result.rebound_tangential_velocity
     )
+
+
+CLUB = """[sphere]
+radius = 0.0213
+mass = 0.0459
+material = {{ young_modulus = 80e6, poisson_ratio = 0.45 }}
+[target]
+kind = "body"
+mass = 0.2
+principal = [2.5e-4, 4e-4, 3e-4]
+curvature_radius = inf
+material = "mild steel"
+[impact]
+normal = [-1, 0, 0]
+along = [0, 0, 1]
+target_contact = {contact}
+{moving}
+"""
+FRAME = [[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]  # normal, along, normal x along
+FACE = np.array([[-40.0, -4.0], [-41.0, -8.0], [-38.0, -12.0], [-40.0, -17.0], [-39.0, -24.0]])
+
+
+def swings(contact, face, turning, ball_along=0.0):
+    """Return the ball of CLUB after swings at it, along normal and tangent."""
+    n, t, across = np.array(FRAME)
+    ball = Sphere(0.0213, Material(young_modulus=80e6, poisson_ratio=0.45), mass=0.0459)
+    club = RigidBody(
+        mass=0.2, inertia=np.diag([2.5e-4, 4e-4, 3e-4]), curvature_radius=np.inf,
+        material=Material.named("mild steel"),
+    )  # fmt: skip
+    met = Encounter(
+        ball, club, 0.31, normal=n, velocity=np.outer(ball_along * np.ones(len(face)), t),
+        target_contact=contact,
+        target_velocity=face[:, :1] * n + face[:, 1:] * t, target_spin=turning * across,
+    )  # fmt: skip
+    after = contactlab.collide(met)
+    return {
+        "rebound_normal_velocity (m/s)": after.velocity @ n,
+        "rebound_tangential_velocity (m/s)": after.velocity @ t,
+        "rebound_spin (rad/s)": after.spin @ across,
+    }
+
+
+@pytest.mark.parametrize(
+    ("contact", "turning", "told"),
+    [
+        pytest.param([0.02, *off], turning, told, marks=() if fast else pytest.mark.slow)
+        for off in ([0.0, 0.0], [0.0, 0.01], [0.015, 0.0])
+        for turning in (0.0, 60.0)
+        for told in ("columns", "file")
+        for fast in [off == [0.0, 0.01] and turning == 60.0]
+    ],
+)
+def test_friction_of_a_ball_that_a_club_strikes(contact, turning, told, tmp_path):
+    """In the middle of its face, below it, and off the toe, where slip turns; a club that turns."""
+    rest = np.zeros(len(FACE))
+    face, ball_along = FACE, rest
+    if told == "file":
+        face, ball_along = np.broadcast_to([-40.0, -2.0], FACE.shape), np.linspace(2.0, 20.0, 5)
+    after = swings(contact, face, turning, ball_along)
+    data = {"normal_speed (m/s)": rest, "tangential_velocity (m/s)": ball_along} | after
+    moving = ""
+    if told == "columns":
+        data |= dict(zip(
+            ("target_normal_velocity (m/s)", "target_tangential_velocity (m/s)",
+             "target_spin (rad/s)"),
+            (*face.T, rest + turning), strict=True,
+        ))  # fmt: skip
+    else:
+        moving = (
+            f"target_normal_velocity = {face[0, 0]}\n"
+            f"target_tangential_velocity = {face[0, 1]}\ntarget_spin = {turning}"
+        )
+    path = tmp_path / "club.toml"
+    path.write_text(CLUB.format(contact=contact, moving=moving), encoding="utf-8")
+    found = fit(data, path)
+    assert found["friction_coefficient"] == pytest.approx(0.31, rel=1e-6)
+    assert not [note for note in found.notes if "restitution" in note]
+    # rounding and scatter apart, the club of a file runs as that of the columns
+    if told == "file":
+        lab = f"normal_speed = 0.0\ntangential_velocity = {ball_along[0]}\n{moving}"
+        lab += "\nfriction_coefficient = 0.31"
+        path.write_text(CLUB.format(contact=contact, moving=lab), encoding="utf-8")
+        scene = read_scene(path).scene
+        result = Simulation().run(scene).check()
+        u = face[0] + turning * np.array([-contact[2], -contact[0]])
+        rebound = [result.rebound_normal_velocity + u[0], result.rebound_tangential_velocity + u[1]]
+        expected = [after[f"rebound_{way}_velocity (m/s)"][0] for way in ("normal", "tangential")]
+        assert rebound == pytest.approx(expected, rel=1e-9)
+        spin = QUANTITIES["rebound_spin"].of(result)
+        assert spin == pytest.approx(after["rebound_spin (rad/s)"][0], rel=1e-9)
+        e_t = (expected[1] - u[1]) / (ball_along[0] - u[1])
+        assert result.tangential_restitution == pytest.approx(e_t, rel=1e-9)
+
+
+def test_a_spinning_ball_that_is_struck():
+    """Its surface moves against its spin, as the convention of spins that add to slip has it."""
+    turning = columns(OTHER)
+    rim = TARGET_SPIN * OTHER.radius
+    data = dict(turning)
+    data["target_tangential_velocity (m/s)"] = turning["target_tangential_velocity (m/s)"] + rim
+    data["target_spin (rad/s)"] = np.full(len(ANGLES), TARGET_SPIN)
+    bodies = Scene(BALL, OTHER, friction_coefficient=0.5, normal_speed=1.0)
+    assert fit(data, bodies)["friction_coefficient"] == pytest.approx(
+        fit(turning, bodies)["friction_coefficient"], rel=1e-9
+    )
+    with pytest.raises(ValueError, match="does not spin"):
+        fit(data, Scene(BALL, HalfSpace(STEEL), friction_coefficient=0.5, normal_speed=1.0))
 
 
 MOVING = {"speed (m/s)": [2.0], "angle_deg": [20.0], "target_normal_velocity (m/s)": [-1.0]}

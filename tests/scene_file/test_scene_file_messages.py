@@ -39,7 +39,7 @@ SPACE = "impact.velocity = [1.0, 0.0, -1.0]\nimpact.normal = [0.0, 0.0, 1.0]\n"
         ([key for key in GOOD if key.startswith("impact")],
          "impact: is missing; add a table [impact] with friction_coefficient, speed, angle_deg, "
          "normal_speed, tangential_velocity, spin, normal_spin, velocity, normal, target_velocity, "
-         "target_spin"),
+         "target_spin, target_normal_velocity, target_tangential_velocity"),
         (["impact.speed"], "impact.speed: is missing; write speed = ...: give speed in m/s and "
          "angle_deg in degrees from the normal"),
         (["impact.speed", "impact.angle_deg"],
@@ -64,8 +64,7 @@ def test_what_is_missing(tmp_path, missing, words):
          f"sphere.raduis: is not a known key; did you mean 'radius'? known: {BODY}"),
         ("impact.xyz", "1", "impact.xyz: is not a known key; known: friction_coefficient, speed, "
          "angle_deg, normal_speed, tangential_velocity, spin, normal_spin, velocity, normal, "
-         "target_velocity, "
-         "target_spin"),
+         "target_velocity, target_spin, target_normal_velocity, target_tangential_velocity"),
         ("impact.density", "1", None),
         ("about.title", "3", "about.title = 3: must be text; put it in quotes"),
         ("about.titel", "3",

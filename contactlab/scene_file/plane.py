@@ -1,0 +1,102 @@
+"""Impacts by numbers along the normal and one tangent, of bodies that may both move."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.impact.encounter import Encounter
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import Real, real, refuse
+from contactlab.numeric.types import Array
+from contactlab.scene_file.entries import STRUCK_KEYS, UNITS
+from contactlab.scene_file.table import Table
+
+POLAR, CARTESIAN = ("speed", "angle_deg"), ("normal_speed", "tangential_velocity")
+
+
+def velocity(table: Table) -> tuple[Real, Real]:
+    """Return the velocity of the first body in m/s, along the normal and along the tangent."""
+    if table.has(*POLAR) and table.has(*CARTESIAN):
+        raise ValueError(
+            f"{table.path}: has both speed/angle_deg and normal_speed/tangential_velocity; "
+            "leave out one pair"
+        )
+    if table.has(*POLAR):
+        unit = "give speed in m/s and angle_deg in degrees from the normal"
+        speed, angle = (table.number(key, remedy=unit) for key in POLAR)
+        return speed * np.cos(np.radians(angle)), speed * np.sin(np.radians(angle))
+    table.require(CARTESIAN[0], "give it in m/s, or give speed and angle_deg")
+    normal, along = (_number(table, key) for key in CARTESIAN)
+    return normal, along
+
+
+def surface(table: Table, arm: tuple[Real, Real]) -> tuple[Real, Real]:
+    """Return the velocity of the struck surface at the contact in m/s, normal and tangential.
+
+    ``arm`` leads from the centre of mass of the struck body to the contact, in m along both.
+    """
+    normal, along, spin = (_number(table, key) for key in STRUCK_KEYS)
+    return normal - spin * arm[1], along + spin * arm[0]
+
+
+def of_bodies(
+    table: Table, bodies: list[Any], contacts: Mapping[str, Array]
+) -> tuple[Scene, Encounter]:
+    """Return scene and encounter of bodies by speeds along ``normal`` and ``along``."""
+    n, t = directions(table)
+    across = np.cross(n, t)
+
+    def vector(normal: Real, along: Real) -> Array:
+        whole = np.asarray(normal)[..., None] * n + np.asarray(along)[..., None] * t
+        return np.asarray(whole)
+
+    spin, target_spin = (
+        np.asarray(_number(table, key))[..., None] * across for key in ("spin", "target_spin")
+    )
+    friction = table.number("friction_coefficient", remedy="it has no unit")
+
+    before = vector(*velocity(table))
+    struck = vector(*(_number(table, key) for key in STRUCK_KEYS[:2]))
+
+    def met() -> Encounter:
+        return Encounter(
+            body=bodies[0],
+            target=bodies[1],
+            friction_coefficient=friction,
+            normal=n,
+            velocity=before,
+            spin=spin,
+            target_velocity=struck,
+            target_spin=target_spin,
+            **contacts,
+        )
+
+    encounter = table.make(met)
+    x, y, z = t.tolist()
+    return table.make(lambda: attrs.evolve(encounter.scene, along=(x, y, z))), encounter
+
+
+def directions(table: Table) -> tuple[Array, Array]:
+    """Return the unit normal, and the unit tangent nearest to ``along``."""
+    n, t = (
+        np.asarray(real(table.at(key), table.content[key]), dtype=float)
+        for key in ("normal", "along")
+    )
+    for key, vector in (("normal", n), ("along", t)):
+        if vector.shape != (3,):
+            raise refuse(table.at(key), vector.tolist(), "must be a vector of three numbers")
+    n = n / np.linalg.norm(n)
+    t = t - (t @ n) * n
+    if not np.linalg.norm(t) > 1e-6 * np.linalg.norm(table.content["along"]):
+        rule = "must not lie along the normal"
+        raise refuse(table.at("along"), table.content["along"], rule, "give a tangent")
+    return n, t / np.linalg.norm(t)
+
+
+def _number(table: Table, key: str) -> Any:
+    """Return the number of a key, 0 if it is not there."""
+    return table.number(key, remedy=f"give it in {UNITS[key]}") if table.has(key) else 0.0
