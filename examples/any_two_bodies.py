@@ -39,7 +39,7 @@ steel = Material.named("steel")
 down = np.array([0.0, 0.0, -1.0])
 
 
-def dropped(degrees):
+def dropped(degrees: float) -> Encounter:
     """Return a rod that falls at 1 m/s, tilted from the vertical."""
     angle = np.radians(degrees)
     axis = [np.sin(angle), 0.0, np.cos(angle)]
@@ -53,7 +53,8 @@ angles = np.arange(0, 76)
 ends = {}
 for name, simulation in (("elastic", None), ("rigid", Simulation(tangential="coulomb"))):
     points = []
-    for encounter in map(dropped, angles):
+    for tilt in angles:
+        encounter = dropped(float(tilt))
         after = collide(encounter, simulation).check()
         points.append(after.velocity + np.cross(after.spin, encounter.contact))
     ends[name] = np.array(points)

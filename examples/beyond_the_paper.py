@@ -11,29 +11,33 @@ Writes pictures named ``beyond-....png``, and one that moves, in the current fol
 
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.animation import FuncAnimation, PillowWriter
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from numpy.typing import NDArray
 
 from contactlab import Scene, Simulation, create, read_scene, rebound
 from contactlab.figures import law_style, name_curves, ordered_colours, save, save_figure, styled
 from contactlab.study import coupling_shift
 
+Array = NDArray[np.float64]
 CHI = 49.0 / 34.0
 PSI1 = r"local angle of incidence $\psi_1$"
 STUCK, TRACTION, SLIP = "#D9D9D9", "#0072B2", "#D55E00"
 
 
-def half_space(**options):
+def half_space(**options: Any) -> Simulation:
     """Return a simulation under the half-space law."""
     return Simulation(tangential=create("tangential.halfspace", **options))
 
 
-def coupled(psi1):
+def coupled(psi1: float | Array) -> Scene:
     """Return impacts of an elastic sphere on a rigid plane, nu = mu = 0.3."""
     return Scene.nondimensional(
         psi1=psi1, chi=CHI, poisson_ratio=0.3, coupling_number=0.784, friction_coefficient=0.3
@@ -71,7 +75,7 @@ for name, values in moved.items():
     print(f"{name}: {np.sqrt(np.mean(off**2)):.3f} from the finite elements (rms)")
 
 
-def draw_elements(axes):
+def draw_elements(axes: Axes) -> None:
     """Draw psi2 less the axisymmetric theory."""
     lines = []
     for number, values in enumerate(moved.values()):
@@ -103,7 +107,7 @@ disc = Simulation().run(coupled(0.98), history="fields").check()
 discs = disc.history.time / disc.motion.duration
 
 
-def disc_radius(row):
+def disc_radius(row: int) -> Any:
     """Return the radius of the stick region of axisymmetric theory over the largest radius."""
     at = int(np.abs(discs - time[row]).argmin())
     radius, stuck = (disc.history.fields[name][at] for name in ("radius", "stuck"))
@@ -111,12 +115,12 @@ def disc_radius(row):
     return radius[inside].max(initial=0.0) / disc.motion.maximum_radius
 
 
-def mirrored(values, sign=1.0):
+def mirrored(values: Array, sign: float = 1.0) -> Array:
     """Return values on the whole circle from those on its upper half."""
     return np.concatenate([sign * values[::-1], values])
 
 
-def arrows(fields, edge):
+def arrows(fields: dict[str, Array], edge: float) -> NDArray[np.bool_]:
     """Return where to draw arrows: some angles on a few circles, the same on both halves."""
     count, chosen = len(fields["angle"]), np.zeros(fields["pressure"].shape, dtype=bool)
     for share, upper in CIRCLES.items():
@@ -126,7 +130,7 @@ def arrows(fields, edge):
     return mirrored(chosen.astype(float)) > 0.0
 
 
-def from_above(axes, row):
+def from_above(axes: Axes, row: int) -> Any:
     """Draw stick region, traction and slip rate at one instant."""
     fields = {name: values[row] for name, values in history.fields.items()}
     before = {name: values[max(row - 2, 0)] for name, values in history.fields.items()}
@@ -189,7 +193,7 @@ with styled():
     FigureCanvasAgg(figure)
     stage = figure.add_subplot()
 
-    def show(row):
+    def show(row: int) -> None:
         """Draw one frame."""
         stage.clear()
         from_above(stage, row)
@@ -216,18 +220,18 @@ curves = {
 }
 
 
-def restitution(series):
+def restitution(series: Any) -> Any:
     """Return e_t from a measured series."""
     tangent = np.tan(np.radians(series.x))
     if series.quantity == "tangential_restitution":
         return series.values
     if series.quantity == "rebound_angle_deg":
         return 0.98 * np.tan(np.radians(series.values)) / tangent
-    scene = kharaz.scene_at(angle_deg=series.x)
+    scene: Any = kharaz.scene_at(angle_deg=series.x)
     return 1.0 - 0.4 * np.abs(series.values) * scene.sphere.radius / scene.tangential_velocity
 
 
-def draw_experiment(axes):
+def draw_experiment(axes: Axes) -> None:
     """Draw e_t of the three published series and of both theories."""
     lines = []
     for number, curve in enumerate(curves.values()):
@@ -260,7 +264,7 @@ print(f"coupling moves psi2 by 0.01 from Lambda = {np.nanmin(first):.2f} on, at 
 LEVELS = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
 
 
-def draw_map(axes):
+def draw_map(axes: Axes) -> None:
     """Draw the size of the shift of psi2 over psi1 and Lambda."""
     colours = ["white", *ordered_colours(len(LEVELS))[::-1]]
     filled = axes.contourf(*impact.values(), shift, levels=(0.0, *LEVELS, 9.0), colors=colours)

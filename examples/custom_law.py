@@ -7,22 +7,29 @@ right the rebounds. Writes ``custom_law.png`` in the current folder.
 """
 
 from pathlib import Path
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import attrs
 import numpy as np
 
 from contactlab import Material, Scene, Simulation, Sphere, load_path
-from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
+from contactlab.contracts import (
+    Increment,
+    NormalContact,
+    NormalMotion,
+    Real,
+    SteppedTangentialLaw,
+    TangentialResponse,
+)
 from contactlab.figures import law_style, name_curves, save
 
 
 class Spring(NamedTuple):
     """The state: two constants of the scene, and the force, which is all the memory."""
 
-    stiffness_per_radius: float
-    friction_coefficient: float
-    force: float
+    stiffness_per_radius: Real
+    friction_coefficient: Real
+    force: Real
 
 
 @attrs.frozen(kw_only=True)
@@ -42,11 +49,13 @@ class MindlinCap(SteppedTangentialLaw):
         "impact_books": "the books leave out what the spring loses as the contact shrinks",
     }
 
-    def start(self, scene, normal):
+    def start(self, scene: Scene, normal: NormalMotion) -> Spring:
         """Return the spring unloaded."""
         return Spring(scene.pair.tangential_stiffness(1.0), scene.friction_coefficient, 0.0)
 
-    def advance(self, state, increment, before, after):
+    def advance(
+        self, state: Any, increment: Increment, before: NormalContact, after: NormalContact
+    ) -> tuple[TangentialResponse, Any]:
         """Return the force after the step, and the work of friction in it."""
         stiffness = state.stiffness_per_radius * after.radius
         softness = 1.0 / (stiffness + (stiffness == 0.0))
@@ -63,7 +72,7 @@ class MindlinCap(SteppedTangentialLaw):
         work = np.maximum(0.5 * (held + force) * slip, 0.0)
         return TangentialResponse(force, work), state._replace(force=force)
 
-    def stiffness(self, scene, normal):
+    def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return the stiffness of the largest contact."""
         return scene.pair.tangential_stiffness(normal.maximum_radius)
 
@@ -85,7 +94,7 @@ if __name__ == "__main__":
         share = np.max(np.abs(result.energy.relative_imbalance))
         print(f"energy unaccounted for, {name}: {share:.2%}")
 
-    def draw(axes):
+    def draw(axes: Any) -> None:
         """Draw the law, force over displacement at a constant load, and the rebounds."""
         ball = Sphere(0.01, Material.named("steel"))
         pressed = Scene(ball, ball, 0.3, normal_speed=1.0)

@@ -13,11 +13,13 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from contactlab import Encounter, HalfSpace, Material, Simulation, collide, shapes
+from contactlab import Encounter, HalfSpace, Material, RigidBody, Simulation, collide, shapes
 from contactlab.figures import save_figure, styled
 
+Array = NDArray[np.float64]
 GRAVITY = 9.81
 LONG, SHORT = 0.03, 0.022
 BOUNCES = 10
@@ -26,31 +28,31 @@ wood = Material(young_modulus=10e9, poisson_ratio=0.3, density=700.0)
 floor = HalfSpace(Material.named("granite"))
 
 
-def touching(tilt):
+def touching(tilt: float) -> tuple[RigidBody, Array]:
     """Return body and contact vector of the egg, its long axis tilted from the vertical."""
     axis = np.array([np.sin(tilt), 0.0, np.cos(tilt)])
     axes = np.stack((axis, [0.0, 1.0, 0.0], np.cross(axis, [0.0, 1.0, 0.0])), axis=1)
     return shapes.ellipsoid(semi_axes=[LONG, SHORT, SHORT], material=wood, normal=down, axes=axes)
 
 
-def support(tilt):
+def support(tilt: float) -> float:
     """Return the height of the centre over the lowest point."""
-    return np.hypot(LONG * np.cos(tilt), SHORT * np.sin(tilt))
+    return float(np.hypot(LONG * np.cos(tilt), SHORT * np.sin(tilt)))
 
 
-def flown(height, velocity, tilt, turning):
+def flown(height: float, velocity: Array, tilt: float, turning: float) -> float:
     """Return the time of the next touch."""
 
-    def gap(time):
+    def gap(time: float) -> float:
         rise = height + (velocity[2] - 0.5 * GRAVITY * time) * time
-        return rise - support(tilt + turning * time)
+        return float(rise - support(tilt + turning * time))
 
     times = np.arange(1, 20_000) * 1e-4
     later = times[np.argmax([gap(time) < 0.0 for time in times])]
-    return brentq(gap, later - 1e-4, later, xtol=1e-14)
+    return float(brentq(gap, later - 1e-4, later, xtol=1e-14))
 
 
-def bounced(simulation=None):
+def bounced(simulation: Simulation | None = None) -> tuple[Array, list[tuple[float, float]]]:
     """Return rows of time, centre, tilt and energies of height, flight and spin; and speeds."""
     place, tilt = np.array([0.0, 0.0, 0.12]), np.radians(35.0)
     velocity, turning = np.zeros(3), 0.0

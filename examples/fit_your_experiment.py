@@ -45,8 +45,9 @@ laws = {
     "rigid": Simulation(tangential="coulomb", integrator="symplectic"),
 }
 ranked = rank(impacts, bodies, laws)
-for one in ranked:
-    friction = one.fit["friction_coefficient"]
-    rms = (one.fit.residuals["tangential_restitution"] ** 2).mean() ** 0.5
-    print(f"{one.name:14s} friction {friction:.4f}, rms residual {rms:.3f}")
-draw_fits(Path("fit.png"), {one.name: one.fit for one in ranked})
+fits = {one.name: one.fit for one in ranked if one.fit is not None}
+for name, one in fits.items():
+    friction = one["friction_coefficient"]
+    rms = (one.residuals["tangential_restitution"] ** 2).mean() ** 0.5
+    print(f"{name:14s} friction {friction:.4f}, rms residual {rms:.3f}")
+draw_fits(Path("fit.png"), fits)

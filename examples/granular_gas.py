@@ -18,11 +18,14 @@ import argparse
 from pathlib import Path
 
 import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
 
 import contactlab
 from contactlab import Encounter, Material, Simulation, Sphere, collide
 from contactlab.figures import law_style, save
 
+Array = NDArray[np.float64]
 RESTITUTION, FRICTION = 0.9, 1.0
 GRAIN = Sphere(0.5e-3, Material.named("soda-lime glass"))
 SPEED = 0.1  # m/s, of each component at first
@@ -37,16 +40,19 @@ LAWS = {
 }
 
 
-def normals(approach, random):
+def normals(approach: Array, random: np.random.Generator) -> Array:
     """Return normals, shape (n, 3), for impacts evenly over the disc that a pair shows."""
     ahead = approach / np.linalg.norm(approach, axis=1)[:, None]
     aside = np.cross(ahead, random.normal(size=ahead.shape))
     aside /= np.linalg.norm(aside, axis=1)[:, None]
     share = 0.998 * random.random(len(ahead))[:, None]  # the most grazing are left out
-    return np.sqrt(1.0 - share) * ahead + np.sqrt(share) * aside
+    normal: Array = np.sqrt(1.0 - share) * ahead + np.sqrt(share) * aside
+    return normal
 
 
-def cool(law, grains, collisions, seed=1976):
+def cool(
+    law: Simulation | None, grains: int, collisions: float, seed: int = 1976
+) -> tuple[Array, Array]:
     """Return collisions a grain, and the rotational over the translational temperature."""
     random = np.random.default_rng(seed)
     velocity, spin = random.normal(0.0, SPEED, (grains, 3)), np.zeros((grains, 3))
@@ -74,8 +80,8 @@ def cool(law, grains, collisions, seed=1976):
     return np.array(course), np.array(ratio)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+def main() -> None:
+    parser = argparse.ArgumentParser(description="Spin of a cooling granular gas.")
     parser.add_argument("--grains", type=int, default=2000)
     parser.add_argument("--collisions", type=float, default=40.0, help="a grain")
     asked = parser.parse_args()
@@ -85,7 +91,7 @@ def main():
         last = ratio[course > 0.75 * asked.collisions]
         print(f"{name:20s} {last.mean():.2f} ± {last.std():.2f}")
 
-    def draw(axes):
+    def draw(axes: Axes) -> None:
         """Draw the ratio over the collisions, each curve with its name."""
         for number, (name, (course, ratio)) in enumerate(gases.items()):
             look = law_style(number)

@@ -9,13 +9,21 @@ Writes ``law_in_five_minutes.png`` in the current folder.
 """
 
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import attrs
 import numpy as np
 
 from contactlab import Scene, Simulation
-from contactlab.contracts import POSITIVE, SteppedTangentialLaw, TangentialResponse, quantity
+from contactlab.contracts import (
+    POSITIVE,
+    Increment,
+    NormalContact,
+    NormalMotion,
+    SteppedTangentialLaw,
+    TangentialResponse,
+    quantity,
+)
 from contactlab.figures import name_curves, ordered_colours, save
 from contactlab.study import compare
 
@@ -28,11 +36,13 @@ class Smoothed(SteppedTangentialLaw):
 
     share: float = quantity("1", rule=POSITIVE, default=0.1)
 
-    def start(self, scene, normal):
+    def start(self, scene: Scene, normal: NormalMotion) -> Any:
         """Return friction, v0 and the force so far."""
         return scene.friction_coefficient, self.share * scene.normal_speed, 0.0
 
-    def advance(self, state, increment, before, after):
+    def advance(
+        self, state: Any, increment: Increment, before: NormalContact, after: NormalContact
+    ) -> tuple[TangentialResponse, Any]:
         """Return the force after the step, and the work of friction in it."""
         friction, scale, held = state
         force = friction * increment.friction_load * np.tanh(increment.velocity / scale)
@@ -54,7 +64,7 @@ for name in compared.names[1:]:
     print(f"{name:30s} {np.sqrt(np.mean(error**2)):15.2f} {np.abs(error).max():9.2f}")
 
 
-def draw(axes):
+def draw(axes: Any) -> None:
     """Draw the law, and psi2 over the angle, each curve with its name."""
     law, rebound = axes[0]
     speed = np.linspace(-3.0, 3.0, 300)

@@ -6,6 +6,7 @@ Writes ``law_swap.png`` in the current folder: what the three say of all angles.
 from pathlib import Path
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from contactlab import Scene, Simulation
 from contactlab.figures import law_style, name_curves, save
@@ -22,7 +23,7 @@ for law in ("annulus", "coulomb", "frictionless"):
     curves[law] = simulation.sweep(all_angles).check().psi2
 
 
-def draw(axes):
+def draw(axes: Axes) -> None:
     """Draw the rebound under each law."""
     lines = []
     for number, psi2 in enumerate(curves.values()):

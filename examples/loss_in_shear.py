@@ -11,6 +11,7 @@ Writes ``loss_in_shear.png`` in the current folder.
 from pathlib import Path
 
 import numpy as np
+from matplotlib.axes import Axes
 
 import contactlab
 from contactlab import Scene, Simulation
@@ -34,7 +35,7 @@ for name, values in curves.items():
     print(f"{name:23s} at psi1 = 1: {values[40]:5.2f}, at most {values.max():.2f}")
 
 
-def draw(axes):
+def draw(axes: Axes) -> None:
     """Draw the tangential restitution over psi1."""
     lines = []
     for number, values in enumerate(curves.values()):

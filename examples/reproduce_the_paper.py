@@ -8,6 +8,7 @@ The cells begin with ``# %%``, so that editors run them one by one. Writes ``fig
 # The laws are the paper's own: Hertz contact, annuli that stick or slip, even steps in time.
 import functools
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -21,12 +22,12 @@ paper = Simulation(
 )
 
 
-def numbers(figure):
+def numbers(figure: int) -> Any:
     """Return the curves of a figure of the paper."""
     return paper_data()[figure](paper)
 
 
-def drawn(data):
+def drawn(data: Any) -> Any:
     """Return the picture of a figure, which a notebook shows below its cell."""
     return save(Path(f"figure-{data.number}.png"), functools.partial(draw_paper, data=data))
 

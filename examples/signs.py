@@ -10,6 +10,7 @@ Writes ``signs.png`` in the current folder.
 """
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -18,6 +19,7 @@ from matplotlib.patches import Arc, Circle
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
 from contactlab.figures import save_figure, styled
 
+Point = tuple[float, float]
 RADIUS, BLUE, RED = 0.01, "#0072B2", "#D55E00"
 pmma = Material.named("pmma")
 bodies = Sphere(RADIUS, pmma), HalfSpace(pmma)
@@ -31,14 +33,14 @@ rolling = Scene(*bodies, 0.5, normal_speed=1.0, tangential_velocity=0.9, spin=-0
 print(f"rolling to the right: spin {rolling.spin:.0f} rad/s, slip {rolling.slip_velocity:.2f} m/s")
 
 
-def arrow(axes, start, vector, colour):
+def arrow(axes: Any, start: Point, vector: tuple[Any, Any], colour: str) -> None:
     """Draw an arrow."""
     tip = np.add(start, vector)
     look = {"arrowstyle": "-|>", "color": colour, "lw": 1.8, "shrinkA": 0.0, "shrinkB": 0.0}
     axes.annotate("", tip, start, arrowprops=look)
 
 
-def turning(axes, centre, spin, colour):
+def turning(axes: Any, centre: Point, spin: float, colour: str) -> None:
     """Draw a spin as an arc with an arrow head: anticlockwise if positive."""
     first, last = (20.0, 160.0) if spin > 0.0 else (160.0, 20.0)
     axes.add_patch(Arc(centre, 1.2, 1.2, theta1=20.0, theta2=160.0, color=colour, lw=1.8))

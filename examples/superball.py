@@ -11,6 +11,7 @@ Writes ``superball.png`` in the current folder.
 from pathlib import Path
 
 import numpy as np
+from matplotlib.axes import Axes
 
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Sphere
@@ -26,7 +27,7 @@ print(f"the contact point comes back with at most {-ratio[best]:.2f} of its velo
 print(f"at psi1 = {psi1[best]:.2f}; Garwin's ball has 1 at every angle")
 
 
-def draw(axes):
+def draw(axes: Axes) -> None:
     """Draw the slip velocity after over before."""
     curves = {
         "elastic rubber": ratio,

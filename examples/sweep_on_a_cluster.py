@@ -8,9 +8,11 @@ name changes elsewhere: `dask_jobqueue.SLURMCluster`, say.
 """
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from dask.distributed import Client, LocalCluster
+from matplotlib.axes import Axes
 
 import contactlab
 from contactlab.figures import name_curves, ordered_colours, save
@@ -19,8 +21,9 @@ from contactlab.figures import name_curves, ordered_colours, save
 def main() -> None:
     grid = contactlab.Scene.grid(chi=[0.8, 1.0, 1.2, 1.4, 1.6], psi1=np.linspace(0.0, 6.0, 400))
     simulation = contactlab.Simulation(tangential="springs")
+    here: dict[str, Any] = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
     with (
-        LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        LocalCluster(**here) as cluster,
         Client(cluster) as client,
     ):
         result = simulation.sweep(grid, executor=client.get_executor()).check()
@@ -29,9 +32,9 @@ def main() -> None:
     for chi in psi2.chi.values:
         least = psi2.sel(chi=chi).min()
         print(f"chi = {chi:.1f}: least psi2 = {float(least):.3f}")
-    here = simulation.sweep(grid)
+    alone = simulation.sweep(grid)
 
-    def draw(axes):
+    def draw(axes: Axes) -> None:
         """Draw psi2 over psi1, each curve with its chi."""
         lines = []
         for chi, colour in zip(psi2.chi.values, ordered_colours(len(psi2.chi)), strict=True):
@@ -46,7 +49,7 @@ def main() -> None:
         axes.text(0.03, 0.04, "at each curve: inertia ratio $\\chi$", transform=axes.transAxes)
 
     save(Path("sweep_on_a_cluster.png"), draw)
-    print(f"the same to the last bit as here: {np.array_equal(here.psi2, result.psi2)}")
+    print(f"the same to the last bit as here: {np.array_equal(alone.psi2, result.psi2)}")
 
 
 if __name__ == "__main__":  # processes of the cluster import this file

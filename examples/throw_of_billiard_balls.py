@@ -18,26 +18,29 @@ Writes ``throw_of_billiard_balls.png`` in the current folder.
 from pathlib import Path
 
 import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
 
 from contactlab import Encounter, Material, Sphere, collide
 from contactlab.figures import ordered_colours, save
 
+Array = NDArray[np.float64]
 BALL = Sphere(0.028575, Material.named("phenolic resin"))
 SPEEDS = {0.45: "slow, 0.45 m/s", 1.34: "medium, 1.34 m/s", 3.1: "fast, 3.1 m/s"}
 CUTS = np.radians(np.linspace(0.5, 75.0, 150))
 
 
-def friction(sliding):
+def friction(sliding: Array) -> Array:
     """Return mu at a sliding speed in m/s, by technical proof A.28."""
     return 9.951e-3 + 0.108 * np.exp(-1.088 * sliding)
 
 
-def no_slip(cut, mu):
+def no_slip(cut: Array, mu: Array) -> Array:
     """Return the throw by the published formula, in degrees."""
     return np.degrees(np.arctan(np.minimum(mu, np.tan(cut) / 7.0)))
 
 
-def elastic(cut, speed):
+def elastic(cut: Array, speed: float) -> Array:
     """Return the throw of elastic balls, in degrees."""
     normal = np.stack((np.cos(cut), np.sin(cut), 0.0 * cut), axis=-1)
     velocity = np.broadcast_to([speed, 0.0, 0.0], normal.shape)
@@ -47,7 +50,7 @@ def elastic(cut, speed):
     return np.degrees(cut - direction)
 
 
-def draw(axes):
+def draw(axes: Axes) -> None:
     """Draw both throws over the cut angle, the elastic one solid."""
     degrees = np.degrees(CUTS)
     for (speed, name), colour in zip(SPEEDS.items(), ordered_colours(3), strict=True):

@@ -10,21 +10,32 @@ Writes ``toe_shot.png`` in the current folder.
 """
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from contactlab import Encounter, Material, RigidBody, Simulation, Sphere, collide, create
+from contactlab import (
+    Collision,
+    Encounter,
+    Material,
+    RigidBody,
+    Simulation,
+    Sphere,
+    collide,
+    create,
+)
 from contactlab.figures import save_figure, styled
 
 SPEED = 45.0  # m/s, of the head, along x; z is up, and the toe lies at negative y
 LOFT = np.radians(10.5)
 BULGE = 0.30  # m, radius of the face
+RADIUS = 0.02134  # m, of the ball
 DEPTH = 0.035  # m, from the centre of mass to the face
 
 rubber = Material(young_modulus=1.5e8, poisson_ratio=0.45)
-ball = Sphere(0.02134, rubber, mass=0.0459)
+ball = Sphere(RADIUS, rubber, mass=0.0459)
 head = RigidBody(
     mass=0.2,
     principal=[2.7e-4, 3.0e-4, 4.8e-4],
@@ -33,7 +44,7 @@ head = RigidBody(
 )
 
 
-def shot(off, simulation):
+def shot(off: float, simulation: Simulation) -> Collision:
     """Return the collision of a ball hit ``off`` m towards the toe."""
     turned = off / BULGE
     face = np.array([np.cos(turned), -np.sin(turned), 0.0])
@@ -81,9 +92,9 @@ wide = shot(0.015, lossy).result.motion.maximum_radius / ball.radius
 print(f"contact radius {wide:.2f} of the ball's")
 
 
-def from_above(axes):
+def from_above(axes: Any) -> None:
     """Draw head, face and ball from above, 20 mm off; upwards is the target."""
-    radius, off, bulge = 1e3 * ball.radius, 20.0, 1e3 * BULGE
+    radius, off, bulge = 1e3 * RADIUS, 20.0, 1e3 * BULGE
     turn = np.linspace(-0.19, 0.19, 41)
     face = bulge * np.sin(turn), bulge * (np.cos(turn) - 1.0)
     back = np.linspace(0.0, np.pi, 41)
@@ -92,7 +103,7 @@ def from_above(axes):
     axes.plot(*face, color="0.3", linewidth=2.0)
     normal = np.array([off, np.sqrt(bulge**2 - off**2)]) / bulge
     centre = np.array([off, bulge * (normal[1] - 1.0)]) + radius * normal
-    axes.add_patch(Circle(centre, radius, facecolor="white", edgecolor="black"))
+    axes.add_patch(Circle((centre[0], centre[1]), radius, facecolor="white", edgecolor="black"))
     arrow = {"arrowstyle": "-|>", "linewidth": 1.4, "shrinkA": 0, "shrinkB": 0}
     start = np.radians(np.interp(off, 1e3 * places, found["viscoelastic"][:, 0]))
     leaves = np.array([np.sin(start), np.cos(start)])

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from abc import ABC
-from collections.abc import Mapping
-from typing import ClassVar
+from types import MappingProxyType
+from typing import Any, ClassVar
 
 from contactlab.impact.scene import Scene
 
@@ -43,8 +43,8 @@ class Law(ABC):
        value raises a ``ValueError`` that names the parameter. A ``quantity`` of a law is one
        number and refuses arrays (``plain_options``).
     6. ``expected_failures`` maps the checks of ``contactlab.testing`` that the law fails by
-       its nature to the reasons. It is a class variable, or a property if it depends on
-       parameters.
+       its nature to the reasons. It is a class variable; one that depends on parameters is
+       declared ``ClassVar[Any]``, and is a ``property`` of a function.
     7. Arrays passed to a law are read-only; writing to them raises an error.
     8. ``elliptic`` says that the law holds on an elliptic contact, of which ``Pair`` has the radius
        of the circle as stiff, and G* along t1; a law of vectors has G* along t2 too,
@@ -61,11 +61,8 @@ class Law(ABC):
     resolution: ClassVar[str | None] = None
     plain_options: ClassVar[bool] = True
     elliptic: ClassVar[bool] = False
-
-    @property
-    def expected_failures(self) -> Mapping[str, str]:
-        """Checks that the law fails by its nature, mapped to reasons; empty by default."""
-        return {}
+    #: A mapping of str to str; a checker would refuse a law with a dict of them.
+    expected_failures: ClassVar[Any] = MappingProxyType({})
 
     def refuses(self, other: Law) -> str | None:
         """Return why this law does not run beside ``other``; None, the default, if it does.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import attrs
 import numpy as np
@@ -24,8 +24,14 @@ from contactlab.outcome.plan import Plan
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from contactlab.figures.style import Width
+
+    class OwnAxes(Axes):
+        """Axes of a new figure, and not of a part of one."""
+
+        figure: Figure
 
 
 @attributes_told
@@ -308,6 +314,19 @@ class ImpactResult(Answer):
         checked = not unchecked if isinstance(unchecked, bool) else ~unchecked
         return ledger(self.scene, self.motion, checked)
 
+    @overload
+    def plot(
+        self, x: str | None = ..., y: str | None = ..., *, axes: Axes, width: Width | None = ...
+    ) -> Axes: ...
+    @overload
+    def plot(
+        self,
+        x: str | None = ...,
+        y: str | None = ...,
+        *,
+        axes: None = ...,
+        width: Width | None = ...,
+    ) -> OwnAxes: ...
     def plot(
         self,
         x: str | None = None,

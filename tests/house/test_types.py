@@ -1,11 +1,75 @@
 """Types say the truth: to readers of a signature, and to the type checkers of users."""
 
 import inspect
+import re
+import subprocess
+import sys
 
 import pytest
 
 import contactlab
+from contactlab.cli.guide import PAGES, text
 from contactlab.compose.registry import REGISTRY
+from tests.present import ROOT, needs_sources
+
+BLOCKS = re.compile(r"```python\n(.*?)```", re.DOTALL)
+#: Both checkers as a user runs them. Functions of dask have no types.
+CHECKERS = {
+    "mypy": (
+        "-m", "mypy", "--strict", "--no-error-summary", "--no-pretty", "--hide-error-context",
+        "--untyped-calls-exclude=dask", "--untyped-calls-exclude=distributed",
+    ),
+    "pyright": ("-m", "pyright", "--pythonpath", sys.executable),
+}  # fmt: skip
+ERROR = re.compile(r"(\w+)\.py:(\d+)(?::\d+)?(?: -)?:? error: ")
+#: A program of a user: a checker must refuse the lines that end with "# refused", and no other.
+PROGRAM = """
+from typing import assert_type
+
+import numpy as np
+from numpy.typing import NDArray
+
+import contactlab as cl
+from contactlab import Encounter, HalfSpace, Material, Scene, Simulation, Sphere, collide, rebound
+
+Array = NDArray[np.float64]
+steel = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850)
+ball, plane = Sphere(0.01, steel), HalfSpace(steel)
+scene = Scene.at_angle(ball, plane, friction_coefficient=0.2, speed=1.0, angle_deg=30, spin=20.0)
+simulation = Simulation(normal="hertz", tangential="springs")
+result = simulation.run(scene).check()
+assert_type(result, cl.ImpactResult)
+assert_type(rebound(1.2, 1.44), float)
+assert_type(rebound(1, 1.44, restitution=np.float32(0.9)), float)
+assert_type(rebound(np.linspace(0, 4, 5), 1.44), Array)
+assert_type(rebound([1, 2], 1.44), Array)
+assert_type(rebound(1.2, (1.44, 1.2)), Array)
+assert_type(rebound(1.2, 1.44, restitution=[0.9, 0.8]), Array)
+assert_type(rebound(1.2, 1.44, derivatives=True), tuple[float, float, float])
+assert_type(rebound(1.2, 1.44, derivatives=True, restitution=0.9)[3], float)
+assert_type(rebound([1.2], 1.44, derivatives=True), tuple[Array, Array, Array])
+met = Encounter(ball, plane, 0.1, normal=[1, 0, 0], velocity=[2, 0, 0])
+assert_type(collide(met).velocity, Array)
+Encounter(ball, plane, [0.1, 0.2], normal=(1, 0, 0), velocity=np.array([2, 0, 0]))
+collide(met, restitution=lambda speed: 1 - 0.1 * speed)
+Scene.grid(chi=[1.2, 1.4412], psi1=np.linspace(0, 6, 25))
+Scene.nondimensional(psi1=[1, 2], chi=1.4412, rho=None)
+Simulation(tangental="springs")  # refused
+Simulation(normal=3)  # refused
+Sphere("0.01", steel)  # refused
+rebound("1.2", 1.44)  # refused
+rebound(None, 1.44)  # refused
+Encounter()  # refused
+Encounter(ball, plane, 0.1, normal=[1, 0, 0])  # refused
+Sphere()  # refused
+Sphere(0.01, steel, 0.1)  # refused
+HalfSpace()  # refused
+Material()  # refused
+Scene()  # refused
+Scene.at_angle()  # refused
+Scene.at_angle(ball, plane, 0.2, speed=1.0)  # refused
+ball.radius = 0.02  # refused
+"""
 
 
 @pytest.mark.parametrize("name", ["Encounter", "HalfSpace", "RigidBody", "Scene", "Sphere"])
@@ -30,3 +94,38 @@ def test_the_arguments_that_a_class_states_are_those_it_takes(name):
 )
 def test_a_signature_shows_types_and_defaults(made, shown):
     assert shown in str(inspect.signature(made))
+
+
+def programs():
+    """Yield the code of each page, of the README and of the site, and each example, by name."""
+    pages = {name: text(name) for name in PAGES}
+    pages |= {"README": (ROOT / "README.md").read_text("utf-8")}
+    pages |= {"site": (ROOT / ".ci" / "site" / "index.md").read_text("utf-8")}
+    for name, page in pages.items():
+        if blocks := BLOCKS.findall(page):
+            yield f"{name.replace('-', '_')}_page", "\n".join(blocks)
+    examples = ROOT / "examples"
+    for path in (*examples.glob("*.py"), *examples.glob("third_party_*/**/*.py")):
+        if not path.stem.startswith(("test_", "__")):
+            yield path.stem, path.read_text("utf-8")
+
+
+@needs_sources
+@pytest.mark.slow
+@pytest.mark.parametrize("checker", CHECKERS)
+def test_a_checker_takes_what_is_printed_and_refuses_what_fails(checker, tmp_path):
+    pytest.importorskip(checker)
+    written = {"program": PROGRAM, **dict(programs())}
+    assert len(written) > 35
+    for name, code in written.items():
+        (tmp_path / f"{name}.py").write_text(code, encoding="utf-8")
+    told = subprocess.run(
+        [sys.executable, *CHECKERS[checker], *(f"{name}.py" for name in written)],
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    lines = enumerate(PROGRAM.splitlines(), 1)
+    refused = {("program", str(number)) for number, line in lines if line.endswith("# refused")}
+    found = {match.groups(): match.string for match in map(ERROR.search, told.stdout.splitlines())
+             if match}  # fmt: skip
+    assert [line for place, line in found.items() if place not in refused] == []
+    assert refused <= set(found), told.stdout + told.stderr
