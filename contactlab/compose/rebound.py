@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 import warnings
 from collections.abc import Callable
 from functools import cache
@@ -13,7 +12,6 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.compose.names import BLOCK_VARIABLE
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.numeric.checks import FINITE, POSITIVE, Real, Rule, paired, real, refuse
 from contactlab.numeric.labels import library_of
@@ -201,7 +199,7 @@ def rebound(
         and the remedy; also if labels differ.
     ValueError, PluginError
         If ``tangential.fronts``, or ``normal.viscoelastic`` below a restitution of 1, is blocked or
-        cannot be imported.
+        cannot be imported. What is blocked is read at the first answer of a process.
     ImpactError
         If an impact cannot be solved; no such impact has been found.
 
@@ -440,25 +438,15 @@ def restituted_error(chi: Real, restitution: Real) -> Any:
     return np.where(np.equal(restitution, 0.0), 0.0, near)
 
 
+@cache
 def _table(kind: str) -> Callable[..., Any]:
     """Return psi2 of a law: of the exact tangential law, or of the normal law of a restitution."""
-    return _kept_table(kind, os.environ.get(BLOCK_VARIABLE))
+    return _law(kind).rebound
 
 
-@cache
-def _kept_table(kind: str, blocked: str | None) -> Callable[..., Any]:
-    """Return the function of a law while the blocking is the same."""
-    return _kept_law(kind, blocked).rebound
-
-
+@cache  # to ask the environment what is blocked takes as long as half an answer
 def _law(kind: str) -> Tabulated:
     """Return the exact tangential law, or the normal law of a restitution."""
-    return _kept_law(kind, os.environ.get(BLOCK_VARIABLE))
-
-
-@cache
-def _kept_law(kind: str, _: str | None) -> Tabulated:
-    """Return a law while the blocking is the same."""
     from contactlab.compose import composition  # takes long to import
 
     names = composition.EXACT if kind == "tangential" else composition.RESTITUTION
