@@ -84,9 +84,11 @@ def answers(
     return given
 
 
-def separated(normal: NormalMotion) -> Mask:
-    """Return the impacts of a batch that the normal motion ends, as a new array."""
+def separated(normal: NormalMotion) -> Any:
+    """Return the impacts that the normal motion ends: a bool, or of a batch a new array."""
     shape = normal.scene.shape
+    if not shape:
+        return normal.status is Status.SUCCESS
     if normal.status is Status.SUCCESS:
         return np.ones(shape, dtype=bool)
     success = np.asarray(np.asarray(normal.status, dtype=object) == Status.SUCCESS)

@@ -14,13 +14,14 @@ from contactlab.compose.restituted import planned, run_by_restitution
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.status import Status
 from contactlab.impact.bodies import HalfSpace, Sphere
-from contactlab.impact.body_contact import arms, in_space, pushed
+from contactlab.impact.body_contact import in_space, pushed
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.rigid_body import RigidBody
-from contactlab.numeric.arrays import filled
+from contactlab.numeric.arrays import every, filled
 from contactlab.numeric.checks import Real, refuse
 from contactlab.numeric.names import attributes_told
 from contactlab.numeric.types import Array, Mask
+from contactlab.numeric.vectors import components, cross, joined
 from contactlab.outcome.answer import Answer
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.energy import EnergyLedger, books
@@ -225,12 +226,12 @@ class Collision(Answer):
 
     def _rim(self, side: int, body: Sphere | HalfSpace | RigidBody, spin: Array) -> Array:
         """Return the velocity in m/s, relative to the centre, of the surface at the contact."""
-        normal = np.stack(self.encounter.meeting().normal, axis=-1)
-        normal = np.broadcast_to(normal, (*self.encounter.shape, 3))
+        encounter = self.encounter
+        arm: Any = components(encounter.target_contact if side else encounter.contact)
         if isinstance(body, Sphere):
-            radius: Any = np.asarray(body.radius)[..., None]
-            return np.asarray((-radius if side else radius) * np.cross(spin, normal))
-        return np.cross(spin, arms(self.encounter, normal)[side])
+            radius = -body.radius if side else body.radius
+            arm = [radius * each for each in encounter.meeting().normal]
+        return joined(cross(components(spin), arm), encounter.shape)
 
     @property
     def _met(self) -> Encounter:
@@ -284,7 +285,7 @@ def _columns(encounter: Encounter, met: Mask, *quantities: Real) -> Array:
 
 def _moved(encounter: Encounter, result: ImpactResult, met: Mask) -> dict[str, Any]:
     """Return the attributes of a collision of bodies that are no spheres."""
-    motion, part = result.motion, encounter if np.all(met) else encounter.take(met)
+    motion, part = result.motion, encounter if every(met) else encounter.take(met)
     axes: Any = result.scene.frame
     moved: dict[str, Any] = pushed(part, axes, result.impulse, result.couple) | {
         "normal_velocity": motion.normal_velocity,

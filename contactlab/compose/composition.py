@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import attrs
 
@@ -73,18 +73,26 @@ class Laws:
         """Return the laws by kind."""
         return dict(zip(KINDS, self, strict=True))
 
-    def accept(self, scene: Scene, *, as_one: bool = False) -> None:
-        """Refuse a scene that a law cannot run; ``as_one`` as in ``Scene.parts``."""
-        if scene.inverse_mass is None:  # spheres have one way
-            self.normal.accept(scene)
-            self.tangential.accept(scene)
-            self.integrator.accept(scene)
-            return
-        # what answers where slip turns answers on a line too: its remedy holds for the whole batch
-        for _, part in reversed(scene.parts(as_one=as_one)):
+    def accept(self, scene: Scene, *, as_one: bool = False) -> list[Way]:
+        """Return the ways in which a scene is solved, or refuse one that a law cannot run.
+
+        ``as_one`` is that of ``Scene.parts``.
+        """
+        ways = self.ways(scene, as_one=as_one)
+        for _, part, laws in ways:
             central = part.central
-            for each in self.of(part):
-                each.accept(central)
+            laws.normal.accept(central)
+            laws.tangential.accept(central)
+            laws.integrator.accept(central)
+        return ways
+
+    def ways(self, scene: Scene, *, as_one: bool = False) -> list[Way]:
+        """Return the ways in which a scene is solved; ``as_one`` is that of ``Scene.parts``."""
+        if scene.inverse_mass is None:  # spheres have one way
+            return [Way(..., scene, self)]
+        # what answers where slip turns answers on a line too: its remedy holds for the whole batch
+        parts = reversed(scene.parts(as_one=as_one))
+        return [Way(where, part, self.of(part)) for where, part in parts][::-1]
 
     def of(self, part: Scene) -> Laws:
         """Return the laws of impacts that are solved alike.
@@ -114,16 +122,6 @@ class Laws:
             remedy += f"; or name it: tangential={name!r}"
         raise ValueError(f"{refused}; {remedy}")
 
-    def versions(self, scene: Scene, *, as_one: bool = False) -> dict[str, str]:
-        """Return name and version of each law by kind, of several in one scene with "and".
-
-        ``as_one`` is that of ``Scene.parts``.
-        """
-        if scene.inverse_mass is None:
-            return versions(self.normal, self.tangential, self.integrator)
-        used = [versions(*self.of(part)) for _, part in scene.parts(as_one=as_one)]
-        return {kind: " and ".join(dict.fromkeys(each[kind] for each in used)) for kind in KINDS}
-
     def taking(self, names: Mapping[str, str]) -> Laws:
         """Return the laws with others of some kinds, by name."""
         return self.changed(**{kind: law(kind, name) for kind, name in names.items()})
@@ -131,6 +129,14 @@ class Laws:
     def changed(self, **laws: Any) -> Laws:
         """Return the laws with others of some kinds."""
         return attrs.evolve(self, **laws)
+
+
+class Way(NamedTuple):
+    """Impacts that are solved alike: their place in a scene, their scene, and their laws."""
+
+    where: Any
+    scene: Scene
+    laws: Laws
 
 
 def _no_answer(laws: Laws, planar: bool) -> str | None:
@@ -334,6 +340,14 @@ def _name(law: Law) -> str:
 def versions(*laws: Law) -> dict[str, str]:
     """Return each law's name and version, by kind."""
     return dict(_versions(*map(type, laws)))
+
+
+def versions_of(ways: Sequence[Way]) -> dict[str, str]:
+    """Return name and version of each law by kind, of several in one scene with "and"."""
+    used = [versions(*way.laws) for way in ways]
+    if len(used) == 1:
+        return used[0]
+    return {kind: " and ".join(dict.fromkeys(each[kind] for each in used)) for kind in KINDS}
 
 
 @lru_cache(maxsize=128)

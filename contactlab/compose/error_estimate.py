@@ -131,7 +131,7 @@ def _distance(
 
 def _again(laws: Laws, scene: Scene) -> Any:
     """Return the answer of finer laws, NaN where the run failed."""
-    _, motion = solve.outcome(laws, scene, False, None)
+    _, motion = solve.outcome(laws.ways(scene), scene, False, None)
     answer = _answer(scene, motion)
     return np.where(_successes(motion.status), answer, np.nan)
 

@@ -79,7 +79,7 @@ def columns_of(normal: NormalMotion, laws: Laws, answered: Sequence[Answered]) -
     """Return the columns of the plan: why impacts are not marched, and the declared error."""
     shape = normal.scene.shape
     if not shape:
-        code: Any = MARCHED if normal.status is Status.SUCCESS else ENDLESS
+        code: Any = MARCHED if separated(normal) else ENDLESS
         marched: Any = code == MARCHED and not answered
         code = 0 if answered else code
     else:

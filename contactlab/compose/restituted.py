@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import attrs
@@ -13,7 +14,7 @@ from contactlab.compose.rebound import laws_of, rebound
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.restitution import LEAST_RESTITUTION
 from contactlab.contracts.status import Status
-from contactlab.impact.inverse_mass import along
+from contactlab.impact.inverse_mass import unit_slip
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import filled, spread
 from contactlab.numeric.checks import Real, refuse
@@ -84,7 +85,7 @@ def _hardly_rebounding(scene: Scene, restitution: float) -> ImpactResult:
         status=filled(Status.SUCCESS, part.shape),
     )
     if scene.slip_axes:
-        motion = motion.turned(along(scene.slip_velocity))
+        motion = motion.turned(unit_slip(scene.slip_velocity))
     plan = planned(part, restitution)
     return ImpactResult(scene=scene, plan=plan, motion=motion, run_time=0.0, laws={})
 
@@ -113,6 +114,7 @@ def _planned(scene: Scene, restitution: float, each: Real) -> Plan:
     return plan if restitution == 1.0 else by_rebound(plan, scene.chi, each)
 
 
+@lru_cache(maxsize=16)  # to compose laws takes as long as to solve an impact
 def _simulation(restitution: float) -> Simulation:
     """Return laws with the answers of ``contactlab.rebound``."""
     return Simulation() if restitution == 1.0 else laws_of(restitution)

@@ -11,7 +11,7 @@ import attrs
 import numpy as np
 
 from contactlab.compose import composition, solve
-from contactlab.compose.composition import Laws
+from contactlab.compose.composition import Laws, Way, versions_of
 from contactlab.compose.error_estimate import estimated
 from contactlab.compose.normal_motion import normal_or_failed
 from contactlab.compose.pieces import Piece
@@ -103,8 +103,8 @@ class Simulation:
             The same as in ``run``.
         """
         laws = self.laws
-        laws.accept(_scene(scene), as_one=bool(_history(history)))
-        columns = solve.planned(laws, scene, history)
+        ways = laws.accept(_scene(scene), as_one=bool(_history(history)))
+        columns = solve.planned(ways, scene, history)
         return plan_of(laws, scene, columns, history=history)
 
     def run(
@@ -141,17 +141,17 @@ class Simulation:
         started, laws, recorder = time.perf_counter(), self.laws, None
         if _history(history):
             recorder = Recorder(_scene(scene).shape, with_fields=history == "fields")
-        laws.accept(_scene(scene), as_one=bool(history))
-        flat = scene
+        ways, flat = laws.accept(_scene(scene), as_one=bool(history)), scene
         if len(scene.shape) > 1:  # laws and integrators are run over one axis
             flat = scene.take(np.ones(scene.shape, dtype=bool))
-        columns, motion = solve.outcome(laws, flat, history, recorder)
+            ways = laws.ways(flat, as_one=bool(history))
+        columns, motion = solve.outcome(ways, flat, history, recorder)
         if flat is not scene:
             place = np.arange(flat.shape[0]).reshape(scene.shape)
             columns, motion = columns.take(place), taken(motion, flat.shape, place)
         plan = plan_of(laws, scene, columns, motion, history, estimated=estimate_error)
         kept = NO_HISTORY if recorder is None else recorder.history()
-        result = _result(laws, scene, plan, motion, started, kept)
+        result = _result(ways, scene, plan, motion, started, kept)
         if not estimate_error:
             return result
         psi2, restitution = estimated(laws, result)
@@ -261,7 +261,8 @@ class Simulation:
         one_axis(batch.shape)
         laws.accept(batch)
         columns, motion = swept(laws, batch, keep=keep, **options)
-        return _result(laws, batch, plan_of(laws, batch, columns, motion), motion, started)
+        plan = plan_of(laws, batch, columns, motion)
+        return _result(laws.ways(batch), batch, plan, motion, started)
 
     def _into(
         self,
@@ -280,7 +281,7 @@ class Simulation:
 
         def result_of(scene: Scene, piece: Piece) -> ImpactResult:
             plan = plan_of(laws, scene, piece.columns, piece.motion)
-            return _result(laws, scene, plan, piece.motion, time.perf_counter())
+            return _result(laws.ways(scene), scene, plan, piece.motion, time.perf_counter())
 
         return swept_into(laws, scenes, into, result_of=result_of, **options)
 
@@ -296,7 +297,7 @@ class Simulation:
 
 
 def _result(
-    laws: Laws,
+    ways: Sequence[Way],
     scene: Scene,
     plan: Plan,
     motion: Motion,
@@ -308,7 +309,7 @@ def _result(
         scene=scene,
         plan=plan,
         motion=motion if succeeded(motion.status) else without_failures(motion),
-        laws=laws.versions(scene, as_one=history is not NO_HISTORY),
+        laws=versions_of(ways),
         history=history,
         run_time=time.perf_counter() - started,
     )

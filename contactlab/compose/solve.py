@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import attrs
@@ -11,7 +12,7 @@ import numpy as np
 
 from contactlab.compose import together
 from contactlab.compose.answers import Answered, answers, show
-from contactlab.compose.composition import Laws
+from contactlab.compose.composition import Laws, Way
 from contactlab.compose.normal_motion import normal_or_failed
 from contactlab.compose.pieces import Piece
 from contactlab.compose.planning import columns_of
@@ -22,7 +23,7 @@ from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.status import Status, succeeded
 from contactlab.contracts.tangential_motion import Observer, TangentialMotion
-from contactlab.impact.inverse_mass import along
+from contactlab.impact.inverse_mass import unit_slip
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import are_zeros, consecutive, every, some, zeros
 from contactlab.numeric.checks import refuse
@@ -50,23 +51,20 @@ class Prepared(NamedTuple):
 
 @np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
 def outcome(
-    laws: Laws, scene: Scene, history: bool | str, recorder: Recorder | None
+    ways: Sequence[Way], scene: Scene, history: bool | str, recorder: Recorder | None
 ) -> tuple[PlanColumns, Motion]:
-    """Return columns of the plan, and motion, each impact solved in its own way.
+    """Return columns of the plan, and motion, each impact of a scene solved in its own way.
 
     A law that raises costs its impacts only. Numbers of impacts that failed are what the laws made
     of them. A history of a batch is refused if its impacts have instants of their own.
     """
-    if scene.inverse_mass is None:  # spheres have one way
-        return _alike(laws, scene, history, recorder)
-    parts = scene.parts(as_one=bool(history))
-    if len(parts) == 1:
-        _, part = parts[0]
-        columns, motion = _alike(laws.of(part), part, history, recorder)
+    if len(ways) == 1:
+        _, part, laws = ways[0]
+        columns, motion = _alike(laws, part, history, recorder)
         return columns, _in_axes(motion, scene, part)
     pieces = []
-    for where, part in parts:
-        columns, motion = _alike(laws.of(part), part, history, recorder)
+    for where, part, laws in ways:
+        columns, motion = _alike(laws, part, history, recorder)
         pieces.append((where, columns, _in_axes(motion, scene.take(where), part)))
     return (
         PlanColumns.merged([(where, columns) for where, columns, _ in pieces], scene.shape),
@@ -80,7 +78,7 @@ def _in_axes(motion: Motion, scene: Scene, part: Scene) -> Motion:
         return motion
     if part.inverse_mass is not None:  # slip along t1, of either sign
         return motion.turned(np.array([1.0, 0.0]))
-    return motion.turned(along(scene.slip_velocity))
+    return motion.turned(unit_slip(scene.slip_velocity))
 
 
 def _alike(
@@ -172,19 +170,17 @@ def _blocks(size: int, block: int) -> list[slice]:
 
 
 @np.errstate(under="ignore")
-def planned(laws: Laws, scene: Scene, history: bool | str) -> PlanColumns:
+def planned(ways: Sequence[Way], scene: Scene, history: bool | str) -> PlanColumns:
     """Return the columns of the plan, without a march."""
-    parts = [
-        (where, prepare(laws.of(part), part, history).columns)
-        for where, part in scene.parts(as_one=bool(history))
-    ]
+    parts = [(where, prepare(laws, part, history).columns) for where, part, laws in ways]
     return parts[0][1] if len(parts) == 1 else PlanColumns.merged(parts, scene.shape)
 
 
 def solved(laws: Laws, scene: Scene, chunk: Chunk, block: int) -> Piece:
     """Return the piece of a sweep's chunk, a block at a time; ``scene`` is the chunk alone."""
     scenes = (scene.take(place) for place in _blocks(chunk.size, block))
-    columns, motions = zip(*(outcome(laws, each, False, None) for each in scenes), strict=True)
+    pieces = (outcome(laws.ways(each), each, False, None) for each in scenes)
+    columns, motions = zip(*pieces, strict=True)
     shape = (chunk.size,)
     return Piece(chunk, PlanColumns.joined(columns, shape), Motion.joined(motions, shape))
 

@@ -7,6 +7,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from contactlab.compose.answers import separated
 from contactlab.compose.composition import Laws
 from contactlab.compose.normal_motion import normal_or_failed
 from contactlab.contracts import faults
@@ -16,7 +17,7 @@ from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.contracts.tangential_motion import Observer, TangentialMotion
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import spread
+from contactlab.numeric.arrays import chosen, spread
 from contactlab.numeric.checks import shown
 from contactlab.numeric.types import Mask, Real
 from contactlab.outcome.motion import Motion
@@ -66,8 +67,7 @@ def given_up(motion: Motion) -> Any:
 def columns_of(laws: Laws, scene: Scene, normal: NormalMotion) -> PlanColumns:
     """Return the columns of the plan: who answers, and the declared errors."""
     shape, together = scene.shape, laws.tangential.together
-    ended = np.asarray(np.asarray(normal.status, dtype=object) == Status.SUCCESS)
-    code = np.where(np.broadcast_to(ended, shape), 0 if together else MARCHED, ENDLESS)
+    code = chosen(separated(normal), 0 if together else MARCHED, ENDLESS)
     errors: tuple[Any, Any]
     if together:
         errors = laws.tangential.errors_together(scene, laws.integrator.accuracy)
@@ -89,7 +89,8 @@ def lasting(laws: Laws, scene: Scene, marched: Mask) -> str:
 
 def books_bound(laws: Laws, central: Scene) -> Any:
     """Return the bound of the imbalance of the energy books over the energy at the start."""
-    return np.maximum(laws.tangential.books_bound(central), CANCELS)
+    bound: Any = laws.tangential.books_bound(central)
+    return max(bound, CANCELS) if isinstance(bound, float) else np.maximum(bound, CANCELS)
 
 
 def at_larger_slip(scene: Scene) -> Scene:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import chosen
 from contactlab.numeric.checks import Mask, Real
 from contactlab.numeric.types import Array
 
@@ -166,7 +167,7 @@ def from_change(
     return WholeImpact(
         where=where,
         slip_velocity_change=change,
-        friction_work=np.maximum(work, 0.0) if np.ndim(work) else max(work, 0.0),
+        friction_work=chosen(work < 0.0, 0.0, work),
         reason=reason,
         psi2_error=psi2_error,
         balanced=True,

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from contactlab.impact.bodies import Sphere
-from contactlab.impact.body_contact import arms
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.rigid_body import FLAT, RigidBody
@@ -84,12 +83,12 @@ def _spring(scene: Scene, body: Sphere) -> str:
 
 def units_of_bodies(encounter: Encounter) -> list[str]:
     """Return one sentence for each number of a rigid body that is probably in another unit."""
-    normal = encounter.normal / np.linalg.norm(encounter.normal, axis=-1)[..., None]
     speed = np.linalg.norm(encounter.velocity - encounter.target_velocity, axis=-1)
     spins = encounter.spin, encounter.target_spin
     said = []
     bodies = ("body", encounter.body), ("target", encounter.target)
-    for (name, body), arm, spin in zip(bodies, arms(encounter, normal), spins, strict=True):
+    arms = encounter.contact, encounter.target_contact
+    for (name, body), arm, spin in zip(bodies, arms, spins, strict=True):
         if not isinstance(body, RigidBody):
             continue
         mass, density = np.asarray(body.mass), body.material.density

@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple, Protocol
 
-import attrs
 import numpy as np
 
 from contactlab.impact import inverse_mass
@@ -21,10 +20,22 @@ from contactlab.impact.bodies import (
 )
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import chosen, some
+from contactlab.numeric.arrays import chosen, every, some
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.types import Array, Mask, Real
-from contactlab.numeric.vectors import components, cross, moving, solved
+from contactlab.numeric.types import Array, Column, Mask, Real, Vector
+from contactlab.numeric.vectors import (
+    components,
+    cross,
+    difference,
+    dot,
+    hypotenuse,
+    joined,
+    moving,
+    over,
+    rows,
+    solved,
+    square_root,
+)
 
 #: Difference of principal curvatures over their sum that is a circle's rounding.
 ROUND = 1e-9
@@ -73,8 +84,8 @@ class Contact(NamedTuple):
         Speed of approach, negative where the bodies separate, and speed of slip, in m/s.
     """
 
-    normal: tuple[Any, Any, Any]
-    along: tuple[Any, Any, Any]
+    normal: Vector
+    along: Vector
     approach: Any
     slip: Any
 
@@ -100,82 +111,90 @@ class Gap(NamedTuple):
 
 
 class Frame(NamedTuple):
-    """The frame of a contact: n, t1 and t2 as rows, W and the velocity in it.
+    """The frame of a contact, W and the velocity in it.
 
     Attributes
     ----------
-    axes, inverse_mass : array, shape (..., 3, 3)
-    velocity : array, shape (..., 3)
-        Velocity of the first body over the target at the contact, in m/s.
+    axes : three vectors
+        n, t1 and t2, by their components.
+    inverse_mass : three rows
+        W in 1/kg along these axes.
+    velocity : vector
+        Velocity of the first body over the target at the contact, along these axes, in m/s.
     gap : Gap
     """
 
-    axes: Array
-    inverse_mass: Array
-    velocity: Array
+    axes: tuple[Vector, Vector, Vector]
+    inverse_mass: Any
+    velocity: Vector
     gap: Gap
 
 
-def arms(encounter: _Meeting, normal: Array) -> tuple[Array, Array]:
-    """Return the vectors in m from the centres of mass to the contact, zero for a half-space."""
+class Side(NamedTuple):
+    """A body of an encounter that moves, and how the contact acts on it.
+
+    Attributes
+    ----------
+    name : str
+        What the names of its vectors begin with.
+    body : Sphere or RigidBody
+    arm : vector
+        From the centre of mass to the contact, in m.
+    sense : float
+        1 of the first body, -1 of the target.
+    """
+
+    name: str
+    body: Sphere | RigidBody
+    arm: Vector
+    sense: float
+
+
+def sides(encounter: _Meeting, normal: Vector) -> list[Side]:
+    """Return the bodies that move; a half-space does not."""
     found = []
-    sides = (
-        (encounter.body, encounter.contact, 1.0),
-        (encounter.target, encounter.target_contact, -1.0),
-    )
-    for body, given, sense in sides:
+    for name, sense in (("", 1.0), ("target_", -1.0)):
+        body = encounter.target if name else encounter.body
         if isinstance(body, RigidBody):
-            found.append(given)
+            found.append(Side(name, body, components(getattr(encounter, f"{name}contact")), sense))
         elif isinstance(body, Sphere):
-            found.append(sense * np.asarray(body.radius)[..., None] * normal)
-        else:
-            found.append(np.zeros(3))
-    return found[0], found[1]
+            reach = sense * body.radius
+            found.append(Side(name, body, tuple(reach * each for each in normal), sense))
+    return found
 
 
-def turned(body: Sphere | HalfSpace | RigidBody, moment: Array) -> Array:
-    """Return J⁻¹ times a moment about the centre of mass, shape (..., 3); 0 for a half-space."""
+def turned(body: Sphere | RigidBody, *moments: Vector) -> list[Vector]:
+    """Return J⁻¹ times moments about the centre of mass."""
     if isinstance(body, RigidBody):
-        return np.asarray(solved(body.inertia, moment[..., None])[..., 0])
-    if isinstance(body, Sphere):
-        return np.asarray(moment / _moment(body)[..., None])
-    return np.zeros(3)
+        tensor = rows(body.inertia)
+        return [solved(tensor, moment) for moment in moments]
+    inertia = body.mass * body.gyration_ratio**2 * body.radius * body.radius
+    return [tuple(each / inertia for each in moment) for moment in moments]
 
 
-def _moment(sphere: Sphere) -> Any:
-    """Return the moment of inertia of a sphere, in kg m²."""
-    return np.asarray(sphere.mass * sphere.gyration_ratio**2 * sphere.radius * sphere.radius)
+def inverse_mass_of(encounter: _Meeting, normal: Vector, axes: Sequence[Vector]) -> list[list[Any]]:
+    """Return the rows of W in 1/kg along unit vectors at right angles."""
+    W: list[list[Any]] = [[0.0 for _ in axes] for _ in axes]
+    for _, body, arm, _ in sides(encounter, normal):
+        # an impulse p turns the body by J⁻¹ (arm x p), and moves the contact by that x arm
+        moments = [cross(arm, axis) for axis in axes]
+        turns = turned(body, *moments)
+        for i, moment in enumerate(moments):
+            W[i][i] = W[i][i] + 1.0 / body.mass
+            for j in range(i + 1):
+                W[i][j] = W[j][i] = W[i][j] + dot(moment, turns[j])
+    return W
 
 
-def _crossing(vectors: Array) -> Array:
-    """Return the matrices K, shape (..., 3, 3), with K v = vectors x v."""
-    x, y, z = (vectors[..., k] for k in range(3))
-    matrix = np.zeros((*vectors.shape, 3))
-    matrix[..., 0, 1], matrix[..., 0, 2], matrix[..., 1, 2] = -z, y, -x
-    return matrix - np.swapaxes(matrix, -1, -2)
-
-
-def inverse_mass_of(encounter: _Meeting, normal: Array) -> Array:
-    """Return W in the frame of the encounter, shape (..., 3, 3), in 1/kg."""
-    total: Any = np.zeros((3, 3))
-    for body, arm in zip((encounter.body, encounter.target), arms(encounter, normal), strict=True):
-        if isinstance(body, HalfSpace):
-            continue
-        # K v = arm x v: an impulse p turns the body by J⁻¹ K p, and moves the contact by -K of it
-        K = _crossing(np.asarray(arm))
-        if isinstance(body, Sphere):
-            spin = -(K @ K) / _moment(body)[..., None, None]
-        else:
-            spin = -K @ solved(body.inertia, K)
-        total = total + spin + np.eye(3) / np.asarray(body.mass)[..., None, None]
-    return np.asarray(0.5 * (total + np.swapaxes(total, -1, -2)))
-
-
-def relative_velocity(encounter: _Meeting, normal: Array) -> Array:
+def relative_velocity(encounter: _Meeting, normal: Vector) -> Vector:
     """Return the velocity in m/s of the first body over the target at the contact."""
-    first, second = arms(encounter, normal)
-    velocity = encounter.velocity + cross(encounter.spin, first)
-    return np.asarray(velocity - encounter.target_velocity - cross(encounter.target_spin, second))
+    velocity = difference(encounter.velocity, encounter.target_velocity)
+    for name, _, arm, sense in sides(encounter, normal):
+        spin = getattr(encounter, f"{name}spin")
+        if moving(spin):
+            rim = cross(components(spin), arm)
+            velocity = tuple(v + sense * each for v, each in zip(velocity, rim, strict=True))
+    return velocity
 
 
 def spin_about(encounter: _Meeting, normal: Sequence[Real]) -> Any:
@@ -193,90 +212,99 @@ def spin_about(encounter: _Meeting, normal: Sequence[Real]) -> Any:
     return np.broadcast_to(omega, encounter.shape) if encounter.shape else omega
 
 
-def _spin_alone(encounter: _Meeting, n: Array, round_: Mask) -> Any:
+def _spin_alone(encounter: _Meeting, n: Vector, round_: Mask) -> Any:
     """Return the spin about the normal that a couple alone moves; ``round_`` where it may.
 
     It is 0 where a body is off centre, or the normal is no principal axis of its inertia.
     """
-    spin: Any = np.where(round_, spin_about(encounter, components(n)), 0.0)
-    for body, arm in zip((encounter.body, encounter.target), arms(encounter, n), strict=True):
-        if isinstance(body, RigidBody) and np.any(spin):
-            for vector in (arm, turned(body, n)):
-                size = np.sqrt(np.einsum("...i,...i->...", vector, vector))
-                aside = np.abs(cross(np.asarray(vector), n)).max(axis=-1)
-                spin = np.where(aside <= inverse_mass.ROUNDING * size, spin, 0.0)
-    if not np.any(spin):
-        return 0.0
-    return spin if encounter.shape else float(spin)
+    spin: Any = chosen(round_, spin_about(encounter, n), 0.0)
+    for _, body, arm, _ in sides(encounter, n):
+        if isinstance(body, RigidBody) and some(spin != 0.0):
+            for vector in (arm, *turned(body, n)):
+                least = inverse_mass.ROUNDING * square_root(dot(vector, vector))
+                x, y, z = (abs(each) > least for each in cross(vector, n))
+                spin = chosen(x | y | z, 0.0, spin)
+    return spin if some(spin != 0.0) else 0.0
 
 
-def turning_compliance(encounter: _Meeting, normal: Array, radius: Real) -> Any:
+def turning_compliance(encounter: _Meeting, normal: Vector, radius: Real) -> Any:
     """Return radius² n·J⁻¹·n of both bodies, in 1/kg."""
     total: Any = 0.0
-    for body in (encounter.body, encounter.target):
+    for _, body, _, _ in sides(encounter, normal):
         if isinstance(body, Sphere):
             total = total + inverse_turning_mass(body, radius)
-        elif isinstance(body, RigidBody):
-            along = np.einsum("...i,...i->...", normal, turned(body, normal))
-            total = total + radius * radius * along
+        else:
+            total = total + radius * radius * dot(normal, *turned(body, normal))
     return total
 
 
-def meeting_of_bodies(encounter: _Meeting, normal: tuple[Real, Real, Real]) -> Contact:
+def meeting_of_bodies(encounter: _Meeting, normal: Vector) -> Contact:
     """Return directions and speeds at the contact of bodies that are no spheres."""
-    n = np.stack(np.broadcast_arrays(*normal), axis=-1)
-    velocity = relative_velocity(encounter, n)
-    approach = np.einsum("...i,...i->...", velocity, n)
-    slip = velocity - approach[..., None] * n
-    size = np.sqrt(np.einsum("...i,...i->...", slip, slip))
-    along = slip / (size + (size == 0.0))[..., None]
-    x, y, z = (along[..., k] for k in range(3))
+    velocity = relative_velocity(encounter, normal)
+    approach = dot(velocity, normal)
+    slip = [v - approach * n for v, n in zip(velocity, normal, strict=True)]
+    size = square_root(dot(slip, slip))
+    x, y, z = (each / (size + (size == 0.0)) for each in slip)
     return Contact(normal, (x, y, z), approach, size)
 
 
-def frame(encounter: _Meeting) -> Frame:
+def _tangents(normal: Vector) -> tuple[Vector, Vector]:
+    """Return unit vectors of the tangent plane at right angles: along an axis, and n times that."""
+    x, y, z = map(abs, normal)
+    first, second = (x <= y) & (x <= z), (y < x) & (y <= z)
+    axis = (chosen(first, 1.0, 0.0), chosen(second, 1.0, 0.0), chosen(first | second, 0.0, 1.0))
+    part = dot(axis, normal)
+    along = [each - part * n for each, n in zip(axis, normal, strict=True)]
+    size = square_root(dot(along, along))
+    one = along[0] / size, along[1] / size, along[2] / size
+    return one, cross(normal, one)
+
+
+def frame(encounter: _Meeting, normal: Vector) -> Frame:
     """Return the frame with t1 along W_nt, or along the slip without coupling.
 
     For an ellipse t1 is the axis that holds both, or else the major one.
     """
-    n = np.broadcast_to(encounter.normal, (*encounter.shape, 3))
-    n = n / np.sqrt(np.einsum("...i,...i->...", n, n))[..., None]
-    W = np.broadcast_to(inverse_mass_of(encounter, n), (*encounter.shape, 3, 3))
-    velocity = np.broadcast_to(relative_velocity(encounter, n), n.shape)
-    coupling = np.einsum("...ij,...j->...i", W, n)
-    pressed = np.einsum("...i,...i->...", coupling, n)
-    coupling = coupling - pressed[..., None] * n
-    slip = velocity - np.einsum("...i,...i->...", velocity, n)[..., None] * n
+    one, other = _tangents(normal)
+    W = inverse_mass_of(encounter, normal, (normal, one, other))
+    velocity = relative_velocity(encounter, normal)
+    approach = dot(velocity, normal)
+    # vectors of the tangent plane are complex numbers
+    coupling = W[0][1] + 1j * W[0][2]
+    slip = dot(velocity, one) + 1j * dot(velocity, other)
     # the first of coupling, slip and any axis that is not lost in rounding, as ``ways`` judges it
-    mean = 0.5 * (np.trace(W, axis1=-2, axis2=-1) - pressed)
-    axis = np.eye(3)[np.argmin(np.abs(n), axis=-1)]
-    rounding = (
-        inverse_mass.ROUNDING * np.sqrt(pressed * mean),
-        inverse_mass.ROUNDING * np.sqrt(np.einsum("...i,...i->...", velocity, velocity)),
+    least = (
+        inverse_mass.ROUNDING * square_root(0.5 * W[0][0] * (W[1][1] + W[2][2])),
+        inverse_mass.ROUNDING * square_root(dot(velocity, velocity)),
     )
-    any_axis = axis - np.einsum("...i,...i->...", axis, n)[..., None] * n
-    candidates = ((coupling, rounding[0]), (slip, rounding[1]), (any_axis, 0.0))
-    t1 = np.zeros_like(n)
-    for vector, least in reversed(candidates):
-        size = np.sqrt(np.einsum("...i,...i->...", vector, vector))
-        with np.errstate(all="ignore"):
-            t1 = np.where((size > least)[..., None], vector / size[..., None], t1)
-    t2 = cross(n, t1)
-    gap = gap_of(encounter, t1, t2)
-    if np.any(gap.elliptic):
-        holds = candidates[:2]
-        t1, gap = _along_an_axis(gap, t1, t2, holds)
-        t2 = cross(n, t1)
-    axes = np.stack((n, t1, t2), axis=-2)
-    return Frame(
-        axes,
-        np.einsum("...ia,...ab,...jb->...ij", axes, W, axes),
-        np.einsum("...ia,...a->...i", axes, velocity),
-        gap,
+    candidates = ((coupling, least[0]), (slip, least[1]))
+    turn: Any = 1.0 + 0.0j
+    for vector, rounding in reversed(candidates):
+        size = abs(vector)
+        turn = chosen(size > rounding, vector / (size + (size == 0.0)), turn)
+    gap = gap_of(encounter, one, other)
+    if some(gap.elliptic):
+        turn, gap = _along_an_axis(gap, turn, candidates)
+    back = turn.conjugate()
+    coupling, slip = coupling * back, slip * back
+    c, s = turn.real, turn.imag
+    # half the trace of the tangential part, and the rest, which turns twice as far
+    mean, rest = 0.5 * (W[1][1] + W[2][2]), 0.5 * (W[1][1] - W[2][2]) + 1j * W[1][2]
+    rest = rest * back * back
+    axes = (
+        normal,
+        tuple(c * a + s * b for a, b in zip(one, other, strict=True)),
+        tuple(c * b - s * a for a, b in zip(one, other, strict=True)),
     )
+    tensor = (
+        (W[0][0], coupling.real, coupling.imag),
+        (coupling.real, mean + rest.real, rest.imag),
+        (coupling.imag, rest.imag, mean - rest.real),
+    )
+    return Frame(axes, tensor, (approach, slip.real, slip.imag), gap)
 
 
-def gap_of(encounter: _Meeting, t1: Array, t2: Array) -> Gap:
+def gap_of(encounter: _Meeting, t1: Vector, t2: Vector) -> Gap:
     """Return the curvatures of the gap between the bodies, the sum of both (theory §16).
 
     Raises
@@ -290,13 +318,13 @@ def gap_of(encounter: _Meeting, t1: Array, t2: Array) -> Gap:
     elliptic: Any = False
     if any(getattr(body, "cross_radius", None) is not None for body in bodies):
         uneven: Any = 0.5 * ((one - other) * axis * axis + (two - another) * across * across)
-        size = np.abs(uneven)
-        elliptic = size > ROUND * np.abs(mean)
-    if not np.any(elliptic):
-        if not np.all(mean > 0.0):
+        size = abs(uneven)
+        elliptic = size > ROUND * abs(mean)
+    if not some(elliptic):
+        if not every(mean > 0.0):
             rule = "one of the bodies must be curved, and both curve apart"
             _refuse_gap(encounter, rule, "two planes")
-        return Gap(mean, mean, np.asarray(1.0 + 0.0j), elliptic)
+        return Gap(mean, mean, 1.0 + 0.0j, elliptic)
     # the determinant of the sum, of which no term is negative between convex bodies
     turned = axis * np.conj(across)
     sine, cosine = np.square(turned.imag), np.square(turned.real)
@@ -313,12 +341,14 @@ def gap_of(encounter: _Meeting, t1: Array, t2: Array) -> Gap:
     return Gap(least, most, major, elliptic)
 
 
-def _curvatures(body: Sphere | HalfSpace | RigidBody, t1: Array, t2: Array) -> tuple[Any, Any, Any]:
+def _curvatures(
+    body: Sphere | HalfSpace | RigidBody, t1: Vector, t2: Vector
+) -> tuple[Any, Any, Any]:
     """Return both principal curvatures of a body in 1/m, and the direction of the first."""
     if isinstance(body, RigidBody):
         return body.curvatures(t1, t2)
-    curvature: Any = 0.0 if isinstance(body, HalfSpace) else 1.0 / np.asarray(body.radius)
-    return np.asarray(curvature), np.asarray(curvature), np.asarray(1.0 + 0.0j)
+    curvature: Any = 0.0 if isinstance(body, HalfSpace) else 1.0 / body.radius
+    return curvature, curvature, 1.0 + 0.0j
 
 
 def _refuse_gap(encounter: _Meeting, rule: str, what: str) -> None:
@@ -340,69 +370,62 @@ def _refuse_gap(encounter: _Meeting, rule: str, what: str) -> None:
 
 
 def _along_an_axis(
-    gap: Gap, t1: Array, t2: Array, holds: Sequence[tuple[Array, Real]]
-) -> tuple[Array, Gap]:
+    gap: Gap, turn: complex | Column, holds: Sequence[tuple[Any, Real]]
+) -> tuple[Any, Gap]:
     """Return t1 along the axis of the ellipse that holds coupling and slip, and the gap there."""
-    parts = []
-    for vector, rounding in holds:
-        seen = np.einsum("...i,...i->...", vector, t1) + 1j * np.einsum(
-            "...i,...i->...", vector, t2
-        )
-        parts.append((seen * np.conj(gap.major), rounding))
-    along = np.any([abs(part.real) > rounding for part, rounding in parts], axis=0)
-    aside = np.any([abs(part.imag) > rounding for part, rounding in parts], axis=0)
+    parts = [(vector * np.conj(gap.major), rounding) for vector, rounding in holds]
+    along, aside = (
+        np.logical_or(*(abs(side(part)) > rounding for part, rounding in parts))
+        for side in (np.real, np.imag)
+    )
     minor = gap.elliptic & aside & ~along
-    first = np.where(minor, 1j * gap.major, gap.major)
     # t1 points along the coupling, or along the slip
     sense = [(part * np.where(minor, -1j, 1.0)).real for part, _ in parts]
-    pressed = np.abs(sense[0]) > parts[0][1]
+    pressed = abs(sense[0]) > parts[0][1]
     back = np.where(pressed, sense[0], sense[1]) < 0.0
-    first = np.where(gap.elliptic, np.where(back, -first, first), 1.0)[..., None]
-    return first.real * t1 + first.imag * t2, gap._replace(minor=minor)
+    first = np.where(minor, 1j, 1.0) * gap.major
+    first = np.where(gap.elliptic, np.where(back, -first, first), turn)
+    return first[()], gap._replace(minor=minor)
 
 
-def scene_of_bodies(encounter: _Meeting) -> Scene:
+def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
     """Return the scene in numbers; it keeps the inverse mass if any impact needs it."""
-    axes, W, velocity, gap = frame(encounter)
-    pair = pair_of_bodies(encounter, W, gap)
-    speed, slip = velocity[..., 0], velocity[..., 1:]
-    ways = np.asarray(inverse_mass.ways(W, speed, slip, pair.cross_stiffness_ratio))
-    across = np.abs(slip[..., 1]) > inverse_mass.ROUNDING * (np.abs(speed) + np.abs(slip[..., 0]))
-    planar = not (across | (ways == inverse_mass.SPATIAL)).any()
-    number: Any = np.asarray if encounter.shape else float
-    along = number(slip[..., 0]) if planar else slip
-    entries: dict[str, Any] = {"inverse_mass": W, "planar": planar}
-    if (ways == inverse_mass.CENTRAL).all():
-        mass = inverse_mass.mass_along(W, inverse_mass.along(slip))
-        pair = attrs.evolve(pair, tangential_mass=number(mass))
-        along, entries = number(np.hypot(slip[..., 0], slip[..., 1])), {}
-    friction = encounter.friction_coefficient
-    where: dict[str, Any] = {"encounter": encounter, "frame": axes}
-    n, round_ = axes[..., 0, :], (ways == inverse_mass.CENTRAL) & np.logical_not(gap.elliptic)
-    where["normal_spin"] = spin = _spin_alone(encounter, n, round_)
-    if np.any(spin):
-        inverse = number(turning_compliance(encounter, n, pair.radius))
-        pair = attrs.evolve(pair, inverse_spin_mass=inverse)
-    return Scene(None, None, friction, number(speed), along, pair=pair, **where, **entries)
+    shape = encounter.shape
+    axes, W, (speed, *slip), gap = frame(encounter, normal)
+    contact = _elastic(encounter, gap)
+    ways = inverse_mass.ways(W, speed, slip, contact.get("cross_stiffness_ratio", 1.0))
+    central = ways == inverse_mass.CENTRAL
+    across = abs(slip[1]) > inverse_mass.ROUNDING * (abs(speed) + abs(slip[0]))
+    planar = not some(across | (ways == inverse_mass.SPATIAL))
+    along = slip[0] if planar else joined(slip, shape)
+    tangential = W[1][1] if planar else 0.5 * (W[1][1] + W[2][2])
+    entries: dict[str, Any] = {"inverse_mass": joined(W, shape), "planar": planar}
+    if every(central):
+        along, entries = hypotenuse(*slip), {}
+        unit = along + (along == 0.0)
+        tangential = inverse_mass.along(W, (slip[0] + (along == 0.0)) / unit, slip[1] / unit)
+    spin = _spin_alone(encounter, normal, chosen(gap.elliptic, False, central))
+    if some(spin != 0.0):
+        turning = turning_compliance(encounter, normal, contact["radius"])
+        contact |= {"inverse_spin_mass": turning}
+    pair = Pair(normal_mass=1.0 / W[0][0], tangential_mass=1.0 / tangential, **contact)
+    entries |= {"encounter": encounter, "frame": joined(axes, shape), "normal_spin": spin}
+    return Scene(None, None, encounter.friction_coefficient, speed, along, pair=pair, **entries)
 
 
-def pair_of_bodies(encounter: _Meeting, inverse: Array, gap: Gap) -> Pair:
-    """Return the numbers of two bodies that laws need; ``inverse`` is W in the contact's frame."""
-    W = inverse
+def _elastic(encounter: _Meeting, gap: Gap) -> dict[str, Any]:
+    """Return the entries of ``Pair`` that follow from the materials and the gap."""
     first, second = encounter.body.material, encounter.target.material
     compliance = normal_compliance(first) + normal_compliance(second)
-    number: Any = (lambda v: v) if encounter.shape else float
     shear = 1.0 / (shear_compliance(first) + shear_compliance(second))
-    pair = Pair(
-        radius=number(1.0 / gap.most),
-        effective_modulus=1.0 / compliance,
-        effective_shear_modulus=shear,
-        normal_mass=number(1.0 / W[..., 0, 0]),
-        tangential_mass=number(2.0 / (W[..., 1, 1] + W[..., 2, 2])),
-        dundurs_beta=coupling_compliance(first, second) / compliance,
-    )
-    if not np.any(gap.elliptic):
-        return pair
+    round_ = {
+        "radius": 1.0 / gap.most,
+        "effective_modulus": 1.0 / compliance,
+        "effective_shear_modulus": shear,
+        "dundurs_beta": coupling_compliance(first, second) / compliance,
+    }
+    if not some(gap.elliptic):
+        return round_
     from contactlab.impact.elliptic import ellipse  # scipy, which few scenes need
 
     shape = ellipse(np.where(gap.elliptic, gap.least / gap.most, 1.0))
@@ -412,15 +435,13 @@ def pair_of_bodies(encounter: _Meeting, inverse: Array, gap: Gap) -> Pair:
         + (1.0 - second.poisson_ratio * weight) / (2.0 * second.shear_modulus)
         for weight in weights
     )
-    ratio = shape.axis_ratio
-    round_, one = ~gap.elliptic, np.ones(np.shape(along))
-    return attrs.evolve(
-        pair,
-        radius=number(np.where(round_, pair.radius, 2.0 * shape.radius / (gap.least + gap.most))),
-        effective_shear_modulus=number(np.where(round_, shear, 1.0 / along)),
-        cross_stiffness_ratio=number(np.where(round_, one, along / across)),
-        axis_ratio=number(np.where(round_, one, np.where(gap.minor, 1.0 / ratio, ratio))),
-    )
+    ratio, size = shape.axis_ratio, 2.0 * shape.radius / (gap.least + gap.most)
+    return round_ | {
+        "radius": np.where(gap.elliptic, size, round_["radius"]),
+        "effective_shear_modulus": np.where(gap.elliptic, 1.0 / along, shear),
+        "cross_stiffness_ratio": np.where(gap.elliptic, along / across, 1.0),
+        "axis_ratio": np.where(gap.elliptic, np.where(gap.minor, 1.0 / ratio, ratio), 1.0),
+    }
 
 
 def in_space(axes: Array, vectors: Array) -> Array:
@@ -451,19 +472,18 @@ def pushed(
     ``impulse`` has components along n, t1 and t2, the rows of ``axes``, shape (..., 3). ``couple``
     is the angular impulse on the target about the normal, in N m s, of the batch shape.
     """
-    about = np.asarray(couple)[..., None] * axes[..., 0, :]
-    whole = in_space(axes, impulse)
+    frame, (p, q, r) = rows(axes), components(impulse)
+    whole = [p * n + q * t1 + r * t2 for n, t1, t2 in zip(*frame, strict=True)]
     moved = {}
-    sides = (
-        ("", encounter.body, -1.0), ("target_", encounter.target, 1.0),
-    )  # fmt: skip
-    for (name, body, sense), arm in zip(sides, arms(encounter, axes[..., 0, :]), strict=True):
-        push = sense * whole
-        velocity = getattr(encounter, f"{name}velocity")
-        if not isinstance(body, HalfSpace):
-            velocity = velocity + push / np.asarray(body.mass)[..., None]
-        moment = cross(np.asarray(arm), push) + sense * about
-        spin = getattr(encounter, f"{name}spin") + turned(body, moment)
-        moved[f"{name}velocity"] = np.broadcast_to(velocity, whole.shape)
-        moved[f"{name}spin"] = np.broadcast_to(spin, whole.shape)
+    for name in ("velocity", "spin", "target_velocity", "target_spin"):
+        moved[name] = over(getattr(encounter, name), impulse.shape)
+    for name, body, arm, sense in sides(encounter, frame[0]):
+        # the impulse on this body, and its angular impulse about the centre of mass
+        push = [-sense * each for each in whole]
+        moment = [m - sense * couple * n for m, n in zip(cross(arm, push), frame[0], strict=True)]
+        changes = {"velocity": [each / body.mass for each in push], "spin": turned(body, moment)[0]}
+        for entry, change in changes.items():
+            before = components(getattr(encounter, f"{name}{entry}"))
+            after = [one + more for one, more in zip(before, change, strict=True)]
+            moved[f"{name}{entry}"] = joined(after, encounter.shape)
     return moved

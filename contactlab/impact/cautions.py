@@ -9,13 +9,14 @@ import numpy as np
 
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.body_cautions import shells, units_of_bodies
-from contactlab.impact.body_contact import arms, gap_of
+from contactlab.impact.body_contact import gap_of
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.hertz import elongation_of, hertz_scales, peak_pressure, semi_axes
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import for_share
 from contactlab.numeric.checks import Real
+from contactlab.numeric.vectors import rows
 
 #: Peak pressure of Hertz's contact at which yield begins beneath the surface, over the yield
 #: stress Y (Thornton's law has the same factor).
@@ -75,14 +76,14 @@ def size_of_contact(scene: Scene, radius: Real) -> float:
         return float(np.max(largest))
     one, other = semi_axes(scene.pair)
     minor, major = radius * np.minimum(one, other), radius * np.maximum(one, other)
-    normal = encounter.normal / np.linalg.norm(encounter.normal, axis=-1)[..., None]
     if np.all(np.equal(one, other)):
         major = 0.0 * major
     else:
         axes: Any = scene.frame
-        gap = gap_of(encounter, axes[..., 1, :], axes[..., 2, :])
-        largest = minor * gap.most
-    for body, arm in zip(named(scene).values(), arms(encounter, normal), strict=True):
+        _, t1, t2 = rows(axes)
+        largest = minor * gap_of(encounter, t1, t2).most
+    arms = encounter.contact, encounter.target_contact
+    for body, arm in zip(named(scene).values(), arms, strict=True):
         if isinstance(body, RigidBody):
             least = np.minimum(np.abs(body.curvature_radius), np.abs(body.crossing))
             length = np.linalg.norm(arm, axis=-1)
@@ -117,9 +118,10 @@ def contact_vectors(encounter: Encounter) -> tuple[str, ...]:
     normal = encounter.normal / np.linalg.norm(encounter.normal, axis=-1)[..., None]
     said = []
     sides = (("contact", encounter.body, 1.0), ("target_contact", encounter.target, -1.0))
-    for (name, body, sense), arm in zip(sides, arms(encounter, normal), strict=True):
+    for name, body, sense in sides:
         if not isinstance(body, RigidBody):
             continue
+        arm = getattr(encounter, name)
         behind = np.asarray(sense * np.sum(arm * normal, axis=-1) < 0.0)
         if behind.any():
             said.append(

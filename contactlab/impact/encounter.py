@@ -23,6 +23,7 @@ from contactlab.impact.material import Material
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
+from contactlab.numeric.arrays import every
 from contactlab.numeric.checks import NON_NEGATIVE, Real, first_of, instance, quantity, refuse
 from contactlab.numeric.names import arguments_stated
 from contactlab.numeric.types import Array, Index, Numbers
@@ -32,6 +33,7 @@ from contactlab.numeric.vectors import (
     ZERO,
     components,
     difference,
+    dot,
     moving,
     square_root,
     vector,
@@ -214,11 +216,12 @@ class Encounter:
     @property
     def approaching(self) -> Any:
         """True where the bodies approach, of the batch shape; below 1e-100 m/s they rest."""
+        if not self.shape:
+            return self.meeting().approach >= LEAST
         approach = np.empty(self.shape)
         for where, part in self.parts():
             approach.reshape(-1)[where] = part.meeting().approach
-        approaching = approach >= LEAST
-        return approaching if self.shape else bool(approaching)
+        return approach >= LEAST
 
     def parts(self) -> Any:
         """Yield (slice, encounters): one-dimensional parts and their places in the flat batch."""
@@ -280,18 +283,16 @@ class Encounter:
             If bodies separate.
         """
         contact = self.meeting()
-        if not np.all(contact.approach >= LEAST):
+        if not every(contact.approach >= LEAST):
             raise self.separate()
         if not self.of_spheres:
-            return scene_of_bodies(self)
+            return scene_of_bodies(self, contact.normal)
         u = difference(self.velocity, self.target_velocity)
-        along = sum(component * axis for component, axis in zip(u, contact.along, strict=True))
-        along = np.broadcast_to(along, self.shape)
+        along = dot(u, contact.along)
+        if self.shape:
+            along = np.broadcast_to(along, self.shape)
         bodies: tuple[Any, Any] = self.body, self.target
-        spin = (contact.slip - along) / bodies[0].radius
-        numbers: list[Any] = [contact.approach, along, spin]
-        if not self.shape:
-            numbers = [float(number) for number in numbers]
+        numbers = contact.approach, along, (contact.slip - along) / bodies[0].radius
         about = {"normal_spin": spin_about(self, contact.normal), "encounter": self}
         return Scene(*bodies, self.friction_coefficient, *numbers, **about)
 
@@ -319,11 +320,10 @@ class Encounter:
         """Return in words that friction alone presses sliding bodies together, else nothing."""
         if self.of_spheres:
             return ""
-        one = self.take(index)
+        one: Any = self.take(index)
         contact = one.meeting()
-        n, along = np.array(contact.normal), np.array(contact.along)
-        pressed = inverse_mass_of(one, n) @ n
-        lam = float(one.friction_coefficient * (pressed @ along) / (pressed @ n))
+        (pressed, coupling), _ = inverse_mass_of(one, contact.normal, contact[:2])
+        lam = one.friction_coefficient * coupling / pressed
         if lam >= -1.0 or not contact.slip:
             return ""
         return f"friction presses them together, lambda = {lam:.3g} below -1 (Painlevé)"

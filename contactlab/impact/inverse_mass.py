@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 
+from contactlab.numeric.arrays import chosen, every, quotient
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Array, Real, Rows, Vector
+from contactlab.numeric.vectors import hypotenuse, rows, solved, square_root
 
 #: Smallest over largest eigenvalue of an inverse mass, scaled to ones on the diagonal, that is
 #: told from zero.
 SINGULAR = 1e-14
+#: Determinant of a scaled inverse mass from which no eigenvalue is near that.
+CLEAR = 1e-10
 #: Parts of W, and of the slip over the speed, that are rounding.
 ROUNDING = 1e-12
 #: Ways in which an impact is solved: W does not couple, friction changes the approach and slip
@@ -22,6 +25,8 @@ CENTRAL, PLANAR, SPATIAL = 0, 1, 2
 
 def check(inverse: Array) -> None:
     """Refuse a W that is not positive definite."""
+    if every(_well_conditioned(rows(inverse))):
+        return
     diagonal = np.sqrt(np.einsum("...ii->...i", inverse))
     with np.errstate(all="ignore"):
         scaled = inverse / (diagonal[..., None] * diagonal[..., None, :])
@@ -30,64 +35,57 @@ def check(inverse: Array) -> None:
         raise refuse("inverse_mass", inverse.tolist(), rule)
 
 
-def ways(inverse: Array, speed: Real, slip: Array, cross_stiffness_ratio: Real = 1.0) -> Any:
+@np.errstate(all="ignore")
+def _well_conditioned(tensor: Rows) -> Any:
+    """Return where W is positive definite without a look at its eigenvalues, which takes longer."""
+    (x, _, _), (a, y, _), (b, c, z) = tensor
+    p, q, r = (square_root(abs(each)) for each in (x, y, z))
+    a, b, c = quotient(a, p * q), quotient(b, p * r), quotient(c, q * r)
+    # scaled to ones on the diagonal; the sum of the eigenvalues is 3 then, so that two have at most
+    # 9/4 as product, and the least is no less than 4/9 of the determinant
+    determinant = 1.0 - a * a - b * b - c * c + 2.0 * a * b * c
+    return (x > 0.0) & (y > 0.0) & (z > 0.0) & (abs(a) < 1.0) & (determinant > CLEAR)
+
+
+def ways(tensor: Rows, speed: Real, slip: Vector, cross_stiffness_ratio: Real = 1.0) -> Any:
     """Return the way of each impact: ``CENTRAL``, ``PLANAR`` or ``SPATIAL``.
 
     Parameters
     ----------
-    inverse : array, shape (..., 3, 3)
-        W in 1/kg.
+    tensor : rows of W
+        In 1/kg, as of ``vectors.rows``.
     speed : float or array
         Speed of approach in m/s.
-    slip : array, shape (..., 2)
+    slip : two floats or arrays
         Slip velocity along t1 and t2, in m/s.
     cross_stiffness_ratio : float or array
         That of the pair: where it is not 1, slip keeps its line along t1 only.
     """
-    uneven = np.not_equal(cross_stiffness_ratio, 1.0)
-    if slip.ndim == 1:
-        return _way_of_one(inverse.tolist(), float(speed), slip.tolist(), bool(uneven))
-    W = inverse
-    size = np.sqrt(W[..., 0, 0] * 0.5 * (W[..., 1, 1] + W[..., 2, 2]))
-    pressed = np.hypot(W[..., 0, 1], W[..., 0, 2]) > ROUNDING * size
-    across = np.einsum("...ij,...j->...i", W[..., 1:, 1:], slip)
-    turned = np.abs(across[..., 0] * slip[..., 1] - across[..., 1] * slip[..., 0])
-    turns = turned > ROUNDING * W[..., 1, 1] * np.einsum("...i,...i->...", slip, slip)
-    leaves = np.abs(slip[..., 1]) > ROUNDING * (np.abs(speed) + np.abs(slip[..., 0]))
-    turns |= uneven & leaves
-    leaves |= np.abs(W[..., 0, 2]) > ROUNDING * size
-    leaves |= np.abs(W[..., 1, 2]) > ROUNDING * W[..., 1, 1]
-    coupled = np.where(leaves, SPATIAL, PLANAR)
-    return np.where(pressed | turns, coupled, CENTRAL)
-
-
-def _way_of_one(inverse: list[list[float]], speed: float, slip: list[float], uneven: bool) -> int:
-    """Return the way of one impact: ``ways`` in plain numbers, many times as fast."""
-    W, (x, y) = inverse, slip
-    size = math.sqrt(W[0][0] * 0.5 * (W[1][1] + W[2][2]))
-    pressed = math.hypot(W[0][1], W[0][2]) > ROUNDING * size
+    W, (x, y) = tensor, slip
+    size = square_root(W[0][0] * 0.5 * (W[1][1] + W[2][2]))
+    pressed = hypotenuse(W[0][1], W[0][2]) > ROUNDING * size
     turned = abs((W[1][1] * x + W[1][2] * y) * y - (W[2][1] * x + W[2][2] * y) * x)
     leaves = abs(y) > ROUNDING * (abs(speed) + abs(x))
-    turns = turned > ROUNDING * W[1][1] * (x * x + y * y) or (uneven and leaves)
-    if not (pressed or turns):
-        return CENTRAL
-    leaves = leaves or abs(W[0][2]) > ROUNDING * size
-    return SPATIAL if leaves or abs(W[1][2]) > ROUNDING * W[1][1] else PLANAR
+    turns = turned > ROUNDING * W[1][1] * (x * x + y * y)
+    turns = turns | (leaves & (cross_stiffness_ratio != 1.0))
+    leaves = leaves | (abs(W[0][2]) > ROUNDING * size) | (abs(W[1][2]) > ROUNDING * W[1][1])
+    return chosen(pressed | turns, chosen(leaves, SPATIAL, PLANAR), CENTRAL)
 
 
-def impulse(inverse: Array, change: Array) -> Array:
-    """Return the impulse on the target in N s that makes a change of velocity, (..., 3)."""
-    return np.asarray(-np.linalg.solve(inverse, change[..., None])[..., 0])
+def impulse(inverse: Array, change: Vector) -> tuple[Any, Any, Any]:
+    """Return the impulse on the target in N s that makes a change of velocity, by components."""
+    p, q, r = solved(rows(inverse), change)
+    return -p, -q, -r
 
 
-def along(slip: Array) -> Array:
+def unit_slip(slip: Array) -> Array:
     """Return unit vectors along slip velocities, shape (..., 2); t1 where there is no slip."""
     size = np.hypot(slip[..., 0], slip[..., 1])[..., None]
     moving = size > 0.0
     return np.where(moving, slip / np.where(moving, size, 1.0), np.array([1.0, 0.0]))
 
 
-def mass_along(inverse: Array, direction: Array) -> Any:
-    """Return the tangential mass in kg along a direction of the tangent plane, (..., 2)."""
-    W = inverse[..., 1:, 1:]
-    return 1.0 / np.einsum("...i,...ij,...j->...", direction, W, direction)
+def along(tensor: Rows, x: Real, y: Real) -> Any:
+    """Return W in 1/kg along a unit vector of the tangent plane, by its rows and components."""
+    W = tensor
+    return x * (W[1][1] * x + W[1][2] * y) + y * (W[2][1] * x + W[2][2] * y)

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import copy
 import math
 from typing import TYPE_CHECKING, Any, Self
 
-import attrs
 import numpy as np
 
 from contactlab.impact import inverse_mass
 from contactlab.impact.bodies import Pair, size_ratio
 from contactlab.numeric import arrays as batch
+from contactlab.numeric.arrays import chosen, quotient
 from contactlab.numeric.checks import Real
 from contactlab.numeric.types import Array
+from contactlab.numeric.vectors import components, dot, entry, hypotenuse, joined, rows
 
 #: Groups of theory §14, where friction changes the approach.
 COUPLED = ("lam", "eta", "rho")
@@ -92,9 +92,9 @@ class Motions:
     @property
     def normal_inertia(self) -> Any:
         """J about the normal in kg m², 1/J the sum of both bodies'; 0 without spin about it."""
-        inverse, size = np.asarray(self.pair.inverse_spin_mass), np.asarray(self.pair.radius)
-        with np.errstate(divide="ignore"):
-            return np.where(inverse > 0.0, size * size / inverse, 0.0)[()]
+        inverse: Any = self.pair.inverse_spin_mass
+        size: Any = self.pair.radius
+        return chosen(inverse > 0.0, quotient(size * size, inverse), 0.0)
 
     def spin_energies(self, change: Real) -> tuple[Any, Any]:
         """Return the energy ½ J omega_n² at the start, and what it loses, in J.
@@ -115,7 +115,7 @@ class Motions:
         slip : float or array
             As ``slip_velocity``.
         """
-        return abs(slip) if self.planar else np.hypot(slip[..., 0], slip[..., 1])
+        return abs(slip) if self.planar else hypotenuse(*components(slip))
 
     def along_slip(self, velocity: Real) -> Any:
         """Return the part of slip velocities along the slip at first touch, of the batch shape.
@@ -127,7 +127,7 @@ class Motions:
         """
         if self.planar:
             return velocity
-        part = np.einsum("...i,...i->...", velocity, inverse_mass.along(self.slip_velocity))
+        part = np.einsum("...i,...i->...", velocity, inverse_mass.unit_slip(self.slip_velocity))
         return part if self.shape else float(part)
 
     @property
@@ -143,11 +143,11 @@ class Motions:
         """
         if self.inverse_mass is None:
             return self.pair.inertia_ratio
-        W, half = self.inverse_mass, 0.5 * np.asarray(self.pair.stiffness_ratio)
-        if not self.planar:
-            return (half[..., None] * self._sides)[..., None] * W[..., 1:, 1:] / W[..., :1, :1]
-        chi = half * W[..., 1, 1] / W[..., 0, 0]
-        return chi if self.shape else float(chi)
+        W, half = self.inverse_mass, 0.5 * self.pair.stiffness_ratio
+        if self.planar:
+            return half * entry(W, 1, 1) / entry(W, 0, 0)
+        sides = np.asarray(half)[..., None] * self._sides
+        return sides[..., None] * W[..., 1:, 1:] / W[..., :1, :1]
 
     @property
     def lam(self) -> Any:
@@ -157,8 +157,7 @@ class Motions:
     @property
     def eta(self) -> Any:
         """Eta = kappa W_nt/(mu W_nn), what pressure adds to the slip; infinite without friction."""
-        with np.errstate(all="ignore"):
-            eta = self.coupling(np.divide(self.pair.stiffness_ratio, self.friction_coefficient))
+        eta = self.coupling(quotient(self.pair.stiffness_ratio, self.friction_coefficient))
         return eta if self.planar else eta * self._sides
 
     @property
@@ -193,10 +192,11 @@ class Motions:
         """
         if self.inverse_mass is None:
             return 0.0
+        W = self.inverse_mass
         with np.errstate(all="ignore"):
-            W = self.inverse_mass
-            vectors = np.asarray(factor)[..., None] * W[..., 0, 1:] / W[..., :1, 0]
-        return self.tangent(vectors)
+            if self.planar:
+                return factor * entry(W, 0, 1) / entry(W, 0, 0)
+            return np.asarray(factor)[..., None] * W[..., 0, 1:] / W[..., :1, 0]
 
     def tangent(self, vectors: Array) -> Any:
         """Return vectors of the tangent plane, (..., 2), as this scene has its slip.
@@ -241,18 +241,15 @@ class Motions:
             return self
         pair = self.pair
         if not self.planar:
-            along = inverse_mass.along(self.slip_velocity)
-            mass = inverse_mass.mass_along(self.inverse_mass, along)
-            pair = attrs.evolve(pair, tangential_mass=mass if self.shape else float(mass))
+            along = components(inverse_mass.unit_slip(self.slip_velocity))
+            mass = 1.0 / inverse_mass.along(rows(self.inverse_mass), *along)
+            pair = batch.changed(pair, tangential_mass=batch.locked(mass))
         slip = batch.spread(self.slip_speed if not self.planar else self.slip_velocity, self.shape)
         return self._with(tangential_velocity=slip, pair=pair, inverse_mass=None, planar=True)
 
     def _with(self, **entries: object) -> Self:
         """Return this scene with other entries, of numbers that were checked before."""
-        scene = copy.copy(self)
-        for name, value in entries.items():
-            object.__setattr__(scene, name, batch.locked(value))
-        return scene
+        return batch.changed(self, **{name: batch.locked(each) for name, each in entries.items()})
 
     def parts(self, *, as_one: bool = False) -> list[tuple[Any, Self]]:
         """Return places and scenes of the impacts that are solved alike, at most three.
@@ -281,8 +278,8 @@ class Motions:
     def _ways(self) -> Any:
         """Return the way in which each impact is solved."""
         W: Any = self.inverse_mass
-        cross = self.pair.cross_stiffness_ratio
-        return inverse_mass.ways(W, self.normal_speed, self.velocity[..., 1:], cross)
+        speed, *slip = self._components(self.normal_speed, self.slip_velocity)
+        return inverse_mass.ways(rows(W), speed, slip, self.pair.cross_stiffness_ratio)
 
     def _going(self, way: int) -> Self:
         """Return this scene as it is solved in one way."""
@@ -291,8 +288,7 @@ class Motions:
         if way == inverse_mass.SPATIAL or self.planar:
             return self
         W: Any = self.inverse_mass
-        mass = 1.0 / W[..., 1, 1]
-        pair = attrs.evolve(self.pair, tangential_mass=mass if self.shape else float(mass))
+        pair = batch.changed(self.pair, tangential_mass=batch.locked(1.0 / entry(W, 1, 1)))
         slip = batch.spread(self.slip_velocity[..., 0], self.shape)
         return self._with(tangential_velocity=slip, pair=pair, planar=True)
 
@@ -307,10 +303,9 @@ class Motions:
         if self.inverse_mass is None:
             push = self.pair.normal_mass * (self.normal_speed - rate)
             drag = -self.pair.tangential_mass * change
-            return np.stack(np.broadcast_arrays(push, drag, 0.0), axis=-1)
-        return inverse_mass.impulse(
-            self.inverse_mass, self._vectors(rate - self.normal_speed, change)
-        )
+            return joined((push, drag, 0.0), self.shape)
+        moved = self._components(rate - self.normal_speed, change)
+        return joined(inverse_mass.impulse(self.inverse_mass, moved), self.shape)
 
     def energies(self, rate: Real, change: Real) -> tuple[Any, Any, Any]:
         """Return the energy at the start, and what approach and slip lose of it, in J.
@@ -323,26 +318,19 @@ class Motions:
         speed: Any = self.normal_speed
         if self.inverse_mass is None:
             return self.pair.energies(speed, self.slip_velocity, rate, change)
-        before, moved = self.velocity, self._vectors(rate - speed, change)
-        momentum = inverse_mass.impulse(self.inverse_mass, np.stack((-before, moved)))
-        start = 0.5 * np.einsum("...i,...i->...", momentum[0], before)
-        whole = np.einsum("...i,...i->...", momentum[1], before + 0.5 * moved)
+        before = self._components(speed, self.slip_velocity)
+        moved = self._components(rate - speed, change)
+        taken, given = (inverse_mass.impulse(self.inverse_mass, each) for each in (moved, before))
+        mean = [one + 0.5 * more for one, more in zip(before, moved, strict=True)]
         lost = 0.5 * self.pair.normal_mass * (speed - rate) * (speed + rate)
-        if not self.shape:
-            start, whole = float(start), float(whole)
-        return start, lost, whole - lost
+        return -0.5 * dot(given, before), lost, dot(taken, mean) - lost
 
     @property
     def velocity(self) -> Array:
         """Approach and slip at first touch along n, t1 and t2, shape (..., 3), in m/s."""
-        return self._vectors(self.normal_speed, self.slip_velocity)
+        return joined(self._components(self.normal_speed, self.slip_velocity), self.shape)
 
-    def _vectors(self, approach: Real, slip: Real) -> Array:
-        """Return rates along n and slip velocities as vectors of shape (..., 3)."""
-        vectors = np.zeros((*self.shape, 3))
-        vectors[..., 0] = approach
-        if self.planar:
-            vectors[..., 1] = slip
-        else:
-            vectors[..., 1:] = slip
-        return vectors
+    def _components(self, approach: Real, slip: Any) -> tuple[Any, Any, Any]:
+        """Return rates along n and slip velocities as components along n, t1 and t2."""
+        along, across = (slip, 0.0) if self.planar else components(slip)
+        return approach, along, across

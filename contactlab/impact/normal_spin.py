@@ -139,8 +139,8 @@ def normal_spin(scene: Scene, *, answered: Mask = False) -> NormalSpin | None:
     """
     omega, inverse = scene.normal_spin, scene.pair.inverse_spin_mass
     if scene.frame is not None and scene.encounter is not None:
-        normal = scene.frame[..., 0, :]
-        omega = spin_about(scene.encounter, components(normal))
+        normal = components(scene.frame[..., 0, :])
+        omega = spin_about(scene.encounter, normal)
         if np.any(omega):
             inverse = turning_compliance(scene.encounter, normal, scene.pair.radius)
     acts = (np.asarray(omega) != 0.0) & (np.asarray(scene.friction_coefficient) > 0.0)

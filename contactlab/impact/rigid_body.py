@@ -10,10 +10,11 @@ import attrs
 import numpy as np
 
 from contactlab.impact.material import Material
-from contactlab.numeric.arrays import common_shape, known, taken
+from contactlab.numeric.arrays import chosen, common_shape, known, some, taken
 from contactlab.numeric.checks import POSITIVE, Real, Rule, instance, key, quantity, real, refuse
 from contactlab.numeric.names import arguments_stated
 from contactlab.numeric.types import Array, Index, Numbers
+from contactlab.numeric.vectors import components, dot
 
 #: Asymmetry of an inertia, and excess of a principal moment over the sum of the other two, that
 #: count as rounding, over the largest moment.
@@ -211,13 +212,13 @@ class RigidBody:
         """Radius of curvature across ``curvature_axis``, in m."""
         return self.curvature_radius if self.cross_radius is None else self.cross_radius
 
-    def curvatures(self, t1: Array, t2: Array) -> tuple[Any, Any, Any]:
+    def curvatures(self, t1: Any, t2: Any) -> tuple[Any, Any, Any]:
         """Return both principal curvatures in 1/m, and the direction of the first.
 
         Parameters
         ----------
-        t1, t2 : array, shape (..., 3)
-            Unit vectors of the tangent plane at right angles.
+        t1, t2 : three floats or arrays
+            Components of unit vectors of the tangent plane at right angles.
 
         Returns
         -------
@@ -230,18 +231,18 @@ class RigidBody:
         ValueError
             If the radii differ and ``curvature_axis`` is at right angles to the surface.
         """
-        one, other = 1.0 / np.asarray(self.curvature_radius), 1.0 / np.asarray(self.crossing)
+        one, other = 1.0 / self.curvature_radius, 1.0 / self.crossing
         if self.curvature_axis is None:
-            return one, other, np.asarray(1.0 + 0.0j)
+            return one, other, 1.0 + 0.0j
         axis = self.curvature_axis / np.abs(self.curvature_axis).max(axis=-1)[..., None]
-        parts = (np.einsum("...i,...i->...", axis, each) for each in (t1, t2))
+        parts = (dot(components(axis), each) for each in (t1, t2))
         seen: Any = next(parts) + 1j * next(parts)
-        size = np.abs(seen)
-        if np.any((size < LOST) & (one != other)):
+        size = abs(seen)
+        if some((size < LOST) & (one != other)):
             rule = "is at right angles to the surface: it has no part in the tangent plane"
             remedy = "give the direction in which curvature_radius is measured"
             raise refuse("curvature_axis", self.curvature_axis.tolist(), rule, remedy)
-        return one, other, np.where(size < LOST, 1.0, seen / np.where(size < LOST, 1.0, size))
+        return one, other, chosen(size < LOST, 1.0 + 0.0j, seen / chosen(size < LOST, 1.0, size))
 
     def __repr__(self) -> str:
         """Return the arguments that were given."""

@@ -32,6 +32,7 @@ from contactlab.numeric.checks import (
 )
 from contactlab.numeric.names import arguments_stated
 from contactlab.numeric.types import Array, Index, Numbers
+from contactlab.numeric.vectors import entry, over
 
 #: Least kinetic energy of the normal motion, in J, and least tangential velocity, in m/s. Numbers
 #: computed from smaller values would have fewer than sixteen digits.
@@ -218,13 +219,14 @@ class Scene(Motions):
             given = np.asarray(getattr(self, name))
             if given.shape[-len(trailing) :] != trailing:
                 raise refuse(f"{name}.shape", given.shape, f"must end with {trailing}")
-            whole = batch.locked(np.broadcast_to(given, (*self.shape, *trailing)))
-            object.__setattr__(self, name, whole)
+            object.__setattr__(self, name, batch.locked(over(given, (*self.shape, *trailing))))
         W: Any = self.inverse_mass
         inverse_mass.check(W)
-        tangential = W[..., 1, 1] if self.planar else 0.5 * (W[..., 1, 1] + W[..., 2, 2])
-        masses = {"normal_mass": 1.0 / W[..., 0, 0], "tangential_mass": 1.0 / tangential}
-        object.__setattr__(self, "pair", attrs.evolve(self.pair, **masses))
+        normal, along, across = (entry(W, k, k) for k in range(3))
+        tangential = along if self.planar else 0.5 * (along + across)
+        masses = {"normal_mass": 1.0 / normal, "tangential_mass": 1.0 / tangential}
+        masses = {name: batch.locked(mass) for name, mass in masses.items()}
+        object.__setattr__(self, "pair", batch.changed(self.pair, **masses))
 
     def numbers(self) -> dict[str, Real]:
         """Return every number of the scene and of its pair, by name."""

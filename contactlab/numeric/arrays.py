@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from functools import lru_cache
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from functools import cache, lru_cache
 from typing import Any
 
 import attrs
@@ -41,6 +41,8 @@ def locked(value: Tree) -> Tree:
 def common_shape(shapes: Mapping[str, tuple[int, ...]], *, what: str, remedy: str) -> Any:
     """Return the common broadcast shape, or raise ValueError with ``what``, names and remedy."""
     shapes = {name: shape for name, shape in shapes.items() if shape}
+    if not shapes:
+        return ()
     try:
         return np.broadcast_shapes(*shapes.values())
     except ValueError:
@@ -93,6 +95,23 @@ def taken(tree: Any, shape: tuple[int, ...], part: Index) -> Any:
             object.__setattr__(copy, field.name, value)
         return copy
     return tree
+
+
+def changed(tree: Tree, **entries: object) -> Tree:
+    """Return a copy of a tree with other entries, none of which is checked again."""
+    kind: Any = type(tree)
+    copy: Tree = object.__new__(kind)
+    for name in _entries(kind):
+        value = entries[name] if name in entries else getattr(tree, name)
+        object.__setattr__(copy, name, value)
+    return copy
+
+
+@cache
+def _entries(kind: Hashable) -> tuple[str, ...]:
+    """Return the names of the entries of a class of trees; attrs takes long to make the list."""
+    fields: Any = attrs.fields(kind)  # type: ignore[arg-type]
+    return tuple(field.name for field in fields)
 
 
 def known(value: object) -> Any:
@@ -185,11 +204,26 @@ def every(mask: Mask) -> bool:
     return mask if isinstance(mask, bool) else bool(mask.all() if mask.ndim else mask)
 
 
-def chosen(condition: Mask, if_true: Real, if_false: Real) -> Any:
+def chosen(condition: Mask, if_true: Real | complex, if_false: Real | complex) -> Any:
     """Return ``np.where`` for arrays; a plain condition is decided by ``if``, ten times as fast."""
     if isinstance(condition, np.ndarray):
         return np.where(condition, if_true, if_false)
     return if_true if condition else if_false
+
+
+def quotient(dividend: Real, divisor: Real) -> Any:
+    """Return a quotient; infinite where the divisor is 0, and NaN of 0/0."""
+    if isinstance(dividend, float) and isinstance(divisor, float):
+        return dividend / divisor if divisor else dividend * math.inf
+    with np.errstate(all="ignore"):
+        return np.divide(dividend, divisor)
+
+
+def finite(numbers: Real) -> bool:
+    """Return whether a number, or every one of an array, is finite."""
+    if isinstance(numbers, float):
+        return math.isfinite(numbers)
+    return bool(np.isfinite(numbers).all())
 
 
 def share(where: Mask) -> str:

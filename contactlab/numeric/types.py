@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from types import EllipsisType
-from typing import Protocol, TypeAlias, TypeVar
+from typing import Any, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,9 @@ Mask: TypeAlias = bool | np.bool_ | NDArray[np.bool_]
 Places: TypeAlias = NDArray[np.intp]
 #: What takes a part of a batch.
 Index: TypeAlias = int | slice | EllipsisType | tuple[int, ...] | Mask | Places
+#: Components of a vector, or of one for each impact; and the rows of a tensor.
+Vector: TypeAlias = Sequence[Any]
+Rows: TypeAlias = Sequence[Vector]
 #: An array of any type of NumPy: numbers, bools, codes, words.
 Column: TypeAlias = NDArray[np.generic]
 

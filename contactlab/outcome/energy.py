@@ -120,26 +120,28 @@ def balanced(motion: Motion, scene: Scene, bound: Real, *, together: bool = Fals
     other loses, and the sum of both energies is judged.
     """
     alone = (motion.exchange == 0.0) & (motion.normal_spin_change == 0.0) & (not together)
-    if not scene.shape and alone and _balances(motion, scene, bound):
+    if not scene.shape and (alone or not scene.turns) and _balances(motion, scene, bound, alone):
         return motion
     return _with_unbalanced(motion, scene, bound, alone)
 
 
-def _balances(motion: Motion, scene: Scene, bound: Real) -> bool:
+def _balances(motion: Motion, scene: Scene, bound: Real, alone: Mask) -> bool:
     """Return whether the books of one impact balance: ``_with_unbalanced`` in a few floats.
 
     A spin about the normal that does not change the energy has no part in them.
     """
-    speed: Any = scene.normal_speed
+    rate: Any = motion.normal_velocity
     slip: Any = scene.slip_velocity
     change: Any = motion.slip_velocity_change
-    start, _, slip_loss = scene.pair.energies(speed, slip, motion.normal_velocity, change)
+    start, lost, slip_loss = scene.energies(rate, change)
     bound = LARGEST_UNDECLARED if bound == math.inf else bound
-    return not (
-        abs(motion.normal_velocity) > LARGEST_RESTITUTION * speed
-        or abs(slip_loss - motion.friction_work - motion.shear_loss) > bound * start
-        or abs(slip + change) > LARGEST_SLIP * abs(slip)
-    )
+    imbalance = slip_loss - motion.friction_work - motion.shear_loss + motion.exchange
+    if abs(imbalance) > bound * start:
+        return False
+    if not alone:
+        return bool(start - lost - slip_loss <= LARGEST_RESTITUTION**2 * start)
+    faster = abs(rate) > LARGEST_RESTITUTION * scene.normal_speed
+    return not (faster or abs(slip + change) > LARGEST_SLIP * abs(slip))
 
 
 @np.errstate(all="ignore")

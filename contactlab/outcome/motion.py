@@ -14,7 +14,7 @@ from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential_motion import TangentialMotion
-from contactlab.numeric.arrays import are_zeros, locked, spread, zeros
+from contactlab.numeric.arrays import are_zeros, chosen, finite, locked, spread, zeros
 from contactlab.numeric.checks import Real
 from contactlab.numeric.types import Array
 
@@ -72,7 +72,7 @@ class Motion(TangentialMotion):
         ``axes`` are those of a slip velocity beside the batch's.
         """
         shape = normal.scene.shape
-        if not (shape or tangential.normal is not None):
+        if not (shape or axes or tangential.normal is not None):
             return cls(  # named entry by entry: a loop is slower than all else here
                 duration=float(normal.duration),
                 normal_velocity=float(normal.final_rate),
@@ -109,15 +109,16 @@ def _coupled(
 ) -> Mapping[str, Real]:
     """Return the entries of the normal motion that came of the friction, and the exchange."""
     scene, own = normal.scene, Ends.of(tangential.normal)
-    alone = np.isnan(own.final_rate)
+    alone = own.final_rate != own.final_rate
     coupled = {
-        name: np.where(alone, entries[name], getattr(own, source)) for name, source in ENDS.items()
+        name: chosen(alone, entries[name], getattr(own, source)) for name, source in ENDS.items()
     }
     speed: Any = scene.normal_speed
-    lost = 0.5 * scene.pair.normal_mass * (speed * speed - coupled["normal_velocity"] ** 2)
+    rate = coupled["normal_velocity"]
+    lost = 0.5 * scene.pair.normal_mass * (speed * speed - rate * rate)
     return coupled | {
-        "exchange": np.where(alone, 0.0, lost - own.dissipation),
-        "compressions": np.where(alone, 1.0, own.compressions),
+        "exchange": chosen(alone, 0.0, lost - own.dissipation),
+        "compressions": chosen(alone, 1.0, own.compressions),
     }
 
 
@@ -127,7 +128,7 @@ MOVED = (
 )  # fmt: skip
 #: The numbers of a motion but the exchange, which may be undeclared, and the compressions.
 CHECKED = (*MOVED, *(name for name in ENDS if name != "normal_velocity"))
-_numbers = attrgetter(*CHECKED)
+_numbers, _moved = attrgetter(*CHECKED), attrgetter(*MOVED)
 
 
 def sound(motion: Motion, *, together: bool = False) -> Motion:
@@ -138,16 +139,15 @@ def sound(motion: Motion, *, together: bool = False) -> Motion:
     quantities that an integrator does not check.
     """
     # The sum is not finite if a number is not; if finite numbers overflow, each is looked at.
-    if together:
-        pass
-    elif motion.status is Status.SUCCESS:
-        if math.isfinite(sum(_numbers(motion))):
+    numbers = _moved if together else _numbers
+    if motion.status is Status.SUCCESS:
+        if finite(sum(numbers(motion))):
             return motion
     elif not np.ndim(motion.status):
         return motion
-    else:
+    elif not together:
         with np.errstate(all="ignore"):
-            if np.isfinite(sum(_numbers(motion))).all():
+            if finite(sum(numbers(motion))):
                 return motion
     names = MOVED if together else CHECKED
     values = {name: np.asarray(getattr(motion, name)) for name in names}

@@ -133,6 +133,9 @@ def test_a_jam_that_is_not_settled_has_a_status_and_a_sentence(monkeypatch):
     assert result.status.tolist() == [Status.UNRESOLVED] * 3
     assert "neither ends nor settles" in result.motion.detail[0]
     assert np.isnan(result.psi2).all()
+    alone = Simulation().run(scene.take(0))
+    assert alone.status is Status.UNRESOLVED
+    assert "neither ends nor settles" in alone.motion.detail
 
 
 #: psi1, chi and eta of impacts that slip throughout at some time, where friction of one sign takes

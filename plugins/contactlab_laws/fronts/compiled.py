@@ -113,14 +113,14 @@ def follow(
     -------
     tuple
         V, psi2 - psi1, work over 2.5 mu² v1²/(2 kappa W_nn), T, the largest u, compressions and
-        steps; and 0, a place of ``LOST``, or ``MEMORY``.
+        steps; and 0, a place of ``LOST``, or ``MEMORY``, which is that of all without a library.
     """
     given = np.ascontiguousarray(numbers, dtype=np.float64)
     count = given.shape[1]
-    out, status = np.empty((7, count)), np.empty(count, dtype=np.intc)
-    library().contactlab_impact_follow_all(
-        count, given.ctypes.data, tolerance, most, out.ctypes.data, status.ctypes.data
-    )
+    out, status = np.empty((7, count)), np.full(count, MEMORY, dtype=np.intc)
+    if (found := library()) is not None:
+        places = (each.ctypes.data for each in (given, out, status))
+        found.contactlab_impact_follow_all(count, next(places), tolerance, most, *places)
     return out, status
 
 

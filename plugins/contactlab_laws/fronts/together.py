@@ -19,7 +19,9 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.hertz import DURATION_CONSTANT, hertz_scales
-from contactlab.numeric.types import Array
+from contactlab.numeric.arrays import chosen, filled, some
+from contactlab.numeric.types import Array, Mask
+from contactlab.numeric.vectors import entry, joined
 from contactlab_laws.fronts import compiled
 from contactlab_laws.fronts.compiled import MEMORY, MOST_STEPS
 from contactlab_laws.fronts.path import Impact
@@ -29,10 +31,13 @@ from contactlab_laws.fronts.steps import Steps, error_of_step, kept
 USUAL = 1e-9
 #: Parts of a step at which an instant is shown.
 INSTANTS = np.array([0.25, 0.5, 0.75, 1.0])
-#: Sentences on impacts without an answer, by status.
-LOST = tuple(words.format(MOST_STEPS) for words in compiled.LOST)
-#: V, psi's change, work, T, u and compressions of an impact without friction (theory §1).
-SMOOTH = (-1.0, 0.0, 0.0, DURATION_CONSTANT, 1.0, 1.0)
+#: Statuses of impacts and sentences on them, by the statuses of the solver.
+ENDED = np.array([Status.SUCCESS, *[Status.UNRESOLVED] * (len(compiled.LOST) - 1)], dtype=object)
+DETAILS = np.array(
+    [words and f"{words.format(MOST_STEPS)}, from Fronts." for words in compiled.LOST], dtype=object
+)
+#: V, psi's change, work, T, u, compressions and steps of an impact without friction (theory §1).
+SMOOTH = (-1.0, 0.0, 0.0, DURATION_CONSTANT, 1.0, 1.0, 0.0)
 
 
 def motion(
@@ -45,57 +50,61 @@ def motion(
     shape, tolerance = scene.shape, error_of_step(accuracy or USUAL)
     scales = hertz_scales(normal.scene)
     W: Any = scene.inverse_mass
-    mu, speed = np.asarray(scene.friction_coefficient), np.asarray(scene.normal_speed)
-    kappa = np.asarray(scene.pair.stiffness_ratio)
-    columns = (scene.psi1, scene.chi, scene.lam, scene.eta)
-    # without friction nothing slips: psi is infinite, and V and the slip are closed forms
-    smooth = np.broadcast_to(mu == 0.0, shape)
-    numbers = np.array([np.broadcast_to(column, shape) for column in columns], dtype=float)
-    moving = np.flatnonzero(~smooth)
-    sought = numbers.reshape(4, -1)[:, moving]
-    if observer is None or moving.size != 1:
-        found, lost = solved(sought, tolerance)
+    mu: Any = scene.friction_coefficient
+    speed: Any = scene.normal_speed
+    kappa: Any = scene.pair.stiffness_ratio
+    smooth: Any = mu == 0.0
+    numbers = joined((scene.psi1, scene.chi, scene.lam, scene.eta), shape).reshape(-1, 4).T
+    if observer is None or some(smooth) or numbers.shape[1] != 1:
+        found, lost = _followed(numbers, smooth, tolerance)
     else:
-        left, status, steps = kept(sought[:, 0].tolist(), tolerance, MOST_STEPS)
+        left, status, steps = kept(numbers[:, 0].tolist(), tolerance, MOST_STEPS)
         found, lost = np.array(left)[:, None], np.array([status])
         _show(scene, scales, steps, observer)
-    rows = np.repeat(np.array(SMOOTH)[:, None], smooth.size, axis=1)
-    rows[:, moving] = found[:6]
-    statuses = np.full(smooth.size, Status.SUCCESS, dtype=object)
-    details = np.full(smooth.size, "", dtype=object)
-    for place in np.flatnonzero(lost).tolist():
-        rows[:, moving[place]] = math.nan
-        statuses[moving[place]] = Status.UNRESOLVED
-        details[moving[place]] = f"{LOST[lost[place]]}, from Fronts."
-    rate, psi, work, time, radius, times = rows.reshape(6, *shape)
+    ended, detail = filled(Status.SUCCESS, shape), filled("", shape)
+    if lost.any():
+        found[:6, lost != 0] = math.nan
+        ended, detail = (each[lost].reshape(shape)[()] for each in (ENDED, DETAILS))
+    rows = found.reshape(7, *shape) if shape else found[:, 0].tolist()
+    rate, psi, work, time, radius, times, counted = rows
+    pressed = entry(W, 0, 0)
     unit = mu * speed / kappa
-    dragged = -2.0 * speed * W[..., 0, 1] / W[..., 0, 0]
-    change = np.where(smooth, dragged, psi * np.where(smooth, 0.0, unit))
+    change = chosen(smooth, -2.0 * speed * entry(W, 0, 1) / pressed, psi * unit)
     # over v1²/(2 W_nn): 2.5 rho work (theory §14)
-    energy = 1.25 * mu * mu / kappa * speed * speed / W[..., 0, 0]
+    energy = 1.25 * mu * mu / kappa * speed * speed / pressed
     approach = radius * radius
-    number: Any = np.asarray if shape else float
-    compressions = np.nan_to_num(times)
     ends = (
         time * scales.approach / speed, rate * speed, radius * scales.radius,
-        approach * scales.approach, radius * approach * scales.force, 0.0 * work, compressions,
+        approach * scales.approach, radius * approach * scales.force, 0.0 * work,
+        chosen(times == times, times, 0.0),
     )  # fmt: skip
     return TangentialMotion(
-        slip_velocity_change=number(change),
-        friction_work=number(energy * work),
-        normal=Ends(*map(number, ends)),
-        status=statuses.reshape(shape) if shape else statuses[0],
-        detail=details.reshape(shape) if shape else details[0],
-        counters={"steps": int(np.sum(found[6]))},
+        slip_velocity_change=change,
+        friction_work=energy * work,
+        normal=Ends(*ends),
+        status=ended,
+        detail=detail,
+        counters={"steps": int(counted.sum() if shape else counted)},
     )
+
+
+def _followed(numbers: Array, smooth: Mask, tolerance: float) -> tuple[Array, NDArray[np.intc]]:
+    """Return what impacts leave and their statuses; ``smooth`` marks those without friction."""
+    if not some(smooth):
+        return solved(numbers, tolerance)
+    # nothing slips: psi is infinite, and V and the slip are closed forms
+    moving = np.flatnonzero(np.broadcast_to(~np.ravel(smooth), numbers.shape[1]))
+    found = np.repeat(np.array(SMOOTH)[:, None], numbers.shape[1], axis=1)
+    lost = np.zeros(numbers.shape[1], dtype=np.intc)
+    found[:, moving], lost[moving] = solved(numbers[:, moving], tolerance)
+    return found, lost
 
 
 def solved(numbers: Array, tolerance: float) -> tuple[Array, NDArray[np.intc]]:
     """Return what impacts leave and their statuses, as ``compiled.follow`` does."""
-    count = numbers.shape[1]
-    out, status = np.empty((7, count)), np.full(count, MEMORY, dtype=np.intc)
-    if compiled.library() is not None:
-        out, status = compiled.follow(numbers, tolerance)
+    out, status = compiled.follow(numbers, tolerance)
+    if not status.any():
+        return out, status
     for place in np.flatnonzero(status == MEMORY).tolist():
         impact = Impact(*numbers[:, place].tolist(), tolerance=tolerance, most=MOST_STEPS)
         status[place] = impact.follow()
