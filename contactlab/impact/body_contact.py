@@ -454,14 +454,19 @@ def seen(scene: Scene, velocity: Array) -> tuple[Any, Any]:
 
     They are relative to the surface that it strikes, in m/s, numbers for one impact.
     """
-    encounter, axes, t = scene.encounter, scene.frame, np.asarray(scene.along)
+    encounter, axes, along = scene.encounter, scene.frame, scene.along
     assert axes is not None
-    n = axes[..., 0, :]
-    _, arm = arms(encounter, n)
-    struck = encounter.target_velocity + cross(encounter.target_spin, np.asarray(arm))
-    off = np.broadcast_to(velocity - struck, n.shape)
-    normal, along = np.einsum("...i,...i->...", off, n), off @ t
-    return (normal, along) if scene.shape else (float(normal), float(along))
+    assert along is not None
+    normal = components(axes[..., 0, :])
+    off: Vector = difference(velocity, encounter.target_velocity)
+    for name, _, arm, _ in sides(encounter, normal):
+        if name:
+            rim = cross(components(encounter.target_spin), arm)
+            off = [one - other for one, other in zip(off, rim, strict=True)]
+    first, second = dot(off, normal), dot(off, along)
+    if not scene.shape:
+        return first, second
+    return np.broadcast_to(first, scene.shape), np.broadcast_to(second, scene.shape)
 
 
 def pushed(
