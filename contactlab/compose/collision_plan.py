@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from contactlab.compose.rebound import RESTITUTED_CHI, restituted_error
 from contactlab.impact.cautions import contact_vectors
 from contactlab.impact.encounter import Encounter
-from contactlab.numeric.arrays import some
+from contactlab.numeric.arrays import plain, some
 from contactlab.numeric.checks import Real
 from contactlab.outcome.plan import PSI2_ERROR, TANGENTIAL_MOTION, Clause, Plan
 
@@ -55,7 +55,7 @@ def by_rebound(plan: Plan, chi: Real, restitution: Real) -> Plan:
             text, values = said[clause.code]
             clause = clause._replace(text=text, values=values)
         computed.append(clause)
-    return plan.changed(computed=tuple(computed), psi2_error=error if error.ndim else float(error))
+    return plan.changed(computed=tuple(computed), psi2_error=plain(error))
 
 
 def _lasting(chi: Real, marched: NDArray[np.bool_]) -> str:

@@ -16,6 +16,7 @@ from contactlab.compose.planning import CLOSED_FORM
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.status import Status, Statuses
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import plain
 from contactlab.numeric.checks import Real
 from contactlab.numeric.types import Array, Mask
 from contactlab.outcome.motion import Motion
@@ -59,7 +60,7 @@ def estimated(laws: Laws, result: ImpactResult) -> tuple[Real, Real]:
         parts = answer[:, where], ended & marched, ended & ~marched
         _fill(laws.of(part), scene.take(where), part, mine, *parts)
         errors[:, where] = mine
-    psi2, restitution = (each if each.ndim else float(each) for each in errors)
+    psi2, restitution = (plain(each) for each in errors)
     return psi2, restitution
 
 

@@ -11,7 +11,7 @@ from contactlab.impact.bodies import Pair, Sphere, inverse_turning_mass
 from contactlab.impact.body_contact import Contact
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import LEAST_IMPULSE
-from contactlab.numeric.arrays import chosen, every, locked
+from contactlab.numeric.arrays import chosen, every, locked, plain
 from contactlab.numeric.checks import Real, refuse
 from contactlab.numeric.types import Array
 from contactlab.numeric.vectors import LEAST, components, three
@@ -107,7 +107,7 @@ def moved(
         flags[where] = meets
         push, drag = pair.normal_mass * (after - contact.approach), pair.tangential_mass * change
         _push([array[where] for array in flat], part, contact, push, drag)
-    after, change, work = (locked(each) if shape else float(each) for each in numbers)
+    after, change, work = (locked(plain(each)) for each in numbers)
     return dict(
         zip(VELOCITIES, map(locked, vectors), strict=True),
         normal_velocity=after,

@@ -16,7 +16,7 @@ from contactlab.contracts.sampled_motion import SampledMotion
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import Increment, Sampled, SteppedTangentialLaw
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import locked
+from contactlab.numeric.arrays import locked, plain
 from contactlab.numeric.checks import shown
 from contactlab.numeric.types import Array, Real
 
@@ -112,7 +112,7 @@ def _pressed(normal: NormalLaw, scene: Scene, points: Points) -> list[NormalCont
         for blamed.step, (approach, rate) in enumerate(rows, 1):
             contact, state = normal.respond(state, locked(approach), locked(rate))
             complete = contact.complete
-            contacts.append(NormalContact(*(_plain(entry) for entry in complete)))
+            contacts.append(NormalContact(*(locked(plain(entry)) for entry in complete)))
     return contacts
 
 
@@ -169,8 +169,3 @@ def _column(rows: Iterable[Real], shape: tuple[int, ...]) -> Array:
 def _rows(column: Array) -> Any:
     """Return the rows of a column: floats of one path, arrays of a batch."""
     return column.tolist() if column.ndim == 1 else np.array(column)
-
-
-def _plain(value: Real) -> Any:
-    """Return a number as a float, and an array read-only."""
-    return locked(value) if np.ndim(value) else float(value)

@@ -32,7 +32,7 @@ from contactlab.impact.cautions import (
 )
 from contactlab.impact.hertz import elongation_of
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import every, some, spread, taken
+from contactlab.numeric.arrays import every, plain, some, spread, taken
 from contactlab.numeric.types import Real
 from contactlab.outcome.energy import ledger
 from contactlab.outcome.motion import ENDS, Motion
@@ -409,7 +409,7 @@ def _error(normal: NormalMotion, laws: Laws, answered: Sequence[Answered], march
             if math.isnan(normal.accuracy):
                 declared = math.nan  # no better known than the motion that it follows
             error = np.where(marched, declared, error) if scene.shape else declared
-    return error if scene.shape else float(error)
+    return plain(error)
 
 
 def _error_clauses(what: str, error: Real, ended: Mask, advice: str) -> list[Clause]:

@@ -73,9 +73,7 @@ def columns_of(laws: Laws, scene: Scene, normal: NormalMotion) -> PlanColumns:
         errors = laws.tangential.errors_together(scene, laws.integrator.accuracy)
     else:
         errors = laws.integrator.errors_together(normal, laws.tangential, scene)
-    psi2, restitution = (
-        np.array(np.broadcast_to(error, shape)) if shape else float(error) for error in errors
-    )
+    psi2, restitution = (spread(error, shape) for error in errors)
     return PlanColumns(code, psi2, (WHOLE,) if together else (), restitution)
 
 

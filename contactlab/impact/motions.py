@@ -128,7 +128,7 @@ class Motions:
         if self.planar:
             return velocity
         part = np.einsum("...i,...i->...", velocity, inverse_mass.unit_slip(self.slip_velocity))
-        return part if self.shape else float(part)
+        return batch.plain(part)
 
     @property
     def slip_axes(self) -> tuple[int, ...]:

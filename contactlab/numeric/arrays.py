@@ -189,6 +189,11 @@ def flat(value: Real, shape: tuple[int, ...]) -> Array:
     return (array if same else np.broadcast_to(array, shape)).reshape(-1)
 
 
+def plain(value: Real) -> Any:
+    """Return a number without axes as a float, and an array as it is."""
+    return value if getattr(value, "ndim", 0) else float(value)
+
+
 def filled(value: object, shape: tuple[int, ...]) -> Any:
     """Return ``value`` for one impact, or an object array of ``shape`` filled with it."""
     return np.full(shape, value, dtype=object) if shape else value

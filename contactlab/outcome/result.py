@@ -12,7 +12,7 @@ import numpy as np
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.body_contact import pushed, seen
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import equal, taken
+from contactlab.numeric.arrays import equal, plain, taken
 from contactlab.numeric.checks import Real
 from contactlab.numeric.names import attributes_told
 from contactlab.outcome.answer import Answer, statuses_told
@@ -225,7 +225,7 @@ class ImpactResult(Answer):
             return self.scene.normal_spin + self.motion.normal_spin_change
         relative = self._in_space("spin") - self._in_space("target_spin")
         spin = np.einsum("...i,...i->...", relative, axes[..., 0, :])
-        return spin if self.scene.shape else float(spin)
+        return plain(spin)
 
     @property
     def w2(self) -> Any:

@@ -24,7 +24,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import filled, keep_freed_memory, locked, spread
+from contactlab.numeric.arrays import filled, keep_freed_memory, locked, plain, spread
 from contactlab.numeric.checks import Real, shown
 from contactlab.numeric.types import Array
 from contactlab_laws.march.division import one_by_one
@@ -202,7 +202,7 @@ def _ended(
 
 def _number(value: Real) -> str:
     """Return a number, or the numbers of a batch, for a sentence."""
-    return shown(value if np.ndim(value) else float(value))
+    return shown(plain(value))
 
 
 def _finite(value: Real) -> bool:
