@@ -7,13 +7,12 @@ Examples
 """
 
 from argparse import ArgumentParser, Namespace
-from collections.abc import Callable
 
 import contactlab
 
 
 @contactlab.hookimpl
-def contactlab_command(parser: ArgumentParser) -> Callable[[Namespace], int]:
+def contactlab_command(parser: ArgumentParser) -> object:
     parser.add_argument("name", help="whom to greet")
     parser.add_argument("--psi1", type=float, default=1.2, help="scaled angle of incidence (1.2)")
     return greet
