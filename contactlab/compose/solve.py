@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-import attrs
 import numpy as np
 
 from contactlab.compose import together
@@ -16,7 +15,6 @@ from contactlab.compose.composition import Laws, Way
 from contactlab.compose.normal_motion import normal_or_failed
 from contactlab.compose.pieces import Piece
 from contactlab.compose.planning import columns_of
-from contactlab.compose.registry import REGISTRY
 from contactlab.compose.solved_motion import FailedMotion
 from contactlab.contracts import faults
 from contactlab.contracts.motion import NormalMotion
@@ -95,12 +93,11 @@ def _alike(
         if recorder is None and math.prod(scene.shape) > 1:
             return _cut(laws, scene, _parts(*scene.shape, most=1))
         nothing = Motion.nothing(scene.shape, fault.status, fault.detail, axes=scene.slip_axes)
-        return PlanColumns.nothing(scene.shape), _named(laws, nothing)
+        return PlanColumns.nothing(scene.shape), nothing
     motion = sound(motion, together=coupled)
     # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
     bound = bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
-    motion = balanced(motion, scene, bound, together=coupled)
-    return columns, motion if succeeded(motion.status) else _named(laws, motion)
+    return columns, balanced(motion, scene, bound, together=coupled)
 
 
 class _Scattered(faults.LawFaultError):
@@ -183,23 +180,6 @@ def solved(laws: Laws, scene: Scene, chunk: Chunk, block: int) -> Piece:
     columns, motions = zip(*pieces, strict=True)
     shape = (chunk.size,)
     return Piece(chunk, PlanColumns.joined(columns, shape), Motion.joined(motions, shape))
-
-
-def _named(laws: Laws, motion: Motion) -> Motion:
-    """Return the motion, its sentences with the distribution of the law that each blames."""
-    names = [(type(law).__name__, REGISTRY.describe(law)) for law in laws]
-
-    def named(sentence: str) -> str:
-        for name, described in names:
-            sentence = sentence.replace(f", from {name}.", f", from {name}, {described}.")
-        return sentence
-
-    detail: Any = motion.detail
-    if isinstance(detail, str):
-        return attrs.evolve(motion, detail=named(detail))
-    sentences = [named(one) for one in detail.ravel()]
-    detail = np.array(sentences, dtype=object).reshape(detail.shape)
-    return attrs.evolve(motion, detail=detail)
 
 
 def prepare(laws: Laws, scene: Scene, history: bool | str) -> Prepared:

@@ -63,7 +63,7 @@ def malformed(value: object, shape: tuple[int, ...]) -> bool:
 
 
 def sentence(law: Law, what: str, step: int, time: Real | None = None) -> str:
-    """Return the sentence that describes a fault: step, time, event, and the law.
+    """Return the sentence that describes a fault: step, time, event, and the law with its module.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def sentence(law: Law, what: str, step: int, time: Real | None = None) -> str:
         when = f", time {float(np.max(time)):.6g} s" if time is not None else ""
     except (TypeError, ValueError):
         when = ""
-    return f"At step {step}{when}: {what}, from {type(law).__name__}."
+    return f"At step {step}{when}: {what}, from {type(law).__name__} in {type(law).__module__}."
 
 
 def raised(error: BaseException) -> str:

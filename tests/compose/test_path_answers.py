@@ -103,14 +103,15 @@ def test_rates_are_differences_over_the_times():
 @pytest.mark.parametrize(
     ("fault", "status", "words"),
     [
-        ("nan", Status.NON_FINITE, "At step 3: a force that is not finite, from Spring."),
-        ("work", Status.NON_FINITE, "At step 3: a force that is not finite, from Spring."),
-        ("unsettled", Status.UNSETTLED, "At step 3: no division found, from Spring."),
+        ("nan", Status.NON_FINITE, "At step 3: a force that is not finite, from Spring"),
+        ("work", Status.NON_FINITE, "At step 3: a force that is not finite, from Spring"),
+        ("unsettled", Status.UNSETTLED, "At step 3: no division found, from Spring"),
     ],
 )
 def test_after_a_failure_there_are_no_numbers(scene, fault, status, words):
     made = path(scene, Spring(fault=fault))
     assert np.ravel(np.array(made.status, dtype=object)).tolist() == [status] * (made.time[0].size)
+    words = f"{words} in {__name__}."
     assert made.detail == words
     for name in ("normal_force", "friction_force", "friction_work", "contact_radius"):
         known = np.isfinite(getattr(made, name)).reshape(4, -1)
@@ -124,7 +125,7 @@ def test_after_a_failure_there_are_no_numbers(scene, fault, status, words):
 def test_an_answer_that_is_no_number_is_named():
     made = path(law=Spring(fault="word", at=2))
     assert made.status is Status.MALFORMED
-    assert made.detail == "At step 2: the answer '1', from Spring."
+    assert made.detail == f"At step 2: the answer '1', from Spring in {__name__}."
     assert np.isnan(made.friction_force).all()
     assert made.fields == {}
     assert repr(made).endswith("; LinearSpring, Spring; MALFORMED)")
@@ -144,7 +145,7 @@ class Torn(LinearSpring):
 def test_the_first_law_that_fails_is_blamed():
     made = path(law=Spring(fault="unsettled"), normal=Torn(stiffness=1e7))
     assert made.status is Status.NON_FINITE
-    assert made.detail == "At step 2: a contact that is not finite, from Torn."
+    assert made.detail == f"At step 2: a contact that is not finite, from Torn in {__name__}."
     assert np.isfinite(made.friction_work).tolist() == [True, False, False, False]
 
 

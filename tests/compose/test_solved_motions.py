@@ -50,7 +50,7 @@ def test_bodies_may_turn_so_often_before_they_part():
             assert abs(motion.maximum_approach) == pytest.approx(np.sqrt(MASS / 1e6), rel=1e-9)
     words = f"{motion.status.value} {motion.detail}"
     assert words.startswith("The bodies did not part: the contact was given up. At step ")
-    assert words.endswith(": the bodies do not separate, from Swinging.")
+    assert words.endswith(f": the bodies do not separate, from Swinging in {__name__}.")
 
 
 def test_a_force_that_no_step_can_follow_is_not_resolved():

@@ -62,7 +62,7 @@ def test_answers_are_real_numbers_that_broadcast_to_the_batch(value, shape, bad)
 )
 def test_a_fault_is_told_with_its_step_and_time(time, when):
     told = sentence(LAW, "force nan", 3, time)
-    assert told == f"At step 3{when}: force nan, from Coulomb."
+    assert told == f"At step 3{when}: force nan, from Coulomb in {LAW.__module__}."
 
 
 def steps(error, step):
@@ -82,7 +82,8 @@ def test_an_error_is_blamed_on_the_law(error):
     assert str(fault.value) == told
     line = steps.__code__.co_firstlineno + 5
     assert told == (
-        f"At step 5: {type(error).__name__}: {error} (steps, line {line}), from Coulomb."
+        f"At step 5: {type(error).__name__}: {error} (steps, line {line}), "
+        f"from Coulomb in {LAW.__module__}."
     )
     assert fault.value.__cause__ is error
 
