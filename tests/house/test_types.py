@@ -21,6 +21,13 @@ CHECKERS = {
     ),
     "pyright": ("-m", "pyright", "--pythonpath", sys.executable),
 }  # fmt: skip
+#: Arguments of a function, and of them names and annotations: every function here is annotated.
+ARGUMENTS = re.compile(r"\bdef \w+\((.*?)\) ->", re.DOTALL)
+ARGUMENT = re.compile(r"(?:^|[,(\s])\*{0,2}[a-z_]\w*: (.*?)(?=,\s*\*{0,2}[a-z_]\w*: |$)", re.DOTALL)
+#: A type under another name that is Any, or has Any in it.
+ALIAS = re.compile(r"^([A-Z]\w*)(?:: TypeAlias)? = (?!TypeVar).*\bAny\b", re.MULTILINE)
+#: Largest share of arguments whose type is Any, also in part or by an alias.
+MOST_ANY = 0.03
 ERROR = re.compile(r"(\w+)\.py:(\d+)(?::\d+)?(?: -)?:? error: ")
 #: A program of a user: a checker must refuse the lines that end with "# refused", and no other.
 PROGRAM = """
@@ -94,6 +101,29 @@ def test_the_arguments_that_a_class_states_are_those_it_takes(name):
 )
 def test_a_signature_shows_types_and_defaults(made, shown):
     assert shown in str(inspect.signature(made))
+
+
+def untyped():
+    """Return (file, annotation) of every argument with Any in its type, and the number of all."""
+    folders = (ROOT / "contactlab", ROOT / "plugins")
+    sources = {path: path.read_text("utf-8") for each in folders for path in each.rglob("*.py")}
+    aliases = {name for code in sources.values() for name in ALIAS.findall(code)}
+    found, number = [], 0
+    for path, code in sources.items():
+        imports = code.partition("\n\n\n")[0]
+        own = {*ALIAS.findall(code), *(aliases & {*re.findall(r"\w+", imports)}), "Any"}
+        for arguments in ARGUMENTS.findall(code):
+            annotations = ARGUMENT.findall(arguments)
+            number += len(annotations)
+            found += [(path, each) for each in annotations if own & {*re.findall(r"\w+", each)}]
+    return found, number
+
+
+@needs_sources
+def test_few_arguments_have_no_type():
+    found, number = untyped()
+    assert number > 5000
+    assert 0 < len(found) <= MOST_ANY * number, found
 
 
 def programs():
