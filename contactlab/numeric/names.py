@@ -98,15 +98,16 @@ def arguments_stated(made: Class) -> Class:
     Type checkers and readers see that method, attrs takes the arguments: no checker sees what the
     converters of attrs accept, and a call between the two would take as long as a small object.
     """
-    return _telling(made, functools.wraps(vars(made)["__init__"])(vars(made)["__attrs_init__"]))
+    return _telling(made, vars(made)["__attrs_init__"])
 
 
 def _telling(made: Class, call: Callable[..., None]) -> Class:
-    """Return a class whose ``call``, in place of ``__init__``, and class methods tell."""
+    """Return a class whose class methods tell, and ``call`` in place of its ``__init__``."""
     for name, each in [*vars(made).items()]:
         if isinstance(each, classmethod):
             setattr(made, name, classmethod(_told(made, each.__func__)))
-    made.__init__ = _told(made, call)  # type: ignore[misc]
+    stated = vars(made)["__init__"]
+    made.__init__ = functools.wraps(stated)(_told(made, call))  # type: ignore[misc]
     return made
 
 
