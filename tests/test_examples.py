@@ -28,6 +28,7 @@ BEYOND = tuple(
         *("vectors.gif", "vectors.png"),
     )
 )
+TWO_BODIES = ("any_two_bodies.png", "thousand_poses.png")
 #: Script, a word it prints, and the picture or pictures it writes.
 SCRIPTS = {
     "one_impact": ("psi2 = -0.4", "one_impact.png"),
@@ -47,7 +48,7 @@ SCRIPTS = {
     "hysteresis": ("Mindlin and Deresiewicz: 0.1310", "hysteresis.png"),
     "egg": ("after 1, 5, 10 bounces: [0.888", "egg.png"),
     "toe_shot": ("starts 3.0° right, backspin 3840 rpm, axis 1.8°", "toe_shot.png"),
-    "any_two_bodies": ("30°: rebound 0.913, slip -0.723", "any_two_bodies.png"),
+    "any_two_bodies": ("30°: rebound 0.913, slip -0.723", TWO_BODIES),
     "loss_in_shear": ("one loss for both       at psi1 = 1:  0.15", "loss_in_shear.png"),
     "signs": ("spin -90 rad/s, slip 0.00 m/s", "signs.png"),
     "law_in_five_minutes": ("0.1 of the normal speed", "law_in_five_minutes.png"),

@@ -65,3 +65,22 @@ def test_friction_work_is_the_energy_lost():
         )
         assert energy.friction_work > 0
         assert abs(energy.relative_imbalance) < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("psi1", "chi", "lam"),
+    [
+        ((0.936831, 0.775975), ((1.035001, 0.00086), (0.00086, 1.708060)), (0.223682, 0.0)),
+        ((0.826561, -0.513001), ((1.166988, -0.279707), (-0.279707, 1.607568)), (0.23826, 0.0)),
+    ],
+)
+def test_a_slip_that_friction_hardly_stops_stops(psi1, chi, lam):
+    """Two of a thousand dropped boxes: friction of 0.3 holds what needs 0.297, in 8 ms, not ever.
+
+    A contact that is held keeps no slip: in units of theory §14 it needs abs(chi^-1 lam) <= 2 rho.
+    """
+    rho = 0.109286
+    assert np.linalg.norm(np.linalg.solve(chi, lam)) < 2.0 * rho
+    scene = Scene.nondimensional(psi1=np.array(psi1), chi=np.array(chi), lam=np.array(lam), rho=rho)
+    result = Simulation(tangential="coulomb").run(scene).check()
+    assert np.linalg.norm(result.psi2) < 1e-8
