@@ -72,7 +72,7 @@ def test_torch():
     psi1 = torch.tensor(PSI1, requires_grad=True)
     chi = torch.tensor(CHI, dtype=torch.float64, requires_grad=True)
     psi2 = ours(psi1, chi)
-    assert psi2.detach().numpy() == pytest.approx(rebound(PSI1, CHI), abs=1e-15)
+    assert psi2.detach().numpy() == pytest.approx(rebound(PSI1, CHI), abs=1e-9)
     (psi2**2).sum().backward()
     by_psi1, by_chi = differences(PSI1, CHI)
     weight = 2.0 * rebound(PSI1, CHI)
@@ -83,8 +83,6 @@ def test_torch():
     single = torch.tensor([1.2], dtype=torch.float32, requires_grad=True)
     ours(single, torch.tensor(CHI)).sum().backward()
     assert single.grad.dtype == torch.float32
-    with pytest.raises(NotImplementedError, match="first derivatives"):
-        torch.autograd.functional.hessian(lambda one: ours(one, chi).sum(), psi1)
 
 
 @pytest.fixture(scope="module")

@@ -10,8 +10,10 @@ import numpy as np
 
 from contactlab.compose import impulses
 from contactlab.compose.collision_plan import collision_plan
+from contactlab.compose.rebound import ELASTIC
 from contactlab.compose.restituted import planned, run_by_restitution
 from contactlab.compose.simulation import Simulation
+from contactlab.compose.velocities import Velocities, velocities
 from contactlab.contracts.status import Status
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.body_contact import in_space, pushed
@@ -21,7 +23,7 @@ from contactlab.numeric.arrays import every, filled
 from contactlab.numeric.checks import Real, refuse
 from contactlab.numeric.names import attributes_told
 from contactlab.numeric.types import Array, Mask
-from contactlab.numeric.vectors import components, cross, joined
+from contactlab.numeric.vectors import NOTHING, components, cross, joined
 from contactlab.outcome.answer import Answer
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.energy import EnergyLedger, books
@@ -124,6 +126,59 @@ class Collision(Answer):
         else:
             moved = _moved(encounter, result, met)
         return cls(encounter=encounter, **moved, known=result, **about)
+
+    @staticmethod
+    def of_arrays(
+        body: Sphere,
+        target: Sphere | HalfSpace,
+        friction_coefficient: Any,
+        *,
+        normal: Any,
+        velocity: Any,
+        spin: Any = NOTHING,
+        target_velocity: Any = NOTHING,
+        target_spin: Any = NOTHING,
+        restitution: Any = ELASTIC,
+    ) -> Velocities:
+        """Return velocities and spins after impacts of spheres, as arrays of JAX or PyTorch.
+
+        This is ``collide`` for arrays that may be traced: it can be compiled and differentiated, by
+        jit, vmap and grad.
+
+        Parameters
+        ----------
+        body : Sphere
+        target : Sphere or HalfSpace
+        friction_coefficient : float or array
+            Coulomb's mu, at least 0.
+        normal, velocity, spin, target_velocity, target_spin : array, shape (..., 3)
+            As of ``Encounter``; lists, and arrays of NumPy, may stand beside arrays of JAX or
+            PyTorch.
+        restitution : float, array of shape (...,), or callable
+            As of ``collide``.
+
+        Returns
+        -------
+        Velocities
+            A named tuple of both bodies. Where they separate they pass through untouched, and a
+            half-space keeps its velocity. psi2 is that of ``rebound`` with such arrays, 3e-10 from
+            NumPy's; it is NaN where a traced number is out of range.
+
+        Raises
+        ------
+        ValueError
+            For bad input whose numbers are known, with the argument, its value, the rule and the
+            remedy; also where chi of the bodies is out of the table, and if no array is of JAX or
+            PyTorch.
+        """
+        vectors = {
+            "normal": normal,
+            "velocity": velocity,
+            "spin": spin,
+            "target_velocity": target_velocity,
+            "target_spin": target_spin,
+        }
+        return velocities(body, target, friction_coefficient, vectors, restitution)
 
     @cached_property
     def result(self) -> ImpactResult:

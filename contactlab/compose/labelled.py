@@ -135,6 +135,7 @@ def _lazily(
         signature,
         *arguments.values(),
         output_dtypes=np.float64 if answers == 1 else [np.float64] * answers,
+        allow_rechunk=True,  # chunks of the arguments may differ
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeGuard, overload
 
@@ -56,6 +56,11 @@ SLIPS_THROUGHOUT = 1e5
 NO_JOIN = 0.99
 #: Defaults of ``tolerance`` and ``restitution``, tested by identity: a comparison takes long.
 USUAL, ELASTIC = 1e-5, 1.0
+#: Libraries of arrays that may be traced, with what differentiates ``rebound`` in each.
+DIFFERENTIATE = {
+    "jax": "jax.grad, jax.jvp and jax.hessian",
+    "torch": "torch.autograd and torch.func",
+}
 #: Arrays that are looked at number by number: NumPy takes longer to begin.
 FEW_NUMBERS = 40
 
@@ -183,9 +188,10 @@ def rebound(
         ``pandas.Series`` by index. The answer has the same type. Arrays of dask give arrays of
         dask, not computed yet; their bad numbers are refused when they are computed.
 
-        Arrays of JAX give arrays of JAX, under jit, vmap, grad and hessian too: from the tables, so
-        chi is at most 2.5, and 0.3 to 3 with a restitution; in float32 to 2e-6. Where numbers out
-        of these ranges are traced, psi2 is NaN. ``derivatives`` are those that JAX takes.
+        Arrays of JAX and PyTorch give arrays of JAX and PyTorch, under jit, vmap, grad and hessian
+        too: from the tables, so chi is at most 2.5, and 0.3 to 3 with a restitution; in float32 to
+        2e-6. Where numbers out of these ranges are traced, psi2 is NaN. ``derivatives`` are those
+        that the library takes.
 
     Warns
     -----
@@ -289,8 +295,8 @@ def _labelled(
     if three:
         arguments["restitution"] = restitution
     _tolerance(tolerance)
-    if "jax" in map(library_of, arguments.values()):
-        return _by_jax(arguments, derivatives)
+    if library := traceable(arguments.values()):
+        return _by_standard(library, arguments, derivatives)
     from contactlab.compose.labelled import by_labels  # only for arrays of other libraries
 
     def answer(*columns: Real) -> Any:
@@ -300,12 +306,17 @@ def _labelled(
     return by_labels(answer, 1 + (2 + three) * derivatives, arguments)
 
 
-def _by_jax(arguments: dict[str, object], derivatives: bool) -> Any:
-    """Return ``rebound`` of arrays of JAX, traced or not."""
-    from contactlab.compose.traced import by_jax  # only for arrays of JAX
+def traceable(values: Iterable[object]) -> str:
+    """Return the package of the first array of JAX or PyTorch; empty if there is none."""
+    return next((name for name in map(library_of, values) if name in DIFFERENTIATE), "")
+
+
+def _by_standard(library: str, arguments: dict[str, object], derivatives: bool) -> Any:
+    """Return ``rebound`` of arrays of JAX or PyTorch, traced or not."""
+    from contactlab.compose.traced import by_standard  # only for such arrays
 
     if derivatives:
-        remedy = "leave it out: jax.grad, jax.jvp and jax.hessian differentiate rebound"
+        remedy = f"leave it out: {DIFFERENTIATE[library]} differentiate rebound"
         raise refuse("derivatives", derivatives, "is for NumPy arrays", remedy)
     e = arguments.get("restitution")
     if type(e) in (int, float) and e == 1.0:
@@ -317,12 +328,13 @@ def _by_jax(arguments: dict[str, object], derivatives: bool) -> Any:
         "psi1": FINITE,
         "chi": Rule(
             lambda value: POSITIVE.holds(value) & (value >= low) & (value <= high),
-            f"must {span} {high} with arrays of jax",
+            f"must {span} {high} with arrays of {library}",
         ),
         "restitution": RESTITUTIONS,
     }
     joined = not (isinstance(e, float) and e <= NO_JOIN)
-    return by_jax(_law("normal" if lossy else "tangential"), arguments, rules, joined=joined)
+    law = _law("normal" if lossy else "tangential")
+    return by_standard(library, law, arguments, rules, joined=joined)
 
 
 def _slopes(psi1: Array, chi: Array, restitution: Real | None) -> tuple[Array, ...]:

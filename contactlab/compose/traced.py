@@ -1,36 +1,38 @@
-"""``rebound`` of arrays of JAX, which may be traced: jit, vmap, grad and hessian."""
+"""``rebound`` of arrays of JAX and PyTorch, which may be traced: under jit, vmap, grad, hessian."""
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
 
-import numpy as np
-
+from contactlab.compose.namespaces import known, library_named
 from contactlab.contracts.whole_impact import Tabulated
-from contactlab.numeric.checks import Rule, real, refuse
-from contactlab.numeric.labels import is_traced, library_of
+from contactlab.numeric.checks import Rule, refuse
 
-#: Types that psi2 is computed in; shorter ones are widened.
-SHORTEST = "float32"
+#: Where a known number is out of a table.
+ENDS = "the table ends there: give such impacts to rebound as NumPy arrays"
+#: Tables as arrays of a library, by law, library, type and place.
+_TABLES: dict[Any, Any] = {}
 
 
-def by_jax(
+def by_standard(
+    library: str,
     law: Tabulated,
     arguments: Mapping[str, object],
     rules: Mapping[str, Rule],
     *,
     joined: bool,
 ) -> Any:
-    """Return psi2 as an array of JAX, of the broadcast shape.
+    """Return psi2 as an array of a library, of the broadcast shape.
 
     Parameters
     ----------
+    library : str
+        The package of the arrays, ``"jax"`` or ``"torch"``.
     law : Tabulated
     arguments : mapping of str to float or array
-        psi1, chi and maybe restitution, at least one of them an array of JAX.
+        psi1, chi and maybe restitution, at least one of them an array of that library.
     rules : mapping of str to Rule
         What numbers must obey; of traced ones, whose values are not known, psi2 is NaN instead.
     joined : bool
@@ -41,50 +43,34 @@ def by_jax(
     ValueError
         If a number that is known is out of range, or shapes do not fit.
     """
-    jax: Any = importlib.import_module("jax")
-    numpy: Any = importlib.import_module("jax.numpy")
     for name, value in arguments.items():
-        if library_of(value) not in ("", "jax"):
-            rule = "must be numbers or an array of jax, as the others"
-            raise refuse(name, value, rule, "give arrays of one package")
-        if not is_traced(value):
-            remedy = "the table ends there: give such impacts to rebound as NumPy arrays"
-            known = np.asarray(value) if library_of(value) else value
-            real(name, known, rule=rules[name], remedy=remedy, empty=True)
-    # the type of arrays, not of numbers beside them, as everywhere in JAX
-    kind = numpy.result_type(*arguments.values())
-    if not numpy.issubdtype(kind, numpy.floating):
-        kind = numpy.result_type(float)
-    kind = numpy.promote_types(kind, SHORTEST)
+        known(library, name, value, rules[name], ENDS)
+    arrays = library_named(library).arrays(arguments.values())
+    xp = library_named(library).xp
     try:
-        shape = numpy.broadcast_shapes(*map(numpy.shape, arguments.values()))
-    except ValueError:
-        shapes = {name: numpy.shape(value) for name, value in arguments.items()}
+        shape = xp.broadcast_shapes(*(array.shape for array in arrays))
+    except (ValueError, RuntimeError):  # of JAX, of PyTorch
+        shapes = {name: (*each.shape,) for name, each in zip(arguments, arrays, strict=True)}
         raise refuse("shapes", shapes, "must fit", "give one value of each for each") from None
-    impact = [numpy.broadcast_to(numpy.asarray(value, kind), shape) for value in arguments.values()]
-    with jax.ensure_compile_time_eval():  # else a constant made in a trace would outlive it
-        tables = _tables(law, str(kind))
-    return _compiled(law, joined)(tables, *impact)
+    impact = [xp.broadcast_to(array, shape) for array in arrays]
+    return _function(library, law, joined)(_tables(library, law, impact[0]), *impact)
+
+
+def _tables(library: str, law: Tabulated, like: Any) -> Any:
+    """Return the numbers of a law's table as arrays of the type and place of ``like``."""
+    place = like.device if library == "torch" else None
+    key = law, library, like.dtype, place
+    if key not in _TABLES:
+        _TABLES[key] = library_named(library).constants(law.table_of_arrays(), like)
+    return _TABLES[key]
 
 
 @cache
-def _tables(law: Tabulated, kind: str) -> Any:
-    """Return the numbers of a law's table as arrays of JAX."""
-    numpy: Any = importlib.import_module("jax.numpy")
-    return {
-        name: numpy.asarray(each, kind if each.dtype.kind == "f" else "int32")
-        for name, each in law.table_of_arrays().items()
-    }
-
-
-@cache
-def _compiled(law: Tabulated, joined: bool) -> Callable[..., Any]:
-    """Return psi2 of tables and impacts, compiled by JAX when it is called."""
-    jax: Any = importlib.import_module("jax")
-    numpy: Any = importlib.import_module("jax.numpy")
+def _function(library: str, law: Tabulated, joined: bool) -> Callable[..., Any]:
+    """Return psi2 of tables and impacts, compiled when it is called if the library compiles."""
+    xp = library_named(library).xp
 
     def psi2(tables: Any, *impact: Any) -> Any:
-        return law.rebound_of_arrays(numpy, tables, *impact, joined=joined)
+        return law.rebound_of_arrays(xp, tables, *impact, joined=joined)
 
-    compiled: Callable[..., Any] = jax.jit(psi2)
-    return compiled
+    return library_named(library).compiled(psi2)

@@ -1,4 +1,4 @@
-"""Arrays of other libraries, none of them imported: xarray, pandas, dask and JAX."""
+"""Arrays of other libraries, none imported: xarray, pandas, dask, JAX and PyTorch."""
 
 from __future__ import annotations
 
@@ -11,7 +11,14 @@ import numpy as np
 
 #: Packages of arrays that NumPy would pair by position, compute at once or lose the trace of, by
 #: the package of their classes.
-LIBRARIES = {"xarray": "xarray", "pandas": "pandas", "dask": "dask", "jax": "jax", "jaxlib": "jax"}
+LIBRARIES = {
+    "xarray": "xarray", "pandas": "pandas", "dask": "dask", "jax": "jax", "jaxlib": "jax",
+    "torch": "torch",
+}  # fmt: skip
+#: Attributes of the arrays of packages that have other classes too.
+ONLY_OF = {"pandas": "iloc", "torch": "detach"}
+#: Of traced arrays.
+ONLY_ARRAYS = "of scenes and laws only rebound and Collision.of_arrays take traced arrays"
 
 
 def library_of(value: object) -> str:
@@ -25,14 +32,21 @@ def _library(kind: type) -> str:
     """Return the package of a class of such arrays; empty for all other classes."""
     for base in kind.__mro__:
         package = base.__module__.partition(".")[0]
-        if package in LIBRARIES and (package != "pandas" or hasattr(kind, "iloc")):
+        if package in LIBRARIES and hasattr(kind, ONLY_OF.get(package, "__class__")):
             return LIBRARIES[package]
     return ""
 
 
-def is_traced(value: object) -> bool:
-    """Return whether an array of JAX has no numbers: it is traced by jit, grad or vmap."""
-    return library_of(value) == "jax" and isinstance(value, sys.modules["jax"].core.Tracer)
+def numbers_of(value: Any) -> Any:
+    """Return the numbers of an array of JAX or PyTorch; None if it is traced, by jit or vmap."""
+    if library_of(value) == "jax":
+        return None if isinstance(value, sys.modules["jax"].core.Tracer) else np.asarray(value)
+    plain = value.detach()
+    plain = plain.double() if plain.is_floating_point() else plain  # NumPy has no bfloat16
+    try:
+        return plain.cpu().numpy()
+    except RuntimeError:  # a tensor of torch.func
+        return None
 
 
 def numbered(index: Sized) -> bool:
@@ -58,8 +72,12 @@ def misplaced(value: Any) -> tuple[str, str] | None:
         if not numbered(value.index):
             rule = "has an index other than 0, 1, 2, ..., but arrays are paired by position here"
             return rule, "give numbers in the order that is meant: .to_numpy()"
-    if library == "jax" and is_traced(value):
-        return "is traced by jax", "of scenes and laws only rebound takes traced arrays"
+    if library in ("jax", "torch") and numbers_of(value) is None:
+        return f"is traced by {library}", ONLY_ARRAYS
+    if library == "torch" and value.requires_grad:
+        return "has a gradient, which would be lost here", f"give .detach(); {ONLY_ARRAYS}"
+    if library == "torch" and value.device.type != "cpu":
+        return "is on another device", "give .cpu()"
     if library == "dask":
         remedy = "give its numbers: .compute(); of dask arrays only rebound returns dask arrays"
         return "is not computed yet", remedy

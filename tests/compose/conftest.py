@@ -32,3 +32,21 @@ def law_source():
 @pytest.fixture
 def registry():
     return Registry()
+
+
+@pytest.fixture
+def jax():
+    found = pytest.importorskip(
+        "jax", reason="JAX is not installed: pip install contactlab[recipes]"
+    )
+    before = found.config.jax_enable_x64
+    found.config.update("jax_enable_x64", True)
+    yield found
+    found.config.update("jax_enable_x64", before)
+
+
+@pytest.fixture
+def torch():
+    return pytest.importorskip(
+        "torch", reason="PyTorch is not installed: pip install contactlab[recipes]"
+    )

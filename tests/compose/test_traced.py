@@ -1,4 +1,4 @@
-"""``rebound`` of arrays of JAX, and its formulas by the array API standard, against NumPy's."""
+"""``rebound`` of arrays of JAX and PyTorch, and its formulas by the standard, against NumPy's."""
 
 import numpy as np
 import pytest
@@ -44,6 +44,21 @@ def test_the_formulas_with_loss_give_what_the_table_gives():
     np.testing.assert_allclose(alone, rebound(psi1, chi, restitution=low), atol=1e-9)
 
 
+def test_the_formulas_ask_for_the_standard_alone():
+    strict = pytest.importorskip("array_api_strict")
+    psi1, chi = impacts(0.3, 2.5, count=500)
+    e = np.random.default_rng(9).uniform(0.0, 1.0, psi1.size)
+    given = [strict.asarray(each) for each in (psi1, chi, e)]
+    elastic, lossy = (
+        {name: strict.asarray(np.array(each)) for name, each in constants.items()}
+        for constants in (traced.elastic_constants(), traced.restituted_constants())
+    )
+    psi2 = np.asarray(traced.rebound(strict, elastic, *given[:2]))
+    np.testing.assert_allclose(psi2, rebound(psi1, chi), atol=1e-9)
+    psi2 = np.asarray(traced.rebound_with_loss(strict, lossy, *given, joined=True))
+    np.testing.assert_allclose(psi2, rebound(psi1, chi, restitution=e), atol=1e-9)
+
+
 @needs_namespace
 @pytest.mark.parametrize(("psi1", "chi"), [(np.nan, 1.0), (np.inf, 1.0), (1.0, 0.0), (1.0, 2.6),
                                            (1.0, np.nan), (1.0, -1.0)])  # fmt: skip
@@ -52,17 +67,6 @@ def test_out_of_the_table_psi2_is_nan(psi1, chi):
     assert np.isnan(traced.rebound(np, traced.elastic_constants(), psi1, chi)).all()
     tables = traced.restituted_constants()
     assert np.isnan(traced.rebound_with_loss(np, tables, psi1, chi, e, joined=True)).all()
-
-
-@pytest.fixture
-def jax():
-    found = pytest.importorskip(
-        "jax", reason="JAX is not installed: pip install contactlab[recipes]"
-    )
-    before = found.config.jax_enable_x64
-    found.config.update("jax_enable_x64", True)
-    yield found
-    found.config.update("jax_enable_x64", before)
 
 
 def test_jax_arrays_give_jax_arrays(jax):
@@ -198,3 +202,43 @@ def test_other_doors_take_known_arrays_and_refuse_traced_ones(jax):
     ):
         with pytest.raises(ValueError, match="is traced by jax; of scenes"):
             jax.jit(door)(jax.numpy.asarray([1.0, 2.0, 3.0]))
+
+
+def test_tensors_give_tensors(torch):
+    psi1, chi = impacts(0.3, 2.5, count=300)
+    e = np.random.default_rng(7).uniform(0.0, 1.0, psi1.size)
+    given, ratios, each = (torch.tensor(values) for values in (psi1, chi, e))
+    psi2 = rebound(given, ratios)
+    assert psi2.dtype == torch.float64
+    np.testing.assert_allclose(psi2.numpy(), rebound(psi1, chi), atol=1e-9)
+    for lossy in (0.0, 0.8, 1, e, each):
+        plain = rebound(psi1, chi, restitution=np.asarray(lossy) if np.ndim(lossy) else lossy)
+        found = rebound(given, ratios, restitution=lossy)
+        np.testing.assert_allclose(found.numpy(), plain, atol=1e-9)
+    plain = rebound(psi1, np.full_like(psi1, 49 / 34))
+    np.testing.assert_allclose(rebound(given, 49 / 34).numpy(), plain, atol=1e-9)
+    assert rebound(given.float(), 1.44).dtype == torch.float32
+    assert rebound(torch.tensor([1, 2]), 1.44).dtype == torch.float32
+    assert rebound(given[:, None], np.array([0.8, 1.4])).shape == (psi1.size, 2)
+
+
+def test_gradients_pass_tensors(torch):
+    psi1 = torch.tensor([-3.0, 0.2, 0.9, 1.2, 2.0, 4.0, 7.0], dtype=torch.float64)
+    chi = torch.tensor(49 / 34, dtype=torch.float64, requires_grad=True)
+    _, by_psi1, by_chi = rebound(psi1.numpy(), 49 / 34, derivatives=True)
+    psi1.requires_grad_(True)
+    found = torch.autograd.grad(rebound(psi1, chi).sum(), (psi1, chi))
+    np.testing.assert_allclose(found[0].numpy(), by_psi1, atol=1e-8)
+    assert float(found[1]) == pytest.approx(by_chi.sum(), abs=1e-8)
+    with pytest.raises(ValueError, match=r"psi1 = .*has a gradient.*; give \.detach"):
+        Scene.nondimensional(psi1=psi1, chi=1.4)
+    assert Scene.nondimensional(psi1=psi1.detach(), chi=1.4).psi1.size == 7
+    for arguments, words in (
+        ((psi1, 2.6), r"chi = 2.6: .* at most 2.5 with arrays of torch"),
+        ((psi1 * np.nan, 1.0), "psi1"),
+        ((psi1, torch.ones(3)), "must fit"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            rebound(*arguments)
+    with pytest.raises(ValueError, match=r"derivatives.*torch\.autograd"):
+        rebound(psi1, 1.0, derivatives=True)

@@ -1,0 +1,141 @@
+"""JAX and PyTorch as libraries of the array API standard, and in what the two differ."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache, reduce
+from typing import Any, Protocol
+
+import numpy as np
+
+from contactlab.numeric.checks import Rule, real, refuse
+from contactlab.numeric.labels import library_of, numbers_of
+
+#: The shortest type that answers are computed in; shorter ones are widened.
+SHORTEST = "float32"
+
+
+class Library(Protocol):
+    """A library of arrays.
+
+    Attributes
+    ----------
+    xp : module or object
+        Functions of the array API standard.
+    """
+
+    xp: Any
+
+    def arrays(self, values: Iterable[Any]) -> list[Any]:
+        """Return numbers and arrays as arrays of one type, that of the arrays among them."""
+
+    def constants(self, numbers: Mapping[str, Any], like: Any) -> dict[str, Any]:
+        """Return arrays of NumPy as arrays of the type and place of ``like``, or integers."""
+
+    def compiled(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        """Return a function that may be compiled when it is called."""
+
+
+class _Jax:
+    """JAX."""
+
+    def __init__(self) -> None:
+        self.jax: Any = importlib.import_module("jax")
+        self.xp: Any = importlib.import_module("jax.numpy")
+        self.compiled: Any = self.jax.jit
+
+    def arrays(self, values: Iterable[Any]) -> list[Any]:
+        """Return numbers and arrays as arrays of one type, that of the arrays among them."""
+        given = [*values]
+        kind = self.xp.result_type(*filter(_is_array, given))
+        if not self.xp.issubdtype(kind, self.xp.floating):
+            kind = self.xp.result_type(float)
+        kind = self.xp.promote_types(kind, SHORTEST)
+        return [self.xp.asarray(value, kind) for value in given]
+
+    def constants(self, numbers: Mapping[str, Any], like: Any) -> dict[str, Any]:
+        """Return arrays of NumPy as arrays of the type of ``like``, or integers."""
+        with self.jax.ensure_compile_time_eval():  # else a constant of a trace would outlive it
+            return {
+                name: self.xp.asarray(each, like.dtype if each.dtype.kind == "f" else "int32")
+                for name, each in numbers.items()
+            }
+
+
+class _Torch:
+    """PyTorch, whose names are those of the standard but for ``take`` and ``astype``."""
+
+    def __init__(self) -> None:
+        self.torch: Any = importlib.import_module("torch")
+        self.xp: Any = self
+
+    def __getattr__(self, name: str) -> Any:
+        """Return a function of PyTorch."""
+        return getattr(self.torch, name)
+
+    def take(self, values: Any, index: Any, axis: int) -> Any:
+        """Return values at an index of one axis."""
+        return self.torch.index_select(values, axis, index.long())
+
+    def astype(self, values: Any, kind: Any) -> Any:
+        """Return values of another type."""
+        return values.to(kind)
+
+    def arrays(self, values: Iterable[Any]) -> list[Any]:
+        """Return numbers and arrays as arrays of one type and place."""
+        given = [*values]
+        tensors = [v if library_of(v) else self.torch.tensor(v) for v in filter(_is_array, given)]
+        kind = reduce(self.torch.promote_types, (tensor.dtype for tensor in tensors))
+        if not kind.is_floating_point:
+            kind = self.torch.get_default_dtype()
+        kind = self.torch.promote_types(kind, getattr(self.torch, SHORTEST))
+        place = next(value.device for value in given if library_of(value))
+        return [
+            value.to(place, kind)
+            if library_of(value)
+            else self.torch.tensor(value, dtype=kind, device=place)
+            for value in given
+        ]
+
+    def constants(self, numbers: Mapping[str, Any], like: Any) -> dict[str, Any]:
+        """Return arrays of NumPy as arrays of the type and place of ``like``, or integers."""
+        with self.torch.inference_mode(False):  # else no gradient could pass them later
+            return {
+                name: self.torch.tensor(
+                    each,
+                    dtype=like.dtype if each.dtype.kind == "f" else self.torch.int32,
+                    device=like.device,
+                )
+                for name, each in numbers.items()
+            }
+
+    def compiled(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        """Return the function as it is: who compiles calls torch.compile."""
+        return function
+
+
+def _is_array(value: Any) -> bool:
+    """Return whether a value sets the type of the answer: numbers and lists beside it do not."""
+    return isinstance(value, np.ndarray) or bool(library_of(value))
+
+
+@cache
+def library_named(name: str) -> Library:
+    """Return the library of a package, ``"jax"`` or ``"torch"``, which is imported."""
+    return _Torch() if name == "torch" else _Jax()
+
+
+def known(library: str, name: str, value: Any, rule: Rule, remedy: str = "") -> Any:
+    """Return the checked numbers of an argument; None if they are not known, but traced.
+
+    Raises
+    ------
+    ValueError
+        If a number breaks the rule, or the array is of another library.
+    """
+    if library_of(value) not in ("", library):
+        other = f"must be numbers or an array of {library}, as the others"
+        raise refuse(name, value, other, "give arrays of one package")
+    numbers = numbers_of(value) if library_of(value) else value
+    return None if numbers is None else real(name, numbers, rule=rule, remedy=remedy, empty=True)
