@@ -29,6 +29,9 @@ MOST_CHANGES = 8
 #: Narrowest interval that is halved, times the root of the second derivative's bound: the function
 #: is a straight line there, to 1e-15, and two zeros count as one or none.
 NARROWEST = 1e-7
+#: Rise or fall of a function over its largest distance from the chord, from which it rises or falls
+#: all the way; at 8 the slope may still vanish at an end.
+STEEP = 16.0
 #: A function value above minus this is no zero: rounding.
 ROUNDED = 1e-14
 
@@ -256,13 +259,47 @@ def first_zero(
     while pending:
         left, before, right, after = pending.pop()
         width = right - left
-        if min(before, after) > 0.125 * bend * width * width:
+        bow = 0.125 * bend * width * width
+        rises = before > -ROUNDED and after - before > STEEP * bow
+        if rises or min(before, after) > bow:
             continue
+        if after < -ROUNDED and before > 0.0 and before - after > STEEP * bow:
+            return _only_zero(function, bend, left, before, right, after)
         if width <= narrowest:
             if after < -ROUNDED:
-                return left + width * max(before, 0.0) / (max(before, 0.0) - after)
+                return _straight_zero(left, before, right, after)
             continue
         middle = 0.5 * (left + right)
         value = function(middle)
         pending += [(middle, value, right, after), (left, before, middle, value)]
     return None
+
+
+def _only_zero(
+    function: Callable[[float], float],
+    bend: float,
+    left: float,
+    before: float,
+    right: float,
+    after: float,
+) -> float:
+    """Return the zero of a function that falls all the way, by straight lines and their error."""
+    while right - left > NARROWEST / max(bend, 1.0) ** 0.5:
+        bow = 0.125 * bend * (right - left) ** 2
+        # the slope is nowhere less than that of the chord by more than the bend times the width
+        reach = bow * (right - left) / (before - after - 8.0 * bow)
+        zero = _straight_zero(left, before, right, after)
+        low, high = max(zero - reach, left), min(zero + reach, right)
+        if low > left:
+            left, before = low, function(low)
+        if high < right:
+            right, after = high, function(high)
+        if before <= 0.0 or after >= 0.0:  # rounding
+            break
+    return _straight_zero(left, before, right, after)
+
+
+def _straight_zero(left: float, before: float, right: float, after: float) -> float:
+    """Return where a straight line that falls is 0; an end if both have one sign."""
+    high = max(before, 0.0)
+    return left + (right - left) * high / (high - after) if after < 0.0 else right
