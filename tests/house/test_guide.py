@@ -246,7 +246,7 @@ def test_names_of_code_exist(topic):
             continue
         if owner in ("motion", "energy"):  # attributes of a result
             owner = {"motion": "Motion", "energy": "EnergyLedger"}[owner]
-        holders = [vars(space)[owner] for space in NAMESPACES if owner in vars(space)]
+        holders = [getattr(space, owner) for space in NAMESPACES if hasattr(space, owner)]
         if owner in ("contactlab", "plan"):
             continue
         assert holders, f"{owner}.{name}"

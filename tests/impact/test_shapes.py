@@ -5,7 +5,9 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
+from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
+from scipy.special import iv, ivp, jv, jvp
 
 from contactlab import Encounter, HalfSpace, Material, Simulation, collide, shapes
 
@@ -39,6 +41,27 @@ def test_a_capsule_has_the_closed_form():
 def test_a_thin_rod_and_a_flat_dome_have_the_cylinders_moments():
     body, _ = shapes.rod(**ROD | {"axis": DOWN, "end_radius": 1e3, "radius": 0.1, "mass": 12.0})
     assert np.diag(body.inertia) == pytest.approx([1.03, 1.03, 0.06], rel=1e-4)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+def test_a_disc_bends_as_a_plate_with_a_free_rim(nu):
+    """The equation of the first mode, about two diameters, by Bessel functions (Kirchhoff)."""
+    free = 1.0 - nu
+
+    def equation(x):
+        j, j1, i, i1 = jv(2, x), jvp(2, x), iv(2, x), ivp(2, x)
+        moment = x * x * j + free * (x * j1 - 4 * j), x * x * i - free * (x * i1 - 4 * i)
+        shear = x**3 * j1 + 4 * free * (x * j1 - j), x**3 * i1 - 4 * free * (x * i1 - i)
+        return moment[0] * shear[1] - moment[1] * shear[0]
+
+    solid = Material(young_modulus=70e9, poisson_ratio=nu, density=2700.0)
+    plate, _ = shapes.disc(
+        radius=0.1, thickness=0.002, rim_radius=1e-5, material=solid, normal=[0.6, 0.0, -0.8],
+        axis=[0.0, 0.0, 1.0],
+    )  # fmt: skip
+    bending = 70e9 * 0.002**2 / (12.0 * (1.0 - nu * nu) * 2700.0)
+    omega = brentq(equation, 1.5, 2.8) ** 2 / 0.1**2 * math.sqrt(bending)
+    assert plate.bending_period == pytest.approx(2.0 * math.pi / omega, rel=0.1)
 
 
 def test_a_rod_has_the_first_bending_period_of_free_ends():
