@@ -240,9 +240,9 @@ def _ball(
     *,
     radius: float = 0.01,
     speed: float = 1.0,
-    friction: Any = 0.2,
-    slip: Any = 0.3,
-    poisson: Any = 0.3,
+    friction: Number = 0.2,
+    slip: Number = 0.3,
+    poisson: Number = 0.3,
     mass_ratio: float | None = None,
 ) -> Scene:
     """Return a steel sphere on a half-space, or on a sphere of another mass; slip over speed."""

@@ -104,7 +104,7 @@ class ScaledMotion:
         x, _, pull = self.oscillator.at(instant)
         return float(x**p * pull)
 
-    def at(self, phase: Any) -> ScaledSample:
+    def at(self, phase: Real) -> ScaledSample:
         """Return the scaled motion at ``phase`` in [0, pi]."""
         share = np.asarray(phase) / math.pi
         duration = self.oscillator.duration
