@@ -12,7 +12,6 @@ from contactlab.contracts import NormalContact, NormalLaw, NormalMotion
 from contactlab.impact.cautions import tabor_caution
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import POSITIVE, Real, quantity
-from contactlab.numeric.types import Array
 
 #: Tabor's parameter from which the theory holds.
 SOFT = 5.0
@@ -29,7 +28,7 @@ class Parts(NamedTuple):
     radius: Real
 
 
-def root_of_size(scaled: Real) -> Array:
+def root_of_size(scaled: Real) -> Real:
     """Return s, the larger solution of s⁴ - s = ``scaled``, where ``scaled`` >= ``LEAST``."""
     # Ferrari: s = ½ (sqrt(2m) + sqrt(2/sqrt(2m) - 2m)), m³ + scaled m = 1/8, with m by Cardano,
     # written so that no digits cancel.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, ClassVar
 
@@ -25,11 +26,11 @@ def rebound(number: float) -> float:
 
     # u = sqrt(zeta), dT = 2 u dq: u' = V, V' = -2.5 u² (u² + 1.5 A V), smooth from first touch.
     # Contact ends where the force vanishes: V is stationary there.
-    def slope(_: float, state: Array) -> list[float]:
+    def slope(_: float, state: Sequence[float] | Array) -> list[float]:
         u, rate = state
         return [rate, -2.5 * u * u * (u * u + 1.5 * number * rate)]
 
-    def released(_: float, state: Array) -> float:
+    def released(_: float, state: Sequence[float] | Array) -> float:
         return float(state[0] - max(-1.5 * number * state[1], 0.0) ** 0.5)
 
     released.terminal, released.direction = True, -1  # type: ignore[attr-defined]

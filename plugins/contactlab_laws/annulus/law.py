@@ -137,7 +137,7 @@ class Annulus(PartialSlip):
         work = march.friction_work() * float(scales.work)
         return AllStepsResponse(march.forces * scales.force, work, settled)
 
-    def _pressure(self, scales: Scales, radius: Array, load: Array, *, hertz: bool) -> Any:
+    def _pressure(self, scales: Scales, radius: Real, load: Real, *, hertz: bool) -> Any:
         """Return the ratio of the pressures of (34) to those of a Hertz contact of this radius."""
         if hertz:
             return scales.pressure(radius, load)

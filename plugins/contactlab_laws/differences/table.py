@@ -13,7 +13,7 @@ import numpy as np
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
 from contactlab.impact.scene import Scene
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Real
 
 FILE = Path(__file__).with_name("differences.csv")
 #: Differences of psi2 below this are not worth a sentence.
@@ -153,7 +153,7 @@ def _largest(normal: NormalMotion, measured: tuple[Row, ...], shared: bool) -> f
     return float(np.nanmax(sizes)) if np.isfinite(sizes).any() else 0.0
 
 
-def _restitution(normal: NormalMotion) -> Array:
+def _restitution(normal: NormalMotion) -> Real:
     """Return e of each impact."""
-    e: Array = -np.asarray(normal.final_rate) / np.asarray(normal.scene.normal_speed)
+    e: Real = -np.asarray(normal.final_rate) / np.asarray(normal.scene.normal_speed)
     return e

@@ -171,7 +171,7 @@ def groups(options: Options, normal: NormalMotion) -> Iterator[Group]:
     least = np.where(plain, STEPS, np.where(answering, ANSWERING, VECTORS))
     fewest = options.rings // 2 if options.extrapolate else options.rings
     swings = np.maximum(matter.chi, np.where(spins, matter.turning, 0.0))
-    parts = [_parts(*each, fewest) for each in zip(swings, least, strict=True)]
+    parts = [_parts(*each, fewest) for each in zip(swings, least.tolist(), strict=True)]
     kinds = np.stack((plain, drags, parts, spins))
     for key in np.unique(kinds, axis=1).T:
         items = np.flatnonzero((kinds == key[:, None]).all(axis=0))
@@ -189,4 +189,4 @@ def groups(options: Options, normal: NormalMotion) -> Iterator[Group]:
 def _parts(chi: float, least: int, rings: int) -> int:
     """Return the steps from one ring to the next: ``least`` times a power of two."""
     wanted = SWING * math.sqrt(chi) / (2.0 * rings * least)
-    return int(least) * 2 ** max(math.ceil(math.log2(wanted)), 0) if wanted > 0.0 else int(least)
+    return least * 2 ** max(math.ceil(math.log2(wanted)), 0) if wanted > 0.0 else least

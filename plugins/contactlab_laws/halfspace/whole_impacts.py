@@ -7,11 +7,10 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.contracts import NormalMotion, Status, WholeImpact, sliding
 from contactlab.impact.scene import Scene
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Array, Mask, Real
 from contactlab_laws.halfspace.changed_motion import changed_motion
 from contactlab_laws.halfspace.fields import Fields
 from contactlab_laws.halfspace.groups import Options, groups
@@ -125,10 +124,10 @@ def _extrapolated(fine: Followed, coarse: Followed, further: float) -> Array:
     return np.clip(fine.share + (fine.share - between) * further, -1.0, 1.0)
 
 
-def _whole_impact(options: Options, every: NormalMotion, left: NDArray[np.bool_]) -> WholeImpact:
+def _whole_impact(options: Options, every: NormalMotion, left: Mask) -> WholeImpact:
     """Return the answer in SI units of the impacts ``left``, with numbers of the batch shape."""
     shape = every.scene.shape
-    normal = every.take(left) if shape else every
+    normal = every.take(np.asarray(left)) if shape else every
     solved, scene, numbers = _solved(options, normal), normal.scene, np.flatnonzero(left).tolist()
     own, own_impulses = None, dict[int, Array]()
     changed = {n: each.changed for n, each in zip(numbers, solved, strict=True) if each.changed}
