@@ -10,6 +10,7 @@ from typing import Any, Self
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.contracts.status import Status
 from contactlab.numeric.arrays import are_zeros, consecutive, filled, merged, zeros
@@ -110,7 +111,7 @@ class BatchMotion:
         cls,
         shape: tuple[int, ...],
         status: Status,
-        detail: str | Sequence[str] = "",
+        detail: str | Sequence[str] | NDArray[np.object_] = "",
         *,
         axes: tuple[int, ...] = (),
     ) -> Self:
@@ -122,7 +123,7 @@ class BatchMotion:
             Batch shape.
         status : Status
             Status of all impacts.
-        detail : str or sequence of str
+        detail : str, or sequence or array of str
             One sentence for all impacts, or one for each.
         axes : tuple of int
             Axes of a slip velocity beside the batch's: (2,) where the scene has vectors.

@@ -88,7 +88,7 @@ class Comparison:
 
     def difference(self, quantity: str, law: str) -> Array:
         """Return a quantity of one law less that of the first law."""
-        return self.values(quantity, law) - self.values(quantity, self.names[0])
+        return np.asarray(self.values(quantity, law) - self.values(quantity, self.names[0]))
 
     def numerical_error(self, law: str) -> Array:
         """Return the estimated numerical error of psi2, else the declared one; NaN if neither."""

@@ -148,10 +148,10 @@ class Half(NamedTuple):
 
 
 class Rebound(NamedTuple):
-    """Change of psi, and the friction work: the loss of ½ psi²."""
+    """Change of psi, and the friction work: the loss of ½ psi²; of one impact or of many."""
 
-    change: float
-    work: float
+    change: Real
+    work: Real
 
 
 class Contact(NamedTuple):

@@ -138,7 +138,7 @@ class ScaledMotion:
             phase = np.clip(phase - error, 0.0, math.pi)
         return np.where(wanted >= 1.0, math.pi, np.where(wanted <= 0.0, 0.0, phase))
 
-    def phase_at_rate(self, rate: Real) -> Array:
+    def phase_at_rate(self, rate: Real) -> Real:
         """Return the phase at which V = ``rate``."""
         wanted, points = np.asarray(rate, dtype=np.float64), _points()
         losses = np.maximum(1.0 - self.at(points).rate, 0.0)

@@ -7,11 +7,11 @@ so that single impacts are plain numbers.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.contracts import (
     Ends,
@@ -74,7 +74,7 @@ def march_together(
     law: SteppedTangentialLaw,
     count: Real,
     observer: Observer | None,
-    refused: tuple[Status, str | Sequence[str]] = (Status.TOO_FEW_STEPS, ""),
+    refused: tuple[Status, str | NDArray[np.object_]] = (Status.TOO_FEW_STEPS, ""),
 ) -> TangentialMotion:
     """Return the motion in ``count`` steps an approach without friction, one for each impact.
 

@@ -327,7 +327,7 @@ def moved(
 
 
 def solved(
-    deflection: Vectors, most: Array, lead: Array, drive: Drive, per_total: Array, *, out: Vectors
+    deflection: Vectors, most: Array, lead: Array, drive: Drive, per_total: Real, *, out: Vectors
 ) -> tuple[Vectors, Vectors, Vectors]:
     """Return share of Coulomb's limit, tractions, and the slip velocity that they belong to.
 
@@ -426,7 +426,7 @@ def _slipped(
     return np.asarray(np.minimum(np.maximum(held + move, free - span), free + span))
 
 
-def alone(pull: Vectors, excess: Array, share: Vectors) -> Vectors:
+def alone(pull: Vectors, excess: Real, share: Vectors) -> Vectors:
     """Return the share of a contact that is smaller than a cell: of its edge, or as it was."""
     begun = excess > 0.0
     ratio = pull / np.where(begun, excess, 1.0)

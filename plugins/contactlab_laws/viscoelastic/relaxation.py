@@ -58,5 +58,5 @@ def _ratio(e: Array) -> Array:
     return np.where(e >= LEAST, series, asymptote)
 
 
-def _float(value: Array) -> Real:
+def _float(value: Real) -> Real:
     return float(value) if np.ndim(value) == 0 else value
