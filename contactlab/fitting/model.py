@@ -171,6 +171,9 @@ def scene_of(scene: object, given: Mapping[str, Array], count: int) -> Scene:
         file = read_scene(scene, entries=given, defaults=defaults)  # type: ignore[arg-type]
         batch = file.scene if file.scene.along else file.of_spheres
     else:
+        if given and scene.sphere is None and scene.encounter is not None:
+            rule = "has vectors in space, which columns cannot replace"
+            raise refuse("scene", scene, rule, "give the TOML file of the bodies, with along")
         batch = attrs.evolve(scene, **_velocities(given, scene)) if given else scene
     if not batch.shape:
         batch = attrs.evolve(batch, normal_speed=np.full(count, batch.normal_speed))

@@ -182,6 +182,17 @@ def test_friction_of_a_ball_that_a_club_strikes(contact, turning, told, tmp_path
         assert result.tangential_restitution == pytest.approx(e_t, rel=1e-9)
 
 
+def test_columns_beside_a_scene_of_vectors_are_refused():
+    """They would change its numbers, and not the velocities in space that go with them."""
+    block = RigidBody(mass=1.0, inertia=np.eye(3), material=STEEL, curvature_radius=np.inf)
+    met = Encounter(
+        BALL, block, 0.2, normal=[0, 0, -1], velocity=[0.3, 0, -1.0], target_contact=[0, 0, 0.1]
+    )
+    data = {"speed (m/s)": [1.0, 1.0], "angle_deg": [9.0, 30.0], "slip_restitution": [0.1, 0.5]}
+    with pytest.raises(ValueError, match="give the TOML file of the bodies, with along"):
+        fit(data, met.scene)
+
+
 def test_a_spinning_ball_that_is_struck():
     """Its surface moves against its spin, as the convention of spins that add to slip has it."""
     turning = columns(OTHER)
