@@ -67,7 +67,7 @@ class Laws:
     named: frozenset[str] = frozenset(KINDS)
 
     def __iter__(self) -> Iterator[Law]:
-        yield from (self.normal, self.tangential, self.integrator)
+        return iter((self.normal, self.tangential, self.integrator))
 
     def by_kind(self) -> dict[str, Any]:
         """Return the laws by kind."""
@@ -344,9 +344,9 @@ def versions(*laws: Law) -> dict[str, str]:
 
 def versions_of(ways: Sequence[Way]) -> dict[str, str]:
     """Return name and version of each law by kind, of several in one scene with "and"."""
+    if len(ways) == 1:
+        return versions(*ways[0].laws)
     used = [versions(*way.laws) for way in ways]
-    if len(used) == 1:
-        return used[0]
     return {kind: " and ".join(dict.fromkeys(each[kind] for each in used)) for kind in KINDS}
 
 

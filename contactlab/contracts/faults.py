@@ -55,6 +55,8 @@ class blaming:  # noqa: N801 a context manager with a lower-case name, as in con
 
 def malformed(value: object, shape: tuple[int, ...]) -> bool:
     """Return True unless ``value`` is real numbers that broadcast to the batch ``shape``."""
+    if type(value) is float:
+        return False
     if isinstance(value, np.ndarray):
         if value.dtype.kind not in "fiu":
             return True

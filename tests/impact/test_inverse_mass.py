@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from contactlab import Encounter, HalfSpace, Material, RigidBody
+from contactlab import Encounter, HalfSpace, Material, RigidBody, Scene
 
 
 @pytest.mark.parametrize("size", [3, 4])
@@ -22,3 +22,23 @@ def test_a_contact_that_all_bodies_of_a_batch_share(size):
         W = np.eye(3) - K @ np.linalg.inv(moment) @ K
         assert many[place][0, 0] == pytest.approx(W[2, 2], rel=1e-12)
         assert np.linalg.eigvalsh(many[place]) == pytest.approx(np.linalg.eigvalsh(W), rel=1e-12)
+
+
+def test_no_inverse_mass_is_refused_or_taken_but_by_its_eigenvalues():
+    """Random ones, of which some are indefinite and some nearly singular, alone and together."""
+    random = np.random.default_rng(1)
+    axes = np.linalg.qr(random.normal(size=(300, 3, 3)))[0]
+    least = random.choice([-1e-3, -1e-15, 1e-16, 3e-13, 1e-11, 1e-9, 0.1], 300)
+    sizes = np.stack([least, *random.uniform(0.5, 2.0, (2, 300))], axis=-1)
+    W = np.einsum("nij,nj,nkj->nik", axes, sizes, axes)
+    diagonal = np.sqrt(np.abs(np.einsum("nii->ni", W)))
+    scaled = W / (diagonal[:, :, None] * diagonal[:, None, :])
+    right = (np.linalg.eigvalsh(scaled)[:, 0] > 1e-14) & (np.einsum("nii->ni", W) > 0).all(axis=-1)
+    pair = Scene.nondimensional(psi1=1.0, chi=1.0).pair
+    entries = {"pair": pair, "friction_coefficient": 0.3, "normal_speed": 1.0}
+
+    for inverse in (W, *W[~right]):
+        with pytest.raises(ValueError, match="positive definite"):
+            Scene(None, None, inverse_mass=inverse, **entries)
+    for inverse in (W[right], *W[right]):
+        assert Scene(None, None, inverse_mass=inverse, **entries).shape == inverse.shape[:-2]
