@@ -321,7 +321,7 @@ def _columns(text: str) -> list[str]:
     return [name.strip() for name in text.split(",")]
 
 
-def read_impacts(data: object, arguments: argparse.Namespace) -> Measurements:
+def read_impacts(data: str | Path | SceneFile, arguments: argparse.Namespace) -> Measurements:
     """Return measured impacts, with the names of columns; a refusal has the command to paste."""
     from contactlab.fitting import measurements  # only for measured impacts
     from contactlab.fitting.foreign_headings import ForeignHeadingsError

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from typing import Any
 
@@ -22,7 +23,7 @@ from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.arrays import every, filled
 from contactlab.numeric.checks import Real, refuse
 from contactlab.numeric.names import attributes_told
-from contactlab.numeric.types import Array, Mask
+from contactlab.numeric.types import Array, Labelled, Mask, Numbers
 from contactlab.numeric.vectors import NOTHING, components, cross, joined
 from contactlab.outcome.answer import Answer
 from contactlab.outcome.columns import json_value
@@ -131,14 +132,14 @@ class Collision(Answer):
     def of_arrays(
         body: Sphere,
         target: Sphere | HalfSpace,
-        friction_coefficient: Any,
+        friction_coefficient: Numbers | Labelled,
         *,
-        normal: Any,
-        velocity: Any,
-        spin: Any = NOTHING,
-        target_velocity: Any = NOTHING,
-        target_spin: Any = NOTHING,
-        restitution: Any = ELASTIC,
+        normal: Numbers | Labelled,
+        velocity: Numbers | Labelled,
+        spin: Numbers | Labelled = NOTHING,
+        target_velocity: Numbers | Labelled = NOTHING,
+        target_spin: Numbers | Labelled = NOTHING,
+        restitution: Numbers | Labelled | Callable[..., object] = ELASTIC,
     ) -> Velocities:
         """Return velocities and spins after impacts of spheres, as arrays of JAX or PyTorch.
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from contactlab.numeric.checks import Rule, real, refuse
 from contactlab.numeric.labels import library_of, numbers_of
+from contactlab.numeric.types import Column
 
 #: The shortest type that answers are computed in; shorter ones are widened.
 SHORTEST = "float32"
@@ -27,10 +28,10 @@ class Library(Protocol):
 
     xp: Any
 
-    def arrays(self, values: Iterable[Any]) -> list[Any]:
+    def arrays(self, values: Iterable[object]) -> list[Any]:
         """Return numbers and arrays as arrays of one type, that of the arrays among them."""
 
-    def constants(self, numbers: Mapping[str, Any], like: Any) -> dict[str, Any]:
+    def constants(self, numbers: Mapping[str, Column], like: Any) -> dict[str, Any]:
         """Return arrays of NumPy as arrays of the type and place of ``like``, or integers."""
 
     def compiled(self, function: Callable[..., Any]) -> Callable[..., Any]:
@@ -45,16 +46,16 @@ class _Jax:
         self.xp: Any = importlib.import_module("jax.numpy")
         self.compiled: Any = self.jax.jit
 
-    def arrays(self, values: Iterable[Any]) -> list[Any]:
+    def arrays(self, values: Iterable[object]) -> list[Any]:
         """Return numbers and arrays as arrays of one type, that of the arrays among them."""
-        given = [*values]
+        given: list[Any] = [*values]
         kind = self.xp.result_type(*filter(_is_array, given))
         if not self.xp.issubdtype(kind, self.xp.floating):
             kind = self.xp.result_type(float)
         kind = self.xp.promote_types(kind, SHORTEST)
         return [self.xp.asarray(value, kind) for value in given]
 
-    def constants(self, numbers: Mapping[str, Any], like: Any) -> dict[str, Any]:
+    def constants(self, numbers: Mapping[str, Column], like: Any) -> dict[str, Any]:
         """Return arrays of NumPy as arrays of the type of ``like``, or integers."""
         with self.jax.ensure_compile_time_eval():  # else a constant of a trace would outlive it
             return {
@@ -82,9 +83,9 @@ class _Torch:
         """Return values of another type."""
         return values.to(kind)
 
-    def arrays(self, values: Iterable[Any]) -> list[Any]:
+    def arrays(self, values: Iterable[object]) -> list[Any]:
         """Return numbers and arrays as arrays of one type and place."""
-        given = [*values]
+        given: list[Any] = [*values]
         tensors = [v if library_of(v) else self.torch.tensor(v) for v in filter(_is_array, given)]
         kind = reduce(self.torch.promote_types, (tensor.dtype for tensor in tensors))
         if not kind.is_floating_point:
@@ -98,7 +99,7 @@ class _Torch:
             for value in given
         ]
 
-    def constants(self, numbers: Mapping[str, Any], like: Any) -> dict[str, Any]:
+    def constants(self, numbers: Mapping[str, Column], like: Any) -> dict[str, Any]:
         """Return arrays of NumPy as arrays of the type and place of ``like``, or integers."""
         with self.torch.inference_mode(False):  # else no gradient could pass them later
             return {
@@ -115,7 +116,7 @@ class _Torch:
         return function
 
 
-def _is_array(value: Any) -> bool:
+def _is_array(value: object) -> bool:
     """Return whether a value sets the type of the answer: numbers and lists beside it do not."""
     return isinstance(value, np.ndarray) or bool(library_of(value))
 
@@ -126,7 +127,7 @@ def library_named(name: str) -> Library:
     return _Torch() if name == "torch" else _Jax()
 
 
-def known(library: str, name: str, value: Any, rule: Rule, remedy: str = "") -> Any:
+def known(library: str, name: str, value: object, rule: Rule, remedy: str = "") -> Any:
     """Return the checked numbers of an argument; None if they are not known, but traced.
 
     Raises

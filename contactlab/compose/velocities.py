@@ -28,9 +28,9 @@ class Velocities(NamedTuple):
 def velocities(
     body: Sphere,
     target: Sphere | HalfSpace,
-    friction: Any,
+    friction: object,
     vectors: dict[str, Any],
-    restitution: Any,
+    restitution: object,
 ) -> Velocities:
     """Return ``Collision.of_arrays``."""
     library = traceable((*vectors.values(), friction, restitution))
@@ -79,7 +79,7 @@ def velocities(
 
 
 def _check(
-    library: str, target: Sphere | HalfSpace, friction: Any, vectors: dict[str, Any]
+    library: str, target: Sphere | HalfSpace, friction: object, vectors: dict[str, Any]
 ) -> None:
     """Refuse bad numbers that are known, and spin of a half-space."""
     known(library, "friction_coefficient", friction, NON_NEGATIVE)

@@ -53,7 +53,7 @@ FEWEST = 100
 
 
 def fit(
-    measurements: object,
+    measurements: str | Path | Mapping[str, object] | SceneFile | Measurements,
     scene: Scene | SceneFile | str | Path | None = None,
     *,
     parameters: Sequence[str] = ("friction_coefficient",),
@@ -369,7 +369,7 @@ class Ranked:
 
 
 def rank(
-    measurements: object,
+    measurements: str | Path | Mapping[str, object] | SceneFile | Measurements,
     scene: Scene | SceneFile | str | Path | None,
     simulations: Mapping[str, Simulation | None],
     *,

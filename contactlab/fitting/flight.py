@@ -61,7 +61,9 @@ class Flight(NamedTuple):
     reach: float
 
 
-def read_flight(content: object, *, columns: Mapping[str, str] | None = None) -> Measurements:
+def read_flight(
+    content: str | Path | Mapping[str, object], *, columns: Mapping[str, str] | None = None
+) -> Measurements:
     """Return the bounces of a film as measured impacts, with standard errors.
 
     Parameters

@@ -83,7 +83,9 @@ class Measurements:
 
 
 def read_measurements(
-    content: object, *, columns: Mapping[str, str] | Sequence[str] | None = None
+    content: str | Path | Mapping[str, object] | SceneFile | Measurements,
+    *,
+    columns: Mapping[str, str] | Sequence[str] | None = None,
 ) -> Measurements:
     """Return measurements from a CSV file, a mapping of columns, or the series of a scene file.
 

@@ -250,6 +250,9 @@ def meeting_of_bodies(encounter: _Meeting, normal: Vector) -> Contact:
 
 def _tangents(normal: Vector) -> tuple[Vector, Vector]:
     """Return unit vectors of the tangent plane at right angles: along an axis, and n times that."""
+    x: Any  # checkers know no type of abs of a number or an array
+    y: Any
+    z: Any
     x, y, z = map(abs, normal)
     first, second = (x <= y) & (x <= z), (y < x) & (y <= z)
     axis = (chosen(first, 1.0, 0.0), chosen(second, 1.0, 0.0), chosen(first | second, 0.0, 1.0))
@@ -395,7 +398,9 @@ def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
     contact = _elastic(encounter, gap)
     ways = inverse_mass.ways(W, speed, slip, contact.get("cross_stiffness_ratio", 1.0))
     central = ways == inverse_mass.CENTRAL
-    across = abs(slip[1]) > inverse_mass.ROUNDING * (abs(speed) + abs(slip[0]))
+    aside: Any = abs(slip[1])
+    whole: Any = abs(speed)
+    across = aside > inverse_mass.ROUNDING * (whole + abs(slip[0]))
     planar = not some(across | (ways == inverse_mass.SPATIAL))
     along = slip[0] if planar else joined(slip, shape)
     tangential = W[1][1] if planar else 0.5 * (W[1][1] + W[2][2])

@@ -38,6 +38,10 @@ def check(inverse: Array) -> None:
 @np.errstate(all="ignore")
 def _well_conditioned(tensor: Rows) -> Any:
     """Return where W is positive definite without a look at its eigenvalues, which takes longer."""
+    x: Any  # checkers know no type of abs of a number or an array
+    y: Any
+    z: Any
+    a: Any
     (x, _, _), (a, y, _), (b, c, z) = tensor
     p, q, r = (square_root(abs(each)) for each in (x, y, z))
     a, b, c = quotient(a, p * q), quotient(b, p * r), quotient(c, q * r)
@@ -61,11 +65,14 @@ def ways(tensor: Rows, speed: Real, slip: Vector, cross_stiffness_ratio: Real = 
     cross_stiffness_ratio : float or array
         That of the pair: where it is not 1, slip keeps its line along t1 only.
     """
+    x: Any  # checkers know no type of abs of a number or an array
+    y: Any
+    W: Any
     W, (x, y) = tensor, slip
     size = square_root(W[0][0] * 0.5 * (W[1][1] + W[2][2]))
     pressed = hypotenuse(W[0][1], W[0][2]) > ROUNDING * size
     turned = abs((W[1][1] * x + W[1][2] * y) * y - (W[2][1] * x + W[2][2] * y) * x)
-    leaves = abs(y) > ROUNDING * (abs(speed) + abs(x))
+    leaves = abs(y) > ROUNDING * (abs(x) + abs(speed))
     turns = turned > ROUNDING * W[1][1] * (x * x + y * y)
     turns = turns | (leaves & (cross_stiffness_ratio != 1.0))
     leaves = leaves | (abs(W[0][2]) > ROUNDING * size) | (abs(W[1][2]) > ROUNDING * W[1][1])

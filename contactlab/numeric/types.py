@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from types import EllipsisType
-from typing import Any, Protocol, TypeAlias, TypeVar
+from typing import Protocol, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +29,7 @@ Places: TypeAlias = NDArray[np.intp]
 #: What takes a part of a batch.
 Index: TypeAlias = int | slice | EllipsisType | tuple[int, ...] | Mask | Places
 #: Components of a vector, or of one for each impact; and the rows of a tensor.
-Vector: TypeAlias = Sequence[Any]
+Vector: TypeAlias = Sequence[Real]
 Rows: TypeAlias = Sequence[Vector]
 #: An array of any type of NumPy: numbers, bools, codes, words.
 Column: TypeAlias = NDArray[np.generic]
@@ -49,7 +49,7 @@ Numbers: TypeAlias = Number | Many
 
 
 class Labelled(Protocol):
-    """An array of another library: of xarray, pandas, dask or JAX."""
+    """An array of another library: of xarray, pandas, dask, JAX or PyTorch."""
 
     def __array__(self) -> NDArray[np.generic]: ...
 

@@ -91,13 +91,14 @@ def components(vectors: Array) -> tuple[Any, ...]:
     return tuple(np.ascontiguousarray(np.moveaxis(vectors, -1, 0)))
 
 
-def joined(components: Vector, shape: tuple[int, ...]) -> Array:
+def joined(components: Vector | Rows, shape: tuple[int, ...]) -> Array:
     """Return vectors of a batch ``shape`` by their components, or tensors by their rows."""
     if not shape:
         return np.array(components)
+    parts: Any = components
     if isinstance(components[0], Sequence):
-        return np.stack([joined(row, shape) for row in components], axis=len(shape))
-    return np.stack([np.broadcast_to(each, shape) for each in components], axis=-1)
+        return np.stack([joined(row, shape) for row in parts], axis=len(shape))
+    return np.stack([np.broadcast_to(each, shape) for each in parts], axis=-1)
 
 
 def entry(tensors: Array, row: int, column: int) -> Any:

@@ -26,6 +26,7 @@ ARGUMENTS = re.compile(r"\bdef \w+\((.*?)\) ->", re.DOTALL)
 ARGUMENT = re.compile(r"(?:^|[,(\s])\*{0,2}[a-z_]\w*: (.*?)(?=,\s*\*{0,2}[a-z_]\w*: |$)", re.DOTALL)
 #: A type under another name that is Any, or has Any in it.
 ALIAS = re.compile(r"^([A-Z]\w*)(?:: TypeAlias)? = (?!TypeVar).*\bAny\b", re.MULTILINE)
+IMPORT = re.compile(r"^from (contactlab\S+) import (\([^)]*\)|.*)", re.MULTILINE)
 #: Largest share of arguments whose type is Any, also in part or by an alias.
 MOST_ANY = 0.03
 ERROR = re.compile(r"(\w+)\.py:(\d+)(?::\d+)?(?: -)?:? error: ")
@@ -108,11 +109,14 @@ def untyped():
     """Return (file, annotation) of every argument with Any in its type, and the number of all."""
     folders = (ROOT / "contactlab", ROOT / "plugins")
     sources = {path: path.read_text("utf-8") for each in folders for path in each.rglob("*.py")}
-    aliases = {name for code in sources.values() for name in ALIAS.findall(code)}
+    modules = {path: ".".join(path.with_suffix("").parts) for path in sources}
+    aliases = {(modules[path], name) for path in sources for name in ALIAS.findall(sources[path])}
     found, number = [], 0
     for path, code in sources.items():
-        imports = code.partition("\n\n\n")[0]
-        own = {*ALIAS.findall(code), *(aliases & {*re.findall(r"\w+", imports)}), "Any"}
+        own = {"Any", *ALIAS.findall(code)}
+        for module, names in IMPORT.findall(code):
+            imported = re.findall(r"\w+", names)
+            own |= {name for at, name in aliases if at.endswith(module) and name in imported}
         for arguments in ARGUMENTS.findall(code):
             annotations = ARGUMENT.findall(arguments)
             number += len(annotations)
