@@ -64,6 +64,9 @@ def build_scene(
     if "body" in sections or _is_rigid(document.get("target")):
         given = document.get("impact")
         if isinstance(given, Mapping) and ALONG in given:
+            if "velocity" in given:
+                rule = "has velocity, a vector, and along, beside which speeds are numbers"
+                raise ValueError(f"impact: {rule}; leave out one of them")
             impact = root.table("impact", known=PLANE_KEYS)
             bodies, contacts = _bodies(root, impact)
             contacts |= {key: impact.content[key] for key in CONTACTS if impact.has(key)}

@@ -9,8 +9,8 @@ import attrs
 import numpy as np
 
 from contactlab.impact.encounter import Encounter
-from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real, real, refuse
+from contactlab.impact.scene import OBLIQUE, Scene
+from contactlab.numeric.checks import NON_NEGATIVE, Real, real, refuse
 from contactlab.numeric.types import Array
 from contactlab.scene_file.entries import STRUCK_KEYS, UNITS
 from contactlab.scene_file.table import Table
@@ -28,6 +28,10 @@ def velocity(table: Table) -> tuple[Real, Real]:
     if table.has(*POLAR):
         unit = "give speed in m/s and angle_deg in degrees from the normal"
         speed, angle = (table.number(key, remedy=unit) for key in POLAR)
+        if table.has("along", *STRUCK_KEYS):  # of spheres on what stands still a scene checks
+            moving = "write normal_speed and tangential_velocity, with their signs"
+            speed = real(table.at("speed"), speed, rule=NON_NEGATIVE, remedy=moving)
+            angle = real(table.at("angle_deg"), angle, rule=OBLIQUE, remedy=moving)
         return speed * np.cos(np.radians(angle)), speed * np.sin(np.radians(angle))
     table.require(CARTESIAN[0], "give it in m/s, or give speed and angle_deg")
     normal, along = (_number(table, key) for key in CARTESIAN)
@@ -89,6 +93,8 @@ def directions(table: Table) -> tuple[Array, Array]:
     for key, vector in (("normal", n), ("along", t)):
         if vector.shape != (3,):
             raise refuse(table.at(key), vector.tolist(), "must be a vector of three numbers")
+    if not np.linalg.norm(n) > 0.0:
+        raise refuse(table.at("normal"), n.tolist(), "must not be zero")
     n = n / np.linalg.norm(n)
     t = t - (t @ n) * n
     if not np.linalg.norm(t) > 1e-6 * np.linalg.norm(table.content["along"]):

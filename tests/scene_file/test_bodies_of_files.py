@@ -223,3 +223,46 @@ def test_a_tilt_from_an_edge_to_a_corner_is_swept(read):
     assert ratios[0] != 1.0
     assert ratios[1] != 1.0
     assert ratios[2] == 1.0
+
+
+SPEEDS = ("velocity = [0.2, 0, -1.0]", "along = [1, 0, 0]\nspeed = 1.02\nangle_deg = 11.31")
+
+
+def test_a_body_by_its_speed_and_angle_which_may_be_swept(read):
+    tilted = ("radius = 0.02", "radius = 0.02\ntilt_deg = 30")
+    by_number = ("velocity = [0.2, 0, -1.0]", "along = [2, 0, 5]\nnormal_speed = 1.0\n"
+                 "tangential_velocity = 0.2")  # fmt: skip
+    same(read(ROD, tilted, by_number).scene, rod(30).scene)
+    moving = read(ROD, tilted, (by_number[0], f"{by_number[1]}\ntarget_normal_velocity = -0.5"))
+    assert moving.scene.normal_speed == pytest.approx(1.5, rel=1e-14)
+    swept = read(ROD + "[sweep]\nangle_deg = [0, 20, 40]\n", tilted, SPEEDS).scene
+    slips = 1.02 * np.sin(np.radians([0, 20, 40]))
+    np.testing.assert_allclose(np.abs(swept.slip_velocity), slips, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("new", "words"),
+    [
+        (SPEEDS[1].replace("1, 0, 0", "0, 0, 2"), "impact.along = [0, 0, 2]: must not lie along"),
+        (SPEEDS[1].replace("1, 0, 0", "1, 0"), "must be a vector of three numbers"),
+        (SPEEDS[1].replace("1.02", "-1.02"), "impact.speed = -1.02: must"),
+        (SPEEDS[1].replace("11.31", "95"), "impact.angle_deg = 95.0: must lie between -90 and 90"),
+        (f"{SPEEDS[0]}\n{SPEEDS[1]}", "has velocity, a vector, and along"),
+        (SPEEDS[1].partition("\n")[2], "along = [x, y, z]"),
+        (f"{SPEEDS[1]}\ntarget_spin = 3.0", "must be zero: a half-space does not spin"),
+        (f"{SPEEDS[1]}\ncontact = [0, 0, -1]", "follows from the shape; leave it out"),
+    ],
+)
+def test_what_is_wrong_with_speeds_of_a_body(read, new, words):
+    with pytest.raises(ValueError, match=re.escape(words)):
+        read(ROD, ("velocity = [0.2, 0, -1.0]", new))
+
+
+def test_speeds_of_a_body_by_its_inertia_need_a_normal(read):
+    speeds = (
+        "velocity = [0.5, 0.1, -1.0]\nspin = [0, 1, 0]",
+        "along = [1, 0, 0]\nnormal_speed = 1",
+    )
+    assert read(FOOT, speeds).scene.normal_speed == pytest.approx(1.0)
+    with pytest.raises(ValueError, match=r"impact\.normal = .*must not be zero"):
+        read(FOOT, speeds, ("normal = [0, 0, -1]", "normal = [0, 0, 0]"))
