@@ -170,13 +170,13 @@ def checked(execute: Execute) -> Execute:
 
 
 def check_outputs(arguments: argparse.Namespace) -> None:
-    """Refuse an output that is the same file as another or the scene, and a look of no figure."""
+    """Refuse one file for two options, and --style or --width where no figure is drawn."""
     values = vars(arguments)
     drawn = any(values.get(name) for name in ("figure", "loops", "stick_slip"))
     if "figure" in values and not drawn:
         for name in ("style", "width"):
             if values[name] not in (None, "print"):
-                raise ValueError(f"--{name}: is that of a figure; add --figure FILE")
+                raise ValueError(f"--{name}: is for a figure; add --figure FILE")
     outputs = {f"--{name}": path for name, path in values.items() if isinstance(path, Path)}
     distinct({"SCENE.toml": values.get("scene"), **outputs})
 
@@ -188,10 +188,11 @@ def save(
 ) -> int:
     """Write each file whose path is not None, and return the exit status.
 
-    After an interruption what is finished goes beside the file, as ``NAME.partial.SUFFIX``, until
-    the whole is written; a file of an earlier run stays as it was. A file that cannot be written,
-    or that Ctrl-C meets, is reported on stderr, so that the other files and the printed results
-    of long work are not lost. A function that has nothing to write says so, and returns False.
+    After an interruption what is finished goes beside the file, as ``NAME.partial.SUFFIX``, which
+    is told of when the whole is written; a file of an earlier run stays as it was. A file that
+    cannot be written, or that Ctrl-C meets, is reported on stderr, so that the other files and the
+    printed results of long work are not lost. A function that has nothing to write says so, and
+    returns False.
     """
     status = OK
     wanted = [(path, write) for path, write in writings if path is not None]
@@ -212,9 +213,9 @@ def save(
                 return INTERRUPTED
             if interrupted:
                 print(f"contactlab: interrupted: {partial} has what is done", file=sys.stderr)
-            else:
-                with contextlib.suppress(OSError):
-                    partial.unlink(missing_ok=True)
+            elif partial.exists():
+                note = f"{partial} is of an interrupted run, and {path} is whole"
+                print(f"contactlab: note: {note}", file=sys.stderr)
             if counted is not None:
                 counted(done, len(wanted))
     return status
@@ -293,12 +294,12 @@ def add_laws(
 
 
 def _number_or_words(text: str) -> Any:
-    """Return a text as a number if it is one."""
+    """Return a number; or the text as it is, if v or a colon shows a formula or a table."""
     return text if re.search("[v:]", text) else finite(text)
 
 
 def add_columns(parser: argparse.ArgumentParser) -> None:
-    """Add ``--column``, names for headings of a CSV of measured impacts."""
+    """Add ``--column`` and ``--columns``, names for headings of a CSV of measured impacts."""
     parser.add_argument(
         "--column",
         type=_column,
@@ -329,6 +330,9 @@ def read_impacts(data: str | Path | SceneFile, arguments: argparse.Namespace) ->
     if arguments.columns and arguments.column:
         raise ValueError("--column: cannot stand beside --columns, which names all columns")
     names = arguments.columns or dict(arguments.column)
+    headings = [heading for heading, _ in arguments.column]
+    if twice := sorted(name for name in set(headings) if headings.count(name) > 1):
+        raise ValueError(f"--column: {twice[0]!r} is named twice; leave one of them out")
     try:
         return measurements.read_measurements(data, columns=names)
     except ForeignHeadingsError as error:
@@ -345,7 +349,7 @@ def _column(text: str) -> tuple[str, str]:
 
 
 def add_measured(parser: argparse.ArgumentParser) -> None:
-    """Add ``--measured`` and ``--column``."""
+    """Add ``--measured``, ``--column`` and ``--columns``."""
     parser.add_argument(
         "--measured",
         type=Path,
@@ -359,7 +363,8 @@ def measured(arguments: argparse.Namespace, file: SceneFile) -> SceneFile:
     """Return the scene file with the values of ``--measured`` in place of its own."""
     if arguments.measured is None:
         if arguments.column or arguments.columns:
-            raise ValueError("--column: names headings of --measured DATA.csv, which is missing")
+            option = "--columns" if arguments.columns else "--column"
+            raise ValueError(f"{option}: names headings of --measured DATA.csv, which is missing")
         return file
     from contactlab.fitting import beside  # only for --measured
 
@@ -408,6 +413,6 @@ def check_budget(seconds: float) -> None:
         raise ValueError(f"--budget {seconds:g}: must be positive, in seconds")
 
 
-def why_not(report: Benchmark | Stability) -> str:
+def why_ended(report: Benchmark | Stability) -> str:
     """Return why a report over all laws is not complete."""
     return "interrupted" if report.interrupted else "the budget ran out"

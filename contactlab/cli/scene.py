@@ -72,10 +72,8 @@ def add_ranges(parser: argparse.ArgumentParser) -> None:
 def numbers(text: str) -> Any:
     """Return one number, or an evenly spaced array from START:STOP:COUNT."""
     parts = text.split(":")
-    if len(parts) == 2:  # a range without its count
-        shared.finite(text)
-    if len(parts) == 1:
-        return shared.finite(text)
+    if len(parts) < 3:
+        return shared.finite(text)  # of START:STOP it says what is missing
     if len(parts) != 3:
         raise argparse.ArgumentTypeError(f"{text!r}: write START:STOP:COUNT, or one number")
     start, stop = shared.finite(parts[0]), shared.finite(parts[1])
@@ -85,6 +83,8 @@ def numbers(text: str) -> Any:
         raise argparse.ArgumentTypeError(f"{text!r}: COUNT must be a whole number") from None
     if not 1 <= count <= MOST_IMPACTS:
         raise argparse.ArgumentTypeError(f"{text!r}: COUNT must lie in [1, {MOST_IMPACTS}]")
+    if count == 1 and start != stop:
+        raise argparse.ArgumentTypeError(f"{text!r}: COUNT must be at least 2 between two numbers")
     return np.linspace(start, stop, count)
 
 
@@ -92,7 +92,7 @@ def check_alone(arguments: argparse.Namespace) -> None:
     """Refuse psi1 or chi beside a scene file."""
     if arguments.scene and not (arguments.psi1 is None and arguments.chi is None):
         raise ValueError(
-            "--psi1, --chi: cannot be combined with a scene file; leave out one of them"
+            "--psi1, --chi: cannot stand beside a scene file; leave out the file, or both of them"
         )
 
 

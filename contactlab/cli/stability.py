@@ -73,7 +73,7 @@ def _draw(
         why = (
             "there is nothing to map"
             if result.complete
-            else f"{shared.why_not(result)} before the map was done"
+            else f"{shared.why_ended(result)} before the map was done"
         )
         print(f"no map drawn: {why}", file=sys.stderr)
         return False
@@ -107,7 +107,7 @@ def report(result: Stability) -> str:
         "error."
     )
     if not result.complete:
-        parts.append(f"not complete: {shared.why_not(result)}")
+        parts.append(f"not complete: {shared.why_ended(result)}")
     return "\n\n".join(parts)
 
 

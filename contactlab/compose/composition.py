@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -34,7 +34,7 @@ PREFERRED = {
     "steps": ("symplectic", "events"),  # integrators of laws that are stepped and nothing else
 }
 #: Laws that the core and the studies request by purpose: exact answers between elastic spheres,
-#: fixed steps, prescribed paths, and a restitution. No other plug-in names stand in the core.
+#: fixed steps, prescribed paths, and a restitution.
 EXACT = {"tangential": "fronts", "integrator": "events"}
 #: Option of the exact law that follows every impact, none from a table.
 FOLLOWED = {"table": False}
@@ -90,7 +90,7 @@ class Laws:
         """Return the ways in which a scene is solved; ``as_one`` is that of ``Scene.parts``."""
         if scene.inverse_mass is None:  # spheres have one way
             return [Way(..., scene, self)]
-        # what answers where slip turns answers on a line too: its remedy holds for the whole batch
+        # Where slip turns laws are asked first: their refusal and its remedy hold for the batch.
         parts = reversed(scene.parts(as_one=as_one))
         return [Way(where, part, self.of(part)) for where, part in parts][::-1]
 
@@ -110,10 +110,8 @@ class Laws:
         refused = _no_answer(self, part.planar)
         if refused is None and not _rigid_in_silence(self):
             return self
-        for names in TOGETHER:
-            free = {kind: name for kind, name in names.items() if kind not in self.named}
-            other = self.taking(free)
-            if misfit(*other) is None and _no_answer(other, part.planar) is None:
+        for _, other in _together(self, [kind for kind in KINDS if kind not in self.named]):
+            if _no_answer(other, part.planar) is None:
                 return other
         remedy = _remedy(self, part.planar)
         if refused is None:
@@ -159,18 +157,30 @@ def _no_answer(laws: Laws, planar: bool) -> str | None:
     return f"{name}: has no answer where friction changes the approach {where}: {reason}"
 
 
+def _together(laws: Laws, kinds: Iterable[str]) -> Iterator[tuple[dict[str, str], Laws]]:
+    """Yield what ``TOGETHER`` names of ``kinds``, and the laws with it, where they fit."""
+    free = set(kinds)
+    for names in TOGETHER:
+        taken = {kind: name for kind, name in names.items() if kind in free}
+        try:
+            other = laws.taking(taken)
+        except ValueError:  # blocked, or not installed
+            continue
+        if misfit(*other) is None:
+            yield taken, other
+
+
 def _rigid_in_silence(laws: Laws) -> bool:
     """Return whether nobody named rigid theory, and an elastic law runs beside the normal law."""
     if "tangential" in laws.named or "rigid" not in laws.tangential.offers:
         return False
-    return any(_fits(*laws.taking(names)) for names in TOGETHER)
+    return next(_together(laws, KINDS), None) is not None
 
 
 def _remedy(laws: Laws, planar: bool) -> str:
     """Return which laws to take in place of those that have no answer."""
-    for names in TOGETHER:
-        other = laws.taking(names)
-        if misfit(*other) is None and _no_answer(other, planar) is None:
+    for names, other in _together(laws, KINDS):
+        if _no_answer(other, planar) is None:
             words = ", ".join(f"{kind}={name!r}" for kind, name in names.items())
             return f"take {words}, or leave both out"
     return f"no law at hand has one beside normal = {_name(laws.normal)}; take another normal law"
@@ -220,12 +230,12 @@ def fixed_steps(steps: int) -> Integrator:
 def compose(normal: object, tangential: object, integrator: object) -> Laws:
     """Return three laws that fit, from names or laws; None stands for the preferred law."""
     first = law("normal", DEFAULT_NORMAL if normal is None else normal)
-    named = () if integrator is None else (law("integrator", integrator),)
+    given_integrator = () if integrator is None else (law("integrator", integrator),)
     if tangential is None:
-        _, second = _preferred("tangential", first, after=named)
+        _, second = _preferred("tangential", first, after=given_integrator)
     else:
         second = law("tangential", tangential)
-    third = named[0] if named else _preferred("integrator", first, second)[1]
+    third = given_integrator[0] if given_integrator else _preferred("integrator", first, second)[1]
     given = {"normal": normal, "tangential": tangential, "integrator": integrator}
     chosen = frozenset(kind for kind, value in given.items() if value is not None)
     laws = Laws(first, second, third, chosen)
@@ -269,7 +279,7 @@ def _fits(*parts: Law) -> bool:
     return misfit(*parts) is None
 
 
-def misfit(normal: Law, tangential: Any = None, integrator: Any = None) -> str | None:
+def misfit(normal: Law, tangential: Any, integrator: Any = None) -> str | None:
     """Return why laws do not fit, with the names of both; None if they fit."""
     if "elastic_hertz" in normal.offers and not isinstance(normal, ClosedFormNormalLaw):
         return (

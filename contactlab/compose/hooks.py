@@ -8,6 +8,8 @@ law it may be the class itself, which stands for a hook that returns it.
 from __future__ import annotations
 
 import contextlib
+import importlib
+import os
 import sys
 import traceback
 from collections.abc import Callable, Iterator
@@ -64,7 +66,8 @@ def contactlab_command(name: str, parser: argparse.ArgumentParser) -> Execute | 
     """Add the arguments of a subcommand, and return the function that runs it.
 
     The first line of the module's docstring is the summary in ``contactlab --help``, and the rest,
-    examples, ends the command's own help. Neither imports the module of another command.
+    examples, ends the command's own help. ``contactlab --help`` reads summaries from the files, and
+    a command's own help imports the module of that command alone.
 
     Parameters
     ----------
@@ -131,8 +134,11 @@ def guarded(source: str, failed: str) -> Iterator[None]:
     except KeyboardInterrupt:
         raise
     except BaseException as error:
-        last = traceback.extract_tb(error.__traceback__)[-1]
-        place = f" ({Path(last.filename).name}, line {last.lineno})"
+        own = ("<frozen", str(Path(__file__).parents[1]), os.path.dirname(importlib.__file__))
+        frames = traceback.extract_tb(error.__traceback__)
+        theirs = [frame for frame in frames if not frame.filename.startswith(own)]
+        theirs = [] if isinstance(error, SyntaxError) else theirs  # it names its own place
+        place = "".join(f" ({Path(f.filename).name}, line {f.lineno})" for f in theirs[-1:])
         raise PluginError(f"{source} {failed}: {short(error)}{place}") from error
 
 

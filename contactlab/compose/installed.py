@@ -37,7 +37,7 @@ def entry_points(only: str | None = None) -> set[tuple[str, str, str, str]]:
     for distribution in metadata.distributions(name=only):
         try:
             points = list(distribution.entry_points.select(group=PROJECT))
-            if not points:  # only then are the papers read: each reading opens a file
+            if not points:  # metadata are read only then: each reading opens a file
                 continue
             name, version = str(distribution.metadata["Name"]), distribution.version
         except Exception as error:
@@ -53,7 +53,7 @@ def entry_points(only: str | None = None) -> set[tuple[str, str, str, str]]:
     return entries
 
 
-def stamp() -> object:
+def path_times() -> object:
     """Return the folders of ``sys.path`` with their times: an installation changes the value."""
     folders = [folder or "." for folder in sys.path]
     return [(each, os.path.exists(each) and os.stat(each).st_mtime_ns) for each in folders]

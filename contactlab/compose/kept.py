@@ -19,7 +19,7 @@ import numpy as np
 
 from contactlab.compose import sources
 from contactlab.compose.composition import Laws
-from contactlab.compose.names import PROJECT
+from contactlab.compose.names import KINDS, PROJECT
 from contactlab.compose.pieces import Piece
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts.law import Law
@@ -27,7 +27,14 @@ from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Column
-from contactlab.outcome.chunk_files import DAMAGED, chunks_in, name_of, refuse_file, refuse_place
+from contactlab.outcome.chunk_files import (
+    DAMAGED,
+    chunks_in,
+    name_of,
+    refuse_damaged,
+    refuse_file,
+    refuse_place,
+)
 from contactlab.outcome.chunk_forms import NPZ, Chunk, Form
 from contactlab.outcome.files import written
 from contactlab.outcome.motion import Motion
@@ -73,8 +80,7 @@ class Kept:
                         raise ValueError("its numbers are not those that were written")
                     piece, sweep = _piece(arrays), str(arrays["sweep"])
             except DAMAGED as error:
-                rule = f"is damaged: {error}"
-                raise refuse_file("keep", path, rule, "delete this file") from error
+                raise refuse_damaged("keep", path, error) from error
             if piece.chunk != chunk:
                 raise refuse_place("keep", path, piece.chunk)
             if sweep != self.sweep:
@@ -114,7 +120,8 @@ def opened(
         **{name: metadata.version(name) for name in NUMBERS_FROM},
     }
     _check(argument, Path(folder), about, form)
-    return Path(folder), fingerprint(about)
+    origins = {kind: REGISTRY.describe(law) for kind, law in by_kind.items()}
+    return Path(folder), fingerprint(about | origins)  # "options" has what the words of a law have
 
 
 def _check(argument: str, folder: Path, about: Mapping[str, object], form: Form) -> None:
@@ -125,7 +132,13 @@ def _check(argument: str, folder: Path, about: Mapping[str, object], form: Form)
         if folder.exists() and any(folder.glob("[!.]*")):
             rule = "is not empty, and holds no sweep"
             raise refuse(argument, str(folder), rule, "name a new folder")
-        folder.mkdir(exist_ok=True)
+        try:
+            folder.mkdir(exist_ok=True)
+        except OSError as error:
+            rule = f"cannot be made: {error.strerror}"
+            raise refuse(
+                argument, str(folder), rule, "name a folder in one that is there"
+            ) from None
         with written(path) as stream:
             stream.write(json.dumps(about, indent=2) + "\n")
         return
@@ -135,7 +148,11 @@ def _check(argument: str, folder: Path, about: Mapping[str, object], form: Form)
         rule = f"{form.about} in it cannot be read: {error}"
         raise refuse(argument, str(folder), rule, remedy) from error
     # What both have comes first: another law has other code.
+    # Words of a law with a set differ between processes; its options do not.
+    same = KINDS if before.get("options") == about.get("options") else ()
     for name in (*(name for name in about if name in before), *about, *before):
+        if name in same:
+            continue
         was, now = before.get(name, "none"), about.get(name, "none")
         if was != now:
             rule = f"holds another sweep: {name} was {was}, is {now}"
@@ -233,6 +250,13 @@ def _(tree: Mapping[object, object], update: Callable[[bytes], None]) -> None:
 def _(tree: list[object] | tuple[object, ...], update: Callable[[bytes], None]) -> None:
     for value in tree:
         _feed(value, update)
+
+
+@_content.register(set)
+@_content.register(frozenset)
+def _(tree: set[object] | frozenset[object], update: Callable[[bytes], None]) -> None:
+    for mark in sorted(map(fingerprint, tree)):  # their order changes from process to process
+        update(mark.encode())
 
 
 @_content.register

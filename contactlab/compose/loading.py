@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import copyreg
 import os
 import sys
@@ -81,7 +82,9 @@ def law_at(place: str) -> type[Law]:
 
 def _module(path: str) -> ModuleType:
     """Return a file as a module, loaded again if it or a file beside it that it needs changed."""
-    name, folder = path.removesuffix(".py").replace(".", "_"), os.path.dirname(path)
+    # A module's name has no dots, and no two paths may agree.
+    name = path.removesuffix(".py").replace("%", "%25").replace(".", "%2E")
+    folder = os.path.dirname(path)
     sources.forget_changed(folder)
     if name in sources.SEEN and name in sys.modules:
         return sys.modules[name]
@@ -92,7 +95,8 @@ def _module(path: str) -> ModuleType:
     try:
         exec(compile(Path(path).read_bytes(), path, "exec", dont_inherit=True), vars(module))
     finally:
-        sys.path.pop()
+        with contextlib.suppress(ValueError):  # the file may have taken it out, or added others
+            del sys.path[len(sys.path) - 1 - sys.path[::-1].index(folder)]
     version = sources.checksum(repr(sources.code_of([name])).encode())  # of all files in one
     if other := sources.mistaken(name):
         del sources.SEEN[name]
@@ -128,7 +132,7 @@ def _blank(place: str) -> Law:
 
 def _checked(law: object, kind: str, source: str) -> type[Law]:
     """Return ``law``, or raise PluginError unless it is a law's class of right kind and version."""
-    if not (isinstance(law, type) and issubclass(law, Law)):
+    if not _is_law(law):
         raise PluginError(f"{source} returned {law!r}, which is not the class of a law")
     if law.kind != kind:
         raise PluginError(

@@ -99,6 +99,9 @@ def blocked_names() -> set[str]:
 class PluginInfo:
     """One installed law or command as its entry point describes it; its module is not imported.
 
+    For a law in a file, ``distribution`` is ``FILE``, ``version`` a checksum and ``module`` the
+    path; ``malformed`` and ``usable`` tell nothing there.
+
     Attributes
     ----------
     name, distribution, version, module : str
@@ -140,10 +143,12 @@ class PluginInfo:
 
     @property
     def malformed(self) -> bool:
-        """True if the name is not a kind, a dot and a name; such a law cannot be made."""
-        # the name of a place would mean a file or a module of that name
+        """True if the name is not a kind, a dot and a name in lower case; it cannot be made."""
+        # the name of a place, with the distribution or alone, would mean a file or a module
+        short = self.name.partition(".")[2]
         kinds = (*KINDS, COMMAND)
-        return self.kind not in kinds or not self.name.partition(".")[2] or is_place(self.name)
+        place = is_place(self.name) or is_place(f"{self.distribution}:{short}")
+        return self.kind not in kinds or not short or place
 
     @property
     def usable(self) -> bool:
@@ -153,9 +158,9 @@ class PluginInfo:
 
 def meant(rivals: list[PluginInfo]) -> PluginInfo | None:
     """Return the law that a name means, among laws of that name; None if the name is refused."""
-    usable = [info for info in rivals if not info.blocked] or rivals
-    ours = [info for info in usable if info.distribution == PROJECT]
-    return (ours or usable)[0] if 1 in (len(usable), len(ours)) else None
+    free = [info for info in rivals if not info.blocked] or rivals
+    ours = [info for info in free if info.distribution == PROJECT]
+    return (ours or free)[0] if 1 in (len(free), len(ours)) else None
 
 
 def clash(rivals: list[PluginInfo]) -> str:

@@ -86,10 +86,7 @@ def followed(
         state = tangential.start(scene, motion)
         answers, states = advanced(tangential, state, nothing, _steps(points, contacts, blamed))
     for number, answer in enumerate(answers, 1):
-        for entry in answer[:2]:
-            if faults.malformed(entry, scene.shape):
-                sentence = faults.sentence(tangential, f"the answer {shown(entry)}", number)
-                raise faults.LawFaultError(Status.MALFORMED, sentence)
+        _well_formed(tangential, answer[:2], scene.shape, number)
     force, work, settled = (_column(rows, scene.shape) for rows in zip(*answers, strict=True))
     columns = {
         "normal_force": sampled.force,
@@ -102,6 +99,14 @@ def followed(
     return Followed(columns, states, status, detail)
 
 
+def _well_formed(law: Law, entries: Iterable[object], shape: tuple[int, ...], step: int) -> None:
+    """Raise ``LawFaultError`` for an answer that is not made of real numbers of the batch."""
+    for entry in entries:
+        if faults.malformed(entry, shape):
+            sentence = faults.sentence(law, f"the answer {shown(entry)}", step)
+            raise faults.LawFaultError(Status.MALFORMED, sentence)
+
+
 def _pressed(normal: NormalLaw, scene: Scene, points: Points) -> list[NormalContact]:
     """Return the normal contact at each point."""
     _, rates = points.moved(points.approach, 0.0)
@@ -112,6 +117,7 @@ def _pressed(normal: NormalLaw, scene: Scene, points: Points) -> list[NormalCont
         for blamed.step, (approach, rate) in enumerate(rows, 1):
             contact, state = normal.respond(state, locked(approach), locked(rate))
             complete = contact.complete
+            _well_formed(normal, complete, scene.shape, blamed.step)
             contacts.append(NormalContact(*(locked(plain(entry)) for entry in complete)))
     return contacts
 
@@ -143,11 +149,12 @@ def _judged(
     shape = unsettled.shape[1:]
     status = np.full(shape, Status.SUCCESS, dtype=object)
     detail = ""
-    bad_load = ~np.isfinite(columns["normal_force"] + columns["contact_radius"])
+    pressed = columns["normal_force"] + columns["contact_radius"] + columns["friction_load"]
+    bad_contact = ~np.isfinite(pressed)
     bad_force = ~np.isfinite(columns["friction_force"] + columns["friction_work"])
     for law, bad, kind, what in (
-        (normal, bad_load, Status.NON_FINITE, "a contact that is not finite"),
-        (tangential, unsettled, Status.UNSETTLED, "no division found"),
+        (normal, bad_contact, Status.NON_FINITE, "a contact that is not finite"),
+        (tangential, unsettled, Status.UNSETTLED, "no division into stick and slip found"),
         (tangential, bad_force, Status.NON_FINITE, "a force that is not finite"),
     ):
         failing = bad.any(axis=0) & (status == Status.SUCCESS)

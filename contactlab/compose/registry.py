@@ -9,7 +9,7 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 from contactlab.compose.hooks import PluginError
-from contactlab.compose.installed import PluginWarning, by_name, described, entry_points, stamp
+from contactlab.compose.installed import PluginWarning, by_name, described, entry_points, path_times
 from contactlab.compose.loading import IN_FILES, law_at, law_class
 from contactlab.compose.names import (
     BLOCK_VARIABLE,
@@ -63,7 +63,7 @@ class Registry:
 
     def installed(self) -> list[PluginInfo]:
         """Return every installed law, sorted by kind and name, without an import."""
-        now = stamp()
+        now = path_times()
         if now != self._stamp:
             self._found, self._stamp = entry_points(), now
         infos = described(self._found)
@@ -120,7 +120,7 @@ class Registry:
         if not matches:
             raise self._unknown(name)
         if matches[0].malformed:
-            rule = f"the name must be one of {', '.join(KINDS)}, a dot, a name"
+            rule = f"the name must be one of {', '.join(KINDS)}, a dot, a name in lower case"
             raise PluginError(f"{matches[0].source}: {rule}")
         usable = [info for info in matches if not info.blocked]
         if not usable:

@@ -1,4 +1,4 @@
-"""Closed forms of the paper, for plans and tests; arguments may be floats or arrays."""
+"""Closed forms of the paper: Hertz's impact, gross slip, the rigid rebound; floats or arrays."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def slips_throughout(psi1: Real, chi: Real, restitution: Real = 1.0) -> Mask:
     """
     end = 2.0 * chi * (1.0 + restitution) - restitution
     greater: Any = max if isinstance(end, float) else np.maximum
-    slips: Mask = abs(psi1) >= greater(1.0, end)
+    slips: Mask = abs(psi1) >= greater(end, 1.0)  # max(nan, 1.0) is nan, as NumPy's
     return slips
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import itertools
 import json
 import re
@@ -51,6 +52,14 @@ def refuse_file(argument: str, path: Path, rule: str, remedy: str) -> ValueError
     return ValueError(f"{argument} = {str(path)!r}: {rule}; {remedy}")
 
 
+def refuse_damaged(argument: str, path: Path, error: Exception) -> ValueError:
+    """Return the refusal of a file that cannot be read; one that may be whole is not given up."""
+    # Damage of an archive makes an OSError without a number, or of a seek that is out of range.
+    if isinstance(error, OSError) and error.errno not in (None, errno.EINVAL):
+        return refuse_file(argument, path, f"cannot be read: {error.strerror}", "try again")
+    return refuse_file(argument, path, f"is damaged: {error}", "delete this file")
+
+
 def refuse_place(argument: str, path: Path, chunk: Chunk, form: Form = NPZ) -> ValueError:
     """Return the refusal of a file whose name has other impacts than its ``chunk``."""
     rule = f"contains impacts {chunk.first} to {chunk.stop}, which are not those of its name"
@@ -65,7 +74,7 @@ def columns_of(path: Path, form: Form, names: Sequence[str] = ()) -> Iterator[An
         with form.read(path, names) as content:
             yield content
     except DAMAGED as error:
-        raise ValueError(f"{path}: is damaged: {error}; delete this file") from error
+        raise refuse_damaged("path", path, error) from error
 
 
 def read_about(path: Path, form: Form) -> About:

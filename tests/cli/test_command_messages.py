@@ -36,7 +36,7 @@ def test_every_file_is_written_though_one_fails(tmp_path, capsys):
     assert shared.save((None, full), progress_wanted=False) == shared.OK
 
 
-BOTH = "--psi1, --chi: cannot be combined with a scene file; leave out one of them"
+BOTH = "--psi1, --chi: cannot stand beside a scene file; leave out the file, or both of them"
 SPHERE = "must be given (chi is 1.4412 for a solid sphere, nu = 0.3)"
 MISSING = "must be given too (chi is 1.4412 for a solid sphere)"
 
@@ -73,6 +73,10 @@ MISSING = "must be given too (chi is 1.4412 for a solid sphere)"
          "--measured: needs a SCENE.toml with the bodies of the experiment"),
         (["compare", "SWEEP", "--column", "a=b"],
          "--column: names headings of --measured DATA.csv, which is missing"),
+        (["compare", "SWEEP", "--columns", "a,b"],
+         "--columns: names headings of --measured DATA.csv, which is missing"),
+        (["compare", "SWEEP", "--measured", "a.csv", "--column", "a=b", "--column", "a=c"],
+         "--column: 'a' is named twice; leave one of them out"),
         (["compare", "SWEEP", "--all", "--tangential", "coulomb"], "ALL"),
         (["compare", "SWEEP", "--all", "--integrator", "paper"], "ALL"),
         (["compare", "SWEEP", "--all", "--normal", "hertz,jkr"], "ALL"),

@@ -198,7 +198,7 @@ def test_bad_input_is_one_line_and_status_2(run, arguments, words):
 def test_file_and_numbers_do_not_mix(run, ball, numbers):
     ran = run("run", ball, *numbers)
     assert (ran.status, ran.out) == (2, "")
-    assert "--psi1, --chi: cannot be combined with a scene file" in ran.err
+    assert "--psi1, --chi: cannot stand beside a scene file" in ran.err
 
 
 def test_history_of_a_sweep_is_refused_before_it_runs(run, short_sweep, tmp_path):

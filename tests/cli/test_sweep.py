@@ -39,6 +39,7 @@ def test_json_and_file(run, tmp_path):
         (("--psi1", "0:1", "--chi", "1"), "START:STOP:COUNT"),
         (("--psi1", "0:1:x", "--chi", "1"), "whole number"),
         (("--psi1", "0:1:0", "--chi", "1"), "COUNT"),
+        (("--psi1", "0:5:1", "--chi", "1"), "COUNT must be at least 2"),
         (("--psi1", "0:nan:3", "--chi", "1"), "finite"),
         (("--psi1", "0:1:1000000", "--chi", "1:2:1000000"), "at most 1000000"),
         (("--psi1", "0:1:3", "--chi", "-1"), "chi"),

@@ -92,6 +92,8 @@ def test_interrupted_it_keeps_what_is_done(run, monkeypatch, tmp_path):
     with np.load(tmp_path / "a.partial.npz") as content:
         assert np.isfinite(content["psi2"]).sum() == 1000
     assert len(list((tmp_path / "a.npz.kept").glob("*.npz"))) == 1
-    assert run(*SWEEP, "--out", out, "--resume").status == 0
+    again = run(*SWEEP, "--out", out, "--resume")
+    assert again.status == 0
+    assert "a.partial.npz is of an interrupted run, and" in again.err
     assert len(calls) == 4
-    assert [path.name for path in tmp_path.iterdir()] == ["a.npz"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.npz", "a.partial.npz"]

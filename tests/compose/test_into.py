@@ -241,13 +241,13 @@ def test_a_damaged_file_is_told(tmp_path):
         lambda: SweepFolder(target)["psi2"],
         lambda: simulation.sweep(parts(), into=target),
     ):
-        with pytest.raises(ValueError, match=r"impacts-40-80.npz: is damaged: .*; delete this"):
+        with pytest.raises(ValueError, match=r"impacts-40-80.npz': is damaged: .*; delete this"):
             read()
     bit = bytearray(sound)
     at = sound.index(b"psi2.npy") + 400
     bit[at] ^= 1
     path.write_bytes(bytes(bit))
-    with pytest.raises(ValueError, match=r"impacts-40-80.npz: is damaged: .*CRC"):
+    with pytest.raises(ValueError, match=r"impacts-40-80.npz': is damaged: .*CRC"):
         SweepFolder(target)["psi2"]
     path.unlink()
     folder = SweepFolder(target)

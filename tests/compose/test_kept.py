@@ -112,7 +112,7 @@ def test_what_holds_no_sweep_is_refused_and_left_alone(tmp_path):
         simulation.sweep(scene(), keep=3)
     with pytest.raises(ValueError, match="is a file"):
         simulation.sweep(scene(), keep=folder / "thesis.txt")
-    with pytest.raises(FileNotFoundError):
+    with pytest.raises(ValueError, match=r"keep = .*: cannot be made: No such file.*; name"):
         simulation.sweep(scene(), keep=tmp_path / "none" / "kept")
     (tmp_path / "dangling").symlink_to(tmp_path / "nowhere")
     with pytest.raises(ValueError, match="is a link to nothing"):
@@ -149,6 +149,11 @@ def test_damaged_files_are_refused(tmp_path):
     piece.with_name("impacts-40-90.npz").rename(piece.with_name("impacts-mine.npz"))
     with pytest.raises(ValueError, match=r"keep = .*impacts-mine.npz.*not the name.*; move this"):
         simulation.sweep(scene(), keep=folder)
+    piece.with_name("impacts-mine.npz").unlink()
+    piece.mkdir()  # a file that the disk does not give may be whole
+    with pytest.raises(ValueError, match=rf"{piece.name}.*cannot be read: Is a dir.*; try again"):
+        simulation.sweep(scene(), keep=folder)
+    piece.rmdir()
     (folder / "sweep.json").write_text("[")
     with pytest.raises(ValueError, match="cannot be read"):
         simulation.sweep(scene(), keep=folder)

@@ -7,6 +7,7 @@ from importlib import metadata
 
 import pytest
 
+import contactlab
 from contactlab import PluginError, Scene, Simulation
 
 #: A friction law of a share of the friction, which is written elsewhere.
@@ -228,6 +229,38 @@ def test_two_laws_with_files_of_one_name_are_told_apart(folder):
     written(folder / "two" / "my_law.py", law("from others import SHARE"))
     assert psi2("two/my_law.py:Share", None) == pytest.approx([4.0, 5.0])
     assert psi2("one/my_law.py:Share", None) == pytest.approx([6.0, 7.0])
+
+
+def test_folders_whose_names_differ_by_a_dot_are_told_apart(folder):
+    for name, text in (("v1.0", HALF), ("v1_0", FULL), ("v1%2E0", "SHARE = 0.25")):
+        written(folder / name / "my_law.py", law(text))
+    shares = {"v1.0": 0.5, "v1_0": 1.0, "v1%2E0": 0.25}
+    for name, share in shares.items():
+        expected = pytest.approx([8.0 - 4.0 * share, 9.0 - 4.0 * share])
+        assert psi2(f"{name}/my_law.py:Share", None) == expected, name
+
+
+def test_what_a_file_adds_to_the_path_stays(folder, monkeypatch):
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    before = [*sys.path]
+    written(folder / "my_law.py", "import sys\nsys.path.append('elsewhere')\n" + law(HALF))
+    psi2("my_law.py:Share", None)
+    assert sys.path == [*before, "elsewhere"]
+
+
+def test_a_set_of_a_law_is_the_same_in_any_order(folder):
+    written(folder / "my_law.py", law(HALF))
+    scene = Scene.nondimensional(psi1=[8.0, 9.0], chi=1.0)
+    # 0 and 8 fall into one place of a small set, so that the first to come is the first
+    words = frozenset([0, 8]), frozenset([8, 0])
+    assert words[0] == words[1]
+    assert repr(words[0]) != repr(words[1])
+    for of in words:
+        made = contactlab.create("my_law.py:Share", of=of)
+        Simulation(tangential=made).sweep(scene, keep="kept")
+    other = Simulation(tangential=contactlab.create("my_law.py:Share", of=frozenset([0, 9])))
+    with pytest.raises(ValueError, match="holds another sweep: tangential was"):
+        other.sweep(scene, keep="kept")
 
 
 SWEEP = """

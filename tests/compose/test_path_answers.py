@@ -99,13 +99,20 @@ def test_rates_are_differences_over_the_times():
     assert once.normal_force == pytest.approx([1e-6 / float(hertz_scales(SCENE).duration)])
 
 
+DIVISION = "At step 3: no division into stick and slip found, from Spring"
+
+
 @pytest.mark.parametrize("scene", [SCENE, BATCH])
 @pytest.mark.parametrize(
     ("fault", "status", "words"),
     [
         ("nan", Status.NON_FINITE, "At step 3: a force that is not finite, from Spring"),
         ("work", Status.NON_FINITE, "At step 3: a force that is not finite, from Spring"),
-        ("unsettled", Status.UNSETTLED, "At step 3: no division found, from Spring"),
+        (
+            "unsettled",
+            Status.UNSETTLED,
+            DIVISION,
+        ),
     ],
 )
 def test_after_a_failure_there_are_no_numbers(scene, fault, status, words):
@@ -140,6 +147,31 @@ class Torn(LinearSpring):
         gone = np.where(np.asarray(approach) > 1.5e-6, np.nan, 0.0)
         force = contact.force + (float(gone) if np.ndim(approach) == 0 else gone)
         return NormalContact(force, 0.0 * force, approach), state
+
+
+@attrs.frozen(kw_only=True)
+class Wrong(LinearSpring):
+    """A spring that answers three forces, or whose friction load is no number."""
+
+    load: bool = False
+
+    def respond(self, state, approach, rate):
+        contact, state = super().respond(state, approach, rate)
+        force = contact.force if self.load else np.ones(3)
+        return NormalContact(force, contact.radius, approach, contact.force + np.nan), state
+
+
+@pytest.mark.parametrize(
+    ("load", "status", "words"),
+    [
+        (False, Status.MALFORMED, "the answer array([1., 1., 1.])"),
+        (True, Status.NON_FINITE, "a contact that is not finite"),
+    ],
+)
+def test_a_wrong_answer_of_a_normal_law_is_its_own(load, status, words):
+    made = path(normal=Wrong(stiffness=1e7, load=load))
+    assert made.status is status
+    assert made.detail == f"At step 1: {words}, from Wrong in {__name__}."
 
 
 def test_the_first_law_that_fails_is_blamed():

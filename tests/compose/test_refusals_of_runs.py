@@ -253,6 +253,8 @@ def test_the_first_default_that_is_not_blocked_is_taken(monkeypatch):
     assert usual() == ["Fronts", "Events"]
     block("tangential.fronts")
     assert usual() == ["Springs", "Symplectic"]
+    alike = Simulation(normal="walton_braun")  # springs stand in for its law where W couples
+    assert alike.plan(Scene.nondimensional(psi1=1.0, chi=1.0, lam=0.1, eta=0.1)).cautions
     block("tangential.fronts", "tangential.springs")
     assert usual() == ["Coulomb", "Events"]
     assert usual(normal="tsuji") == ["Annulus", "Symplectic"]

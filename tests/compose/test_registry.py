@@ -235,7 +235,11 @@ def test_a_blocked_distribution_that_is_not_installed_is_warned_of(registry, ins
 @pytest.mark.parametrize(
     ("source", "message"),
     [
-        ("import not_there_at_all", "could not be imported: ModuleNotFoundError"),
+        (
+            "import not_there_at_all",
+            r"could not be imported: ModuleNotFoundError: .*_at_all' \(broken_law.py, line 1\)$",
+        ),
+        ("x = (", r"could not be imported: SyntaxError: .* \(broken_law.py, line 1\)$"),
         ("raise SystemExit(3)", "could not be imported: SystemExit"),
         ("1/0", "could not be imported: ZeroDivisionError"),
         ("", "has no hook"),
@@ -257,6 +261,11 @@ def test_a_blocked_distribution_that_is_not_installed_is_warned_of(registry, ins
         ),
         (
             "import contactlab\n@contactlab.hookimpl\ndef contactlab_law(name): return int",
+            "not the class of a law",
+        ),
+        (
+            "import contactlab, contactlab.contracts.law as base\nclass Odd(base.Law): pass\n"
+            "@contactlab.hookimpl\ndef contactlab_law(name): return Odd",
             "not the class of a law",
         ),
         (
@@ -344,9 +353,9 @@ def test_a_malformed_name_stops_nothing(registry, install, law_source, name):
             registry.create(name)
 
 
-@pytest.mark.parametrize("name", ["tangential.mine.py", "tangential.mine:Mine"])
+@pytest.mark.parametrize("name", ["tangential.mine.py", "tangential.mine:Mine", "tangential.Brush"])
 def test_a_name_like_a_place_is_malformed(registry, install, law_source, name):
-    """It would mean the file ``mine.py`` of the folder that one happens to be in."""
+    """It would mean the file ``mine.py`` of the folder, or the class ``odd:Brush``."""
     install("odd", "odd_law", law_source, name)
     (found,) = (info for info in registry.installed() if info.distribution == "odd")
     assert found.malformed

@@ -110,6 +110,8 @@ def test_slip_throughout_begins_at_a_bound(chi, least):
         assert not slips_throughout(sign * below(least), chi)
     many = slips_throughout(np.array([least, below(least)]), np.array([chi, chi]))
     assert many.tolist() == [True, False]
+    nan = slips_throughout(9.0, math.nan), slips_throughout(np.array([9.0]), math.nan)
+    assert [bool(np.all(each)) for each in nan] == [False, False]
 
 
 def test_rigid_bodies_lose_two_chi_for_each_half_of_the_impact():

@@ -65,7 +65,7 @@ def _all_at_once(
         return TangentialMotion.nothing(scene.shape, raised.status, raised.detail)
     fault = None
     if response.settled is not True and not np.all(response.settled):
-        detail = faults.sentence(law, "no division found", count + 1)
+        detail = faults.sentence(law, "no division into stick and slip found", count + 1)
         fault = faults.LawFaultError(Status.UNSETTLED, detail)
     elif not _finite(change):
         step = int((~np.isfinite(force)).reshape(count, -1).any(axis=1).argmax())

@@ -248,7 +248,7 @@ class _March:
     def _unsettled(self, settled: Mask, force: list[Real]) -> list[Real]:
         """Mark impacts to which the law has no answer, and return the forces of the others."""
         lost = self.alive & ~np.broadcast_to(settled, self.shape)
-        sentence = faults.sentence(self.law, "no division found", self.steps)
+        sentence = faults.sentence(self.law, "no division into stick and slip found", self.steps)
         if np.any(lost):
             self.fail(Status.UNSETTLED, sentence, lost)
         self.alive = self.alive & ~lost

@@ -42,7 +42,7 @@ def impact(region: int, a: Array, b: Array, cuts: Cuts) -> tuple[Array, Array]:
     Parameters
     ----------
     region : int
-        One of the constants above.
+        One of the constants of ``contactlab_laws.tables.regions``.
     a, b : array, shape (places,)
         Coordinates in [0, 1].
     cuts : Cuts
