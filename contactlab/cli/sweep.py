@@ -16,7 +16,7 @@ import argparse
 import contextlib
 import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -34,6 +34,7 @@ from contactlab.cli.scene import (
     read,
 )
 from contactlab.compose.hooks import Execute, hookimpl
+from contactlab.contracts.status import succeeded
 from contactlab.impact.grid import GridParts
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
@@ -188,8 +189,7 @@ def _print_table(result: ImpactResult, varied: Mapping[str, Real], out: Path | N
         shown = {name: (entry_unit(name), values) for name, values in varied.items()}
         print(table(*sweep_section(result, shown, most=most)))
     else:
-        names, rows = _rows(result)
-        print(table(names, [rows[index] for index in evenly(len(rows), most)]))
+        print(table(*_rows(result, evenly(len(result), most))))
     if most is not None and len(result) > most:
         done = _finished(result)
         which = "all of them" if done == len(result) else f"the {done} finished ones"
@@ -230,6 +230,8 @@ def _finished(result: ImpactResult) -> int:
     """Return the number of impacts that a resumed sweep does not try again."""
     from contactlab.compose.kept import TRIED_AGAIN
 
+    if succeeded(result.status):
+        return len(result)
     return sum(status not in TRIED_AGAIN for status in result.status)
 
 
@@ -254,11 +256,14 @@ def _grid(psi1: Real | None, chi: Real | None, *, most: int, remedy: str) -> dic
     return {"chi": np.atleast_1d(chi), "psi1": np.atleast_1d(psi1)}
 
 
-def _rows(result: ImpactResult) -> tuple[list[str], list[tuple[Any, ...]]]:
-    """Return names and values of the printed columns, one row for each impact."""
+def _rows(
+    result: ImpactResult, shown: Sequence[int] | None = None
+) -> tuple[list[str], list[tuple[Any, ...]]]:
+    """Return names and values of the printed columns, one row for each impact, or those shown."""
     shape, named = result.scene.shape, []
     for name, values in zip(SHOWN, (result.psi1, result.scene.chi, result.psi2), strict=True):
         named += components(name, values, shape)
-    columns = [np.broadcast_to(np.asarray(values), shape).tolist() for _, values in named]
-    statuses = [status.name for status in result.status]
+    places = slice(None) if shown is None else [*shown]
+    columns = [np.broadcast_to(np.asarray(values), shape)[places].tolist() for _, values in named]
+    statuses = [status.name for status in result.status[places]]
     return [*(name for name, _ in named), "status"], list(zip(*columns, statuses, strict=True))

@@ -7,14 +7,22 @@ from __future__ import annotations
 
 import json
 import math
+import zipfile
+import zlib
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from contactlab.contracts.status import Status, succeeded
 from contactlab.outcome.columns import columns, csv_heading, json_value
 from contactlab.outcome.files import write_table, written
 from contactlab.outcome.result import ImpactResult
+
+#: A column of an npz is compressed if so many numbers of it shrink to this share.
+SAMPLE, WORTH_WHILE = 8192, 0.5
 
 
 def to_dict(result: ImpactResult) -> dict[str, Any]:
@@ -68,7 +76,25 @@ def write_npz(result: ImpactResult, path: str | Path) -> None:
         course = result.history.columns() | result.history.fields
         arrays |= {f"history_{name}": column for name, column in course.items()}
     with written(path, binary=True) as stream:  # numpy adds .npz to any other path
-        np.savez_compressed(stream, **arrays)
+        _write_arrays(stream, arrays)
+
+
+def _write_arrays(stream: IO[bytes], arrays: Mapping[str, Any]) -> None:
+    """Write arrays as npz, compressed where numbers repeat: others hardly shrink, and take long."""
+    with zipfile.ZipFile(stream, "w", compresslevel=1) as archive:
+        for name, values in arrays.items():
+            archive.compression = _kind_of(np.ascontiguousarray(values))  # of what is opened next
+            with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
+                np.lib.format.write_array(file, np.asanyarray(values), allow_pickle=False)
+
+
+def _kind_of(values: NDArray[Any]) -> int:
+    """Return whether to store or to deflate an array, by numbers of its middle."""
+    flat = values.reshape(-1)
+    first = max(0, (flat.size - SAMPLE) // 2)
+    sample = flat[first : first + SAMPLE].tobytes()
+    shrinks = len(zlib.compress(sample, 1)) < WORTH_WHILE * len(sample)
+    return zipfile.ZIP_DEFLATED if shrinks else zipfile.ZIP_STORED
 
 
 #: Writer of each file format, by suffix.
@@ -79,6 +105,8 @@ def _flat(value: object, shape: tuple[int, ...]) -> Any:
     """Return a column as a flat array of numbers, or of names of statuses."""
     array = np.asarray(math.nan if value is None else value)
     if array.dtype == object:
+        if array.shape == shape and succeeded(array):  # looking up a million names takes long
+            return np.full(array.size, Status.SUCCESS.name)
         return np.array(_spread(value, shape))
     return np.broadcast_to(array.astype(np.float64), shape).ravel()
 

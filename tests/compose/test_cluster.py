@@ -1,13 +1,15 @@
 """Sweeps on a cluster of dask, two processes of this machine; and with other BLAS threads."""
 
 import os
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from contactlab import Scene, Simulation, rebound
+from contactlab import Scene, Simulation, SweepFolder, rebound
 from tests.compose.test_sweep import CHI, assert_same, blocks_of, scene
 from tests.laws.ending_laws import Ending, Raising
 
@@ -94,3 +96,31 @@ def test_the_exact_solution_does_not_depend_on_the_number_of_threads():
         found.append(subprocess.run(command, env=environment, capture_output=True, check=True))
     assert len(found[0].stdout) == 9000 * 8
     assert found[0].stdout == found[1].stdout
+
+
+BY_MPI = """
+import sys
+from mpi4py.futures import MPIPoolExecutor
+from contactlab import Simulation
+from tests.compose.test_sweep import scene
+if __name__ == "__main__":
+    with MPIPoolExecutor() as executor:
+        by_springs = Simulation(tangential="springs")
+        by_springs.sweep(scene(), executor=executor, into=sys.argv[1]).check()
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("mpiexec") is None, reason="mpiexec is not installed")
+def test_a_folder_is_filled_by_mpi(tmp_path):
+    pytest.importorskip("mpi4py", reason="mpi4py is not installed")
+    (tmp_path / "by_mpi.py").write_text(BY_MPI)
+    roots = {f"{a}_ALLOW_RUN_AS_ROOT{b}": "1" for a in ("OMPI", "PRTE") for b in ("", "_CONFIRM")}
+    more = {
+        "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
+        "PYTHONPATH": str(Path(__file__).parents[2]),
+    }
+    words = ["mpiexec", "-n", "2", sys.executable, "-m", "mpi4py.futures", tmp_path / "by_mpi.py"]
+    subprocess.run([*words, tmp_path / "swept"], env=os.environ | roots | more, check=True)
+    here = Simulation(tangential="springs").sweep(scene())
+    assert SweepFolder(tmp_path / "swept")["psi2"].tobytes() == here.psi2.tobytes()

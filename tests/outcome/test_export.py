@@ -2,6 +2,7 @@
 
 import csv
 import json
+import zipfile
 
 import numpy as np
 import pytest
@@ -54,6 +55,23 @@ def test_a_file_gets_the_name_asked_for_and_angles_keep_their_unit(tmp_path):
     headings = (tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()[0]
     assert "local_rebound_angle (rad)" in headings
     assert "normal_velocity (1)" in headings
+
+
+def test_an_npz_compresses_what_repeats(tmp_path):
+    """Random numbers hardly shrink, and compression takes longer than ten times the impacts."""
+    psi1 = np.random.default_rng(1).uniform(-6.0, 6.0, 20_000)
+    result = Simulation().sweep(Scene.nondimensional(psi1=psi1, chi=1.4))
+    write_npz(result, tmp_path / "a.npz")
+    with zipfile.ZipFile(tmp_path / "a.npz") as archive:
+        sizes = {entry.filename: entry.compress_size for entry in archive.infolist()}
+        assert archive.testzip() is None
+    assert sizes["psi1.npy"] > 8 * psi1.size
+    assert sizes["chi.npy"] < psi1.size
+    assert sizes["status.npy"] < psi1.size
+    with np.load(tmp_path / "a.npz") as content:
+        assert content["psi1"].tobytes() == psi1.tobytes()
+        assert content["psi2"].tobytes() == result.psi2.tobytes()
+        assert set(content["status"]) == {"SUCCESS"}
 
 
 def test_npz_round_trip(tmp_path):
