@@ -18,6 +18,7 @@ import numpy as np
 
 from contactlab.impact.material import Material
 from contactlab.impact.rigid_body import RigidBody
+from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import POSITIVE, real, refuse
 from contactlab.numeric.names import SHAPES, function_told
 from contactlab.numeric.types import Array, Numbers, Real
@@ -416,10 +417,17 @@ def _rounded(half: Array, r: float) -> tuple[float, Array]:
     return volume, (inside + faces + along + around + corners) / volume
 
 
+@functools.cache  # NumPy takes longer to find them than all else of a body
+def _gauss(count: int) -> tuple[Array, Array]:
+    """Return points and weights of Gauss's rule on [-1, 1]."""
+    points, weights = np.polynomial.legendre.leggauss(count)
+    return locked(points), locked(weights)
+
+
 def _revolved(length: float, radius: float, end: float, dome: float) -> tuple[float, float, float]:
     """Return volume, and moments over mass along and across the axis, of a domed cylinder."""
     # r² is of second degree in z on each part: three Gauss points integrate r⁴ and z² r² exactly.
-    points, weights = np.polynomial.legendre.leggauss(3)
+    points, weights = _gauss(3)
     straight = 0.5 * length - dome
     z = np.concatenate((0.5 * straight * (1.0 + points), straight + 0.5 * dome * (1.0 + points)))
     share = np.concatenate((straight * weights, dome * weights))  # both halves of the rod
@@ -432,7 +440,7 @@ def _revolved(length: float, radius: float, end: float, dome: float) -> tuple[fl
 
 def _rimmed(radius: float, straight: float, rim: float) -> tuple[float, float, float]:
     """Return volume, and moments over mass along and across the axis, of a rounded disc."""
-    points, weights = np.polynomial.legendre.leggauss(RIM_POINTS)
+    points, weights = _gauss(RIM_POINTS)
     angle = 0.25 * math.pi * (1.0 + points)
     z = np.concatenate((0.5 * straight * (1.0 + points), straight + rim * np.sin(angle)))
     square = np.concatenate(
