@@ -51,7 +51,7 @@ def restitution_of(number: Real) -> Real:
     return _float(e)
 
 
-def _ratio(e: Array) -> Array:
+def _ratio(e: Real) -> Array:
     """Return g."""
     series = chebval((np.cbrt(np.maximum(e, LEAST)) - 0.6) / 0.4, TERMS)
     asymptote = FIRST * (1.0 - e**0.6) * (1.0 + SECOND * np.cbrt(e) ** 2)
