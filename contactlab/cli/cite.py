@@ -40,7 +40,7 @@ def execute(arguments: argparse.Namespace) -> int:
         texts += [measured.source for measured in file.measured]
         texts += [work for name in file.materials for work in works(name).values()]
     for simulation in simulations(arguments, laws).values():
-        for law in (simulation.normal, simulation.tangential, simulation.integrator):
+        for law in simulation.laws:
             texts += references(law)
     print(bibtex(dict.fromkeys(" ".join(text.split()) for text in texts)), end="\n\n")
     print(software())

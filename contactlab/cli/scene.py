@@ -123,9 +123,9 @@ def _scene(arguments: argparse.Namespace, file: SceneFile | None) -> Any:
     check_alone(arguments)
     if file is not None:
         return file.scene
-    pair = (arguments.psi1, arguments.chi)
-    if None in pair:
-        missing = "--chi" if pair[1] is None else "--psi1"
-        missing = "a scene file, or --psi1 and --chi" if pair == (None, None) else missing
+    groups = (arguments.psi1, arguments.chi)
+    if None in groups:
+        missing = "--chi" if groups[1] is None else "--psi1"
+        missing = "a scene file, or --psi1 and --chi" if groups == (None, None) else missing
         raise ValueError(f"{missing}: must be given (chi is 1.4412 for a solid sphere, nu = 0.3)")
-    return Scene.nondimensional(psi1=pair[0], chi=pair[1])
+    return Scene.nondimensional(psi1=groups[0], chi=groups[1])

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose.composition import Laws
-from contactlab.compose.kept import TRIED_AGAIN, fingerprint, opened, written_piece
+from contactlab.compose.fingerprints import fingerprint
+from contactlab.compose.kept import TRIED_AGAIN, opened, written_piece
 from contactlab.compose.pieces import Part, Piece
 from contactlab.compose.sweep import WHOLE_IMPACTS, block_for, cut, one_axis, solved_parts
 from contactlab.contracts.status import Status, succeeded

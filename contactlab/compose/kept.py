@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import json
 import os
-import pickle
-from collections.abc import Callable, Iterator, Mapping
-from enum import Enum
-from functools import singledispatch
+from collections.abc import Iterator, Mapping
 from importlib import metadata
 from pathlib import Path
 from typing import IO, Any
@@ -19,6 +15,7 @@ import numpy as np
 
 from contactlab.compose import sources
 from contactlab.compose.composition import Laws
+from contactlab.compose.fingerprints import fingerprint
 from contactlab.compose.names import KINDS, PROJECT
 from contactlab.compose.pieces import Piece
 from contactlab.compose.registry import REGISTRY
@@ -192,13 +189,6 @@ def remove(folder: Path) -> None:
         folder.rmdir()
 
 
-def fingerprint(tree: object) -> str:
-    """Return a hash of every number, text and class in a tree, 16 hexadecimal digits."""
-    digest = hashlib.sha256()
-    _feed(tree, digest.update)
-    return digest.hexdigest()[:16]
-
-
 def _modules(tree: Any) -> set[str]:
     """Return the names of the modules with the classes in a tree of laws."""
     if isinstance(tree, Mapping | list | tuple):
@@ -212,56 +202,6 @@ def _modules(tree: Any) -> set[str]:
     elif isinstance(tree, Law):
         names |= _modules(getattr(tree, "__dict__", {}))
     return names
-
-
-def _feed(tree: object, update: Callable[[bytes], None]) -> None:
-    """Pass the class and the bytes of a tree to ``update``."""
-    update(type(tree).__qualname__.encode())
-    _content(tree, update)
-
-
-@singledispatch
-def _content(tree: object, update: Callable[[bytes], None]) -> None:
-    """Pass the bytes of a tree to ``update``."""
-    kind: Any = type(tree)
-    if not attrs.has(kind):
-        update(pickle.dumps(tree))
-        return
-    for field in attrs.fields(kind):
-        update(field.name.encode())
-        _feed(getattr(tree, field.name), update)
-
-
-@_content.register
-def _(tree: np.ndarray, update: Callable[[bytes], None]) -> None:
-    update(f"{tree.dtype.str}{tree.shape}".encode())
-    update(pickle.dumps(tree) if tree.dtype == object else np.ascontiguousarray(tree).tobytes())
-
-
-@_content.register(Mapping)
-def _(tree: Mapping[object, object], update: Callable[[bytes], None]) -> None:
-    for name, value in tree.items():
-        _feed(name, update)
-        _feed(value, update)
-
-
-@_content.register(list)
-@_content.register(tuple)
-def _(tree: list[object] | tuple[object, ...], update: Callable[[bytes], None]) -> None:
-    for value in tree:
-        _feed(value, update)
-
-
-@_content.register(set)
-@_content.register(frozenset)
-def _(tree: set[object] | frozenset[object], update: Callable[[bytes], None]) -> None:
-    for mark in sorted(map(fingerprint, tree)):  # their order changes from process to process
-        update(mark.encode())
-
-
-@_content.register
-def _(tree: int | float | str | bytes | Enum | None, update: Callable[[bytes], None]) -> None:
-    update(repr(tree).encode())
 
 
 def _checksum(arrays: Mapping[str, Column]) -> str:

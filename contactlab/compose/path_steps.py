@@ -75,16 +75,18 @@ def followed(
     LawFaultError
         If a law raises, or its answer is malformed.
     """
-    contacts = _pressed(normal, scene, points)
-    sampled = NormalContact(*(_column(rows, scene.shape) for rows in zip(*contacts, strict=True)))
     rate = points.moved(points.approach, 0.0)[1]
+    contacts = _pressed(normal, scene, points, rate)
+    sampled = NormalContact(*(_column(rows, scene.shape) for rows in zip(*contacts, strict=True)))
     motion = SampledMotion(
         normal, scene, time=points.time, approach=points.approach, rate=rate, contact=sampled
     )
     with faults.blaming(tangential) as blamed:
         nothing = NormalContact(*(locked(0.0 * entry) for entry in contacts[0]))
         state = tangential.start(scene, motion)
-        answers, states = advanced(tangential, state, nothing, _steps(points, contacts, blamed))
+        answers, states = advanced(
+            tangential, state, nothing, _steps(points, rate, contacts, blamed)
+        )
     for number, answer in enumerate(answers, 1):
         _well_formed(tangential, answer[:2], scene.shape, number)
     force, work, settled = (_column(rows, scene.shape) for rows in zip(*answers, strict=True))
@@ -107,9 +109,8 @@ def _well_formed(law: Law, entries: Iterable[object], shape: tuple[int, ...], st
             raise faults.LawFaultError(Status.MALFORMED, sentence)
 
 
-def _pressed(normal: NormalLaw, scene: Scene, points: Points) -> list[NormalContact]:
+def _pressed(normal: NormalLaw, scene: Scene, points: Points, rates: Array) -> list[NormalContact]:
     """Return the normal contact at each point."""
-    _, rates = points.moved(points.approach, 0.0)
     contacts = []
     with faults.blaming(normal) as blamed:
         state = normal.start(scene)
@@ -123,12 +124,11 @@ def _pressed(normal: NormalLaw, scene: Scene, points: Points) -> list[NormalCont
 
 
 def _steps(
-    points: Points, contacts: list[NormalContact], blamed: faults.blaming
+    points: Points, rates: Array, contacts: list[NormalContact], blamed: faults.blaming
 ) -> Iterable[tuple[Increment, NormalContact]]:
     """Iterate over the steps, and count them; the first one presses only."""
     drift = np.diff(points.time, axis=0, prepend=0.0)
     moved, velocity = points.moved(points.displacement, points.displacement[:1])
-    rates = points.moved(points.approach, 0.0)[1]
     places = zip(_rows(points.approach), _rows(rates), strict=True)
     rows = zip(*(_rows(each) for each in (moved, velocity, drift)), places, contacts, strict=True)
     for blamed.step, (by, speed, time, place, after) in enumerate(rows, 1):

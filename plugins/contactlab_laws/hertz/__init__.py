@@ -1,4 +1,4 @@
-"""Hertz's normal contact, the paper's eqs (2)-(9)."""
+"""Hertz's normal contact, the paper's eqs (2)-(6); ``motion`` has its impact, eqs (7)-(9)."""
 
 from __future__ import annotations
 
