@@ -87,6 +87,7 @@ def test_a_sweep_goes_on_where_it_stopped(swept, tmp_path):
             laws.sweep(scenes, into=target)
 
 
+@pytest.mark.slow
 def test_failures_are_those_of_the_result(parquet, tmp_path):
     raising = Simulation(tangential=Raising(), integrator="symplectic")
     whole = raising.sweep(scene())
@@ -99,7 +100,7 @@ def test_failures_are_those_of_the_result(parquet, tmp_path):
         assert raised.value.status == whole.status[next(iter(whole.failures))]
 
 
-@pytest.mark.parametrize("stride", [997, pytest.param(61, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("stride", [1997, pytest.param(61, marks=pytest.mark.slow)])
 def test_no_damage_is_read_as_numbers(swept, stride):
     """A bit that flipped anywhere is told, or changes nothing that is read."""
     path = min(swept.path.glob("impacts-*"))

@@ -16,9 +16,6 @@ class Traced(Protocol):
     def dtype(self) -> object:
         """Type of its entries, as the library has it."""
 
-    def reshape(self, *shape: int | tuple[int, ...]) -> Traced:
-        """Return the entries in another shape."""
-
     def __getitem__(self, index: object, /) -> Traced: ...
     def __neg__(self) -> Traced: ...
     def __abs__(self) -> Traced: ...
@@ -70,3 +67,6 @@ class Library(Protocol):
 
     def take(self, x: Traced, indices: Traced, /, *, axis: int) -> Traced:
         """Return the entries at some places of an axis."""
+
+    def reshape(self, x: Traced, /, shape: tuple[int, ...]) -> Traced:
+        """Return the entries in another shape."""

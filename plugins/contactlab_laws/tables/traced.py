@@ -192,7 +192,7 @@ def _elastic(xp: Library, constants: Mapping[str, Traced], p: Traced, x: Traced)
     a, b = xp.where(through, HARMLESS, a), xp.where(through, HARMLESS, b)
     size = elastic.SIZE
     i, j = (_index(xp, each, size) for each in (a, b))
-    patch = xp.take(constants["grid"], _flat((region * size + i) * size + j), axis=0)
+    patch = xp.take(constants["grid"], _flat(xp, (region * size + i) * size + j), axis=0)
     local = [
         each * _taken(xp, constants["scales"][k, ...], patch, p.shape)
         - _taken(xp, constants["starts"][k, ...], patch, p.shape)
@@ -218,7 +218,7 @@ def _partial(
     for bound in SLIPPING:
         region = region + xp.astype(slips & (x >= bound), xp.int32)
     region = xp.where(slips & ~(x >= 0.5), xp.ones_like(region), region)
-    flat, shape = _flat(region), p.shape
+    flat, shape = _flat(xp, region), p.shape
     share = (x - _taken(xp, constants["low"], flat, shape)) * _taken(
         xp, constants["per_width"], flat, shape
     )
@@ -228,7 +228,7 @@ def _partial(
         place = xp.astype(each * xp.astype(size, p.dtype), xp.int32)
         where = where * size + xp.where(place < 0, 0, xp.where(place < size, place, size - 1))
     where = where + _taken(xp, constants["starts"], flat, shape)
-    patch = xp.take(constants["grid"], _flat(where), axis=0)
+    patch = xp.take(constants["grid"], _flat(xp, where), axis=0)
     local = [
         each - _taken(xp, constants["origins"][k, ...], patch, shape)
         for k, each in enumerate((u, x, e))
@@ -286,11 +286,11 @@ def _index(xp: Library, share: Traced, size: int) -> Traced:
     return xp.where(place < 0, 0, xp.where(place < size, place, size - 1))
 
 
-def _flat(index: Traced) -> Traced:
+def _flat(xp: Library, index: Traced) -> Traced:
     """Return an index as one axis: ``take`` of the standard needs one."""
-    return index.reshape(-1)
+    return xp.reshape(index, (-1,))
 
 
 def _taken(xp: Library, values: Traced, index: Traced, shape: tuple[int, ...]) -> Traced:
     """Return ``values`` at an index of one axis, in the shape of the impacts."""
-    return xp.take(values, index, axis=0).reshape(shape)
+    return xp.reshape(xp.take(values, index, axis=0), shape)
