@@ -17,7 +17,7 @@ from contactlab.numeric.types import Column
 SHORTEST = "float32"
 
 
-class Library(Protocol):
+class TracingLibrary(Protocol):
     """A library of arrays.
 
     Attributes
@@ -122,7 +122,7 @@ def _is_array(value: object) -> bool:
 
 
 @cache
-def library_named(name: str) -> Library:
+def library_named(name: str) -> TracingLibrary:
     """Return the library of a package, ``"jax"`` or ``"torch"``, which is imported."""
     return _Torch() if name == "torch" else _Jax()
 
