@@ -100,9 +100,9 @@ def collide(
         strict = separating == "refuse"
         moved = impulses.moved(encounter, restitution=e, strict=strict)
         return Collision(encounter=encounter, **moved, restitution=e)
-    met: Any = encounter.approaching
-    if separating == "refuse" and not every(met):
-        raise encounter.separate()
+    met: Any = np.ones(encounter.shape, dtype=bool) if encounter.shape else True
+    if separating == "pass":  # else the scene refuses bodies that separate
+        met = encounter.approaching
     about: dict[str, Any] = {"simulation": simulation, "restitution": e}
     if not some(met):
         unmoved = impulses.unmoved(encounter)

@@ -117,8 +117,10 @@ def follow(
     """
     given = np.ascontiguousarray(numbers, dtype=np.float64)
     count = given.shape[1]
-    out, status = np.empty((7, count)), np.full(count, MEMORY, dtype=np.intc)
-    if (found := library()) is not None:
+    out, status = np.empty((7, count)), np.empty(count, dtype=np.intc)
+    if (found := library()) is None:
+        status.fill(MEMORY)
+    else:
         places = (each.ctypes.data for each in (given, out, status))
         found.contactlab_impact_follow_all(count, next(places), tolerance, most, *places)
     return out, status
