@@ -66,11 +66,6 @@ class ScaledNormalLaw:
 
     def slope(self, scaled: Array) -> Array:
         """Return the derivatives of scaled approach, rate and impulse, shape (3, items)."""
-        if not self.shape:  # as floats: several times faster
-            force, _, _, load = self._respond(scaled)[0].complete
-            self.finite = math.isfinite(force) and math.isfinite(load)
-            response = self.response.item()
-            return np.array([[scaled.item(1)], [-force * response], [load * response]])
         forces, _, _, loads = self.contact(scaled)
         self.finite = bool(np.isfinite(np.where(self.active, forces + loads, 0.0)).all())
         slope = np.stack([scaled[1], -forces * self.response, loads * self.response])
@@ -79,28 +74,26 @@ class ScaledNormalLaw:
     def contact(self, scaled: Array) -> Array:
         """Return force (N), radius (m), overlap (m) and friction load (N), shape (4, items)."""
         rows = np.empty((4, *self.shape))
-        for row, entry in enumerate(self._respond(scaled)[0].complete):
+        for row, entry in enumerate(self._answer(scaled)[0].complete):
             rows[row] = entry
         return rows.reshape(4, self.items)
 
     def remember(self, scaled: Array) -> None:
         """Store the state that the law returns at these scaled values."""
-        self.state = self._respond(scaled)[1]
+        self.state = self._answer(scaled)[1]
 
     def fault(self, status: Status, what: str) -> faults.LawFaultError:
         """Return the error with a sentence on law, step and time."""
         detail = faults.sentence(self.law, what, self.steps, self.time)
         return faults.LawFaultError(status, detail)
 
-    def _respond(self, scaled: Array) -> tuple[NormalContact, Any]:
-        """Return contact and new state, or raise LawFaultError if the law does anything else."""
-        approach: Any
-        rate: Any
-        if self.shape:
-            approach, rate = (locked(each.reshape(self.shape)) for each in self.in_si(scaled))
-        else:
-            approach = scaled.item(0) * self.length.item()
-            rate = scaled.item(1) * self.speed.item()
+    def _answer(self, scaled: Array) -> tuple[NormalContact, Any]:
+        """Return contact and new state at scaled values."""
+        approach, rate = (locked(each.reshape(self.shape)) for each in self.in_si(scaled))
+        return self.respond(approach, rate)
+
+    def respond(self, approach: Real, rate: Real) -> tuple[NormalContact, Any]:
+        """Return contact and new state in SI, or raise LawFaultError if the law does not."""
         try:
             with np.errstate(all="ignore"):  # restores the settings if the law changes them
                 contact, state = self.law.respond(self.state, approach, rate)

@@ -21,7 +21,7 @@ from contactlab.numeric.lobatto import lobatto, rows
 from contactlab.numeric.types import Array, Index
 
 #: Declared relative error of the load impulse: the sum of the errors of all steps, each within
-#: the ``TOLERANCE`` of ``contactlab.compose.normal_motion``.
+#: the ``TOLERANCE`` of ``contactlab.compose.motion_solver``.
 ACCURACY = 1e-7
 #: Nodes in a step: polynomials of degree 7 hold the dense output of the solver exactly.
 NODES = 8

@@ -30,7 +30,7 @@ class NormalLaw(Law):
        of the batch shape; one code path should serve both.
     4. If an argument is NaN, the answer is NaN, never "no contact".
     5. The normal motion is integrated from ``respond``, before any friction, to the tolerance
-       ``contactlab.compose.normal_motion.TOLERANCE``. A ``ClosedFormNormalLaw`` returns its
+       ``contactlab.compose.motion_solver.TOLERANCE``. A ``ClosedFormNormalLaw`` returns its
        motion itself.
     6. ``cautions`` returns doubts about the model when a plan is read, as those of a
        ``TangentialLaw``. ``plastic`` is True for a law whose bodies

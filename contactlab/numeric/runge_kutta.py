@@ -1,9 +1,11 @@
-"""Steps of Dormand and Prince's method of order 8, for many systems at once."""
+"""Steps of Dormand and Prince's method of order 8, for many systems at once or for one."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from functools import cache
+from operator import mul
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -74,6 +76,106 @@ def attempt(
     parts += [spread * _summed(weights, slopes) for weights in tableau.dense]
     course = flat + _summed(_basis(points.tobytes()), np.array(parts)[:, None])
     return Attempt(np.where(np.isnan(squared), np.nan, error), course.reshape(-1, *begin.shape))
+
+
+class Alone:
+    """One step of a single autonomous system y' = ``slope(y)``, in plain numbers.
+
+    Parameters
+    ----------
+    slope : callable
+        Takes and returns a number for each value.
+    begin, first : sequence of float
+        Values and slopes where the step begins.
+    width, tolerance : float
+        As in ``attempt``.
+
+    Attributes
+    ----------
+    error : float
+        Error over tolerance, accepted up to 1; NaN where a slope was not finite.
+    end, last : sequence of float
+        Values and slopes where the step ends.
+    """
+
+    def __init__(
+        self,
+        slope: Callable[[Sequence[float]], Sequence[float]],
+        begin: Sequence[float],
+        first: Sequence[float],
+        width: float,
+        *,
+        tolerance: float,
+    ) -> None:
+        self.slope, self.begin, self.width = slope, begin, width
+        self.slopes = [[each] for each in first]
+        self.parts: list[list[float]] = []
+        plain = _plain()
+        self.end = begin
+        for weights in plain.steps:
+            self.end = self._stage(weights)
+        self.last = [each[-1] for each in self.slopes]
+        fifth = third = 0.0
+        for begins, ends, slopes in zip(begin, self.end, self.slopes, strict=True):
+            scale = tolerance * (1.0 + max(abs(begins), abs(ends)))
+            off, less = (sum(map(mul, each, slopes)) / scale for each in (plain.fifth, plain.third))
+            fifth, third = fifth + off * off, third + less * less
+        squared = fifth + LOWER * third
+        self.error = width * fifth / math.sqrt(squared) if squared != 0.0 else 0.0
+
+    def _stage(self, weights: list[float]) -> list[float]:
+        """Return the values of a stage, and keep its slopes."""
+        values = [
+            begins + self.width * sum(map(mul, weights, slopes))
+            for begins, slopes in zip(self.begin, self.slopes, strict=True)
+        ]
+        for slopes, found in zip(self.slopes, self.slope(values), strict=True):
+            slopes.append(found)
+        return values
+
+    def at(self, place: float) -> list[float]:
+        """Return the values at a fraction of the step."""
+        if not self.parts:
+            self._interpolate()
+        rest, values = 1.0 - place, []
+        for begins, parts in zip(self.begin, self.parts, strict=True):
+            total = 0.0
+            for index in range(len(parts) - 1, -1, -1):
+                total = (total + parts[index]) * (rest if index % 2 else place)
+            values.append(begins + total)
+        return values
+
+    def _interpolate(self) -> None:
+        """Find the polynomials, by three more stages."""
+        plain, width = _plain(), self.width
+        last = len(self.slopes[0]) - 1
+        for weights in plain.more:
+            self._stage(weights)
+        for begins, ends, slopes in zip(self.begin, self.end, self.slopes, strict=True):
+            gained, start, stop = ends - begins, width * slopes[0], width * slopes[last]
+            parts = [gained, start - gained, 2.0 * gained - start - stop]
+            parts += [width * sum(map(mul, weights, slopes)) for weights in plain.dense]
+            self.parts.append(parts)
+
+
+class _Plain(NamedTuple):
+    """The tableau in plain numbers: stages to the end of a step, and of the polynomial."""
+
+    steps: list[list[float]]
+    more: list[list[float]]
+    fifth: list[float]
+    third: list[float]
+    dense: list[list[float]]
+
+
+@cache
+def _plain() -> _Plain:
+    """Return the tableau in plain numbers."""
+    tableau = _tableau()
+    stages = [each.tolist() for each in tableau.stages]
+    count = len(tableau.fifth)
+    ends = tableau.fifth.tolist(), tableau.third.tolist(), tableau.dense.tolist()
+    return _Plain(stages[1:count], stages[count:], *ends)
 
 
 def _summed(weights: Array, values: Array) -> Array:

@@ -92,6 +92,26 @@ def test_restitution_is_the_closed_form(law, damping):
         assert e == pytest.approx(Tsuji.restitution(damping), rel=1e-7)
 
 
+@pytest.mark.parametrize("damping", [0.05, 0.3, 5.0])
+def test_one_impact_alone_is_solved_to_the_tolerance_in_few_steps(damping):
+    """Of Hunt and Crossley's law: d (1 + e) = ln((1 + d)/(1 - e d)), d = lambda v1."""
+    asked = []
+
+    class Counted(type(contactlab.create("normal.hunt_crossley"))):
+        def respond(self, state, approach, rate):
+            asked.append(approach)
+            return super().respond(state, approach, rate)
+
+    motion = normal_motion(Counted(damping=damping), scene(speed=1.0))
+    e = -motion.final_rate
+    assert np.log1p(damping) - np.log1p(-e * damping) == pytest.approx(
+        damping * (1.0 + e), rel=1e-9
+    )
+    lost = motion.scene.pair.normal_mass * (1.0 + e)
+    assert motion.total_load_impulse == pytest.approx(lost, rel=1e-9)
+    assert len(asked) < 1450
+
+
 @pytest.mark.parametrize("law", [Plastic, WidePlastic])
 @pytest.mark.parametrize("restitution", [0.3, *longer(0.8, 1.0)])
 def test_plastic_restitution_alone_and_in_a_batch(law, restitution):

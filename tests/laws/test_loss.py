@@ -366,7 +366,8 @@ def test_a_relaxation_time_gives_each_speed_its_restitution():
     lost = 1.0 - np.asarray(result.normal_restitution)
     assert lost[1:] / lost[:-1] == pytest.approx(2.0, rel=0.05)
     alone = [springs(law, 12, 50).run(scene.take(k)).psi2 for k in range(3)]
-    assert result.psi2 == pytest.approx(alone, abs=1e-9)
+    # one impact and many take steps of their own to the tolerance of normal motions
+    assert result.psi2 == pytest.approx(alone, abs=2e-8)
 
 
 @pytest.mark.parametrize("count", [20, *longer(4000)])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import DOP853
 
-from contactlab.numeric.runge_kutta import attempt
+from contactlab.numeric.runge_kutta import Alone, attempt
 
 POINTS = np.array([0.0, 0.1, 0.35, 0.8, 1.0])
 TOLERANCE, WIDTH = 1e-6, 0.7
@@ -48,6 +48,25 @@ def test_each_system_has_a_width_of_its_own():
         )
         assert np.array_equal(one.course[..., 0], both.course[..., item])
         assert one.error[0] == both.error[item]
+
+
+@pytest.mark.parametrize("item", [0, 1])
+def test_a_step_in_plain_numbers_is_the_same(item):
+    begin = BEGIN[:, item].tolist()
+
+    def slope(place):
+        return pendulum(np.array(place)).tolist()
+
+    step = Alone(slope, begin, slope(begin), WIDTH, tolerance=TOLERANCE)
+    many = attempt(pendulum, BEGIN, np.full(2, WIDTH), tolerance=TOLERANCE, points=POINTS)
+    assert step.error == pytest.approx(many.error[item], rel=1e-12)
+    assert step.last == pytest.approx(slope(step.end), rel=1e-15)
+    for point, place in zip(POINTS.tolist(), many.course[..., item], strict=True):
+        assert step.at(point) == pytest.approx(place, rel=1e-14)
+    still = Alone(lambda _place: [0.0] * 3, begin, [0.0] * 3, WIDTH, tolerance=TOLERANCE)
+    assert (still.error, still.end) == (0.0, begin)
+    lost = Alone(lambda _place: [np.nan] * 3, begin, begin, WIDTH, tolerance=TOLERANCE)
+    assert np.isnan(lost.error)
 
 
 def test_what_does_not_move_has_no_error_and_what_is_no_number_has_none_either():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import hashlib
 import os
+from collections.abc import Sequence
 from functools import cache
 from importlib import resources
 from typing import Any
@@ -126,7 +127,9 @@ def follow(
     return out, status
 
 
-def kept(numbers: Any, tolerance: float, most: int = MOST_STEPS) -> tuple[Array, int, Array]:
+def kept(
+    numbers: Sequence[float], tolerance: float, most: int = MOST_STEPS
+) -> tuple[Array, int, Array]:
     """Return what one impact leaves, its status, and its steps as rows of ``steps.Steps``."""
     law, given = library(), np.array(numbers, dtype=np.float64)
     out, status, count = np.empty(7), ctypes.c_int(), ROOM

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -47,7 +48,7 @@ class Steps(NamedTuple):
         return Steps(*(column[part] for column in self))
 
 
-def kept(numbers: Any, tolerance: float, most: int) -> tuple[Any, int, Steps]:
+def kept(numbers: Sequence[float], tolerance: float, most: int) -> tuple[Any, int, Steps]:
     """Return what one impact leaves, its status and its steps.
 
     Parameters
