@@ -174,8 +174,8 @@ def test_a_batch_of_linear_springs_is_what_they_are_alone(normal, integrator):
     ).check()
     for index, slip in enumerate(slips.tolist()):
         alone = simulation.run(scene(slip, speed=float(speeds[index]))).check()
-        # the oldest NumPy's powers of arrays and of numbers differ by a last bit: 1.2e-11 under jkr
-        assert together.psi2[index] == pytest.approx(alone.psi2, abs=1e-10)
+        # one impact and many take steps of their own to the same tolerance: 2.4e-10 under thornton
+        assert together.psi2[index] == pytest.approx(alone.psi2, abs=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -54,11 +54,12 @@ def corner(name, count):
 
 
 def compared(monkeypatch, psi1, chi):
-    """Compare with steps of another length, and with the bounds of theory §7."""
+    """Compare with Python's solver in steps of another length, and with the bounds of theory §7."""
     batch = together(psi1, chi).check()
     with monkeypatch.context() as patch:
-        patch.setattr("contactlab_laws.fronts.steps.LONGEST", 0.15)
-        patch.setattr("contactlab_laws.fronts.steps.CAREFUL", 0.7)
+        patch.setenv("CONTACTLAB_COMPILED", "0")
+        patch.setattr("contactlab_laws.fronts.phases.LONGEST", 0.15)
+        patch.setattr("contactlab_laws.fronts.phases.CAREFUL", 0.7)
         other = together(psi1, chi, 1e-12).check()
     error = np.abs(batch.psi_change - other.psi_change) / np.maximum(1.0, np.abs(psi1))
     assert error.max() < 1e-11
@@ -142,7 +143,8 @@ def test_odd_to_the_last_bit():
     assert np.array_equal(together(-psi1, chi).psi2, -together(psi1, chi).psi2)
 
 
-def test_statuses_are_those_of_the_impacts():
+def test_statuses_are_those_of_the_impacts(monkeypatch):
+    monkeypatch.setenv("CONTACTLAB_COMPILED", "0")  # the compiled law solves chi = 1e6
     psi1, chi = mixed(60, 7)
     chi[7] = 1e6
     result = together(psi1, chi)
