@@ -14,8 +14,8 @@ from contactlab.compose.simulation import Simulation
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.impact.encounter import Encounter
 from contactlab.numeric.arrays import every, some
-from contactlab.numeric.checks import Real, check_place, real, refuse
-from contactlab.numeric.types import Array, Numbers
+from contactlab.numeric.checks import check_place, real, refuse
+from contactlab.numeric.types import Array, Numbers, Real
 from contactlab.numeric.vectors import LEAST
 
 SEPARATING = ("refuse", "pass")

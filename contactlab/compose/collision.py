@@ -21,9 +21,9 @@ from contactlab.impact.body_contact import in_space, pushed
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.arrays import every, filled
-from contactlab.numeric.checks import Real, refuse
+from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import attributes_told
-from contactlab.numeric.types import Array, Labelled, Mask, Numbers
+from contactlab.numeric.types import Array, Labelled, Mask, Numbers, Real
 from contactlab.numeric.vectors import NOTHING, components, cross, joined
 from contactlab.outcome.answer import Answer
 from contactlab.outcome.columns import json_value

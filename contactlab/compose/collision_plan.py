@@ -11,7 +11,7 @@ from contactlab.compose.rebound import RESTITUTED_CHI, restituted_error
 from contactlab.impact.cautions import contact_vectors
 from contactlab.impact.encounter import Encounter
 from contactlab.numeric.arrays import plain, some
-from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Real
 from contactlab.outcome.plan import PSI2_ERROR, TANGENTIAL_MOTION, Clause, Plan
 
 PARTED = "collision: the bodies separate, they pass through untouched"

@@ -17,8 +17,7 @@ from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.status import Status, Statuses
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import plain
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array, Mask
+from contactlab.numeric.types import Array, Mask, Real
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.result import ImpactResult
 

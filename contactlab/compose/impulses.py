@@ -12,8 +12,8 @@ from contactlab.impact.body_contact import Contact
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import LEAST_IMPULSE
 from contactlab.numeric.arrays import chosen, every, locked, plain
-from contactlab.numeric.checks import Real, refuse
-from contactlab.numeric.types import Array
+from contactlab.numeric.checks import refuse
+from contactlab.numeric.types import Array, Real
 from contactlab.numeric.vectors import LEAST, components, three
 
 #: Velocities and spins of both bodies.

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts.restitution import RESTITUTIONS
-from contactlab.numeric.checks import FINITE, POSITIVE, Real, Rule, paired, real, refuse
+from contactlab.numeric.checks import FINITE, POSITIVE, Rule, paired, real, refuse
 from contactlab.numeric.labels import library_of
-from contactlab.numeric.types import Array, Labelled, Many, Number, Numbers
+from contactlab.numeric.types import Array, Labelled, Many, Number, Numbers, Real
 
 if TYPE_CHECKING:
     from contactlab.compose.simulation import Simulation

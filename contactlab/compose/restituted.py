@@ -17,8 +17,8 @@ from contactlab.contracts.status import Status
 from contactlab.impact.inverse_mass import unit_slip
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import filled, spread
-from contactlab.numeric.checks import Real, refuse
-from contactlab.numeric.types import Array
+from contactlab.numeric.checks import refuse
+from contactlab.numeric.types import Array, Real
 from contactlab.outcome.motion import ENDS, Motion
 from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult

@@ -16,9 +16,8 @@ from contactlab.contracts.status import Status
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
-from contactlab.numeric.checks import Real
 from contactlab.numeric.lobatto import lobatto, rows
-from contactlab.numeric.types import Array, Index
+from contactlab.numeric.types import Array, Index, Real
 
 #: Declared relative error of the load impulse: the sum of the errors of all steps, each within
 #: the ``TOLERANCE`` of ``contactlab.compose.motion_solver``.

@@ -40,17 +40,8 @@ from contactlab.contracts.whole_impact import (
 )
 from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import (
-    NON_NEGATIVE,
-    POSITIVE,
-    Mask,
-    Real,
-    Rule,
-    choice,
-    count,
-    flag,
-    quantity,
-)
+from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, Rule, choice, count, flag, quantity
+from contactlab.numeric.types import Mask, Real
 
 __all__ = [
     "API_VERSION",

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from contactlab.contracts.status import Status
 from contactlab.numeric.arrays import are_zeros, consecutive, filled, merged, zeros
-from contactlab.numeric.checks import Mask
-from contactlab.numeric.types import Column, Real
+from contactlab.numeric.types import Column, Mask, Real
 
 #: Entries of motions that are no numbers.
 NO_NUMBERS = ("status", "detail", "counters", "normal")

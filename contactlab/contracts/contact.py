@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Real
 
 #: Overlap in m of a contact that presses at first touch; only the sign of an overlap matters.
 TOUCH = 1e-300

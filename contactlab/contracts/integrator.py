@@ -12,7 +12,7 @@ from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.contracts.tangential_motion import Observer, TangentialMotion
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Real
 
 #: Impacts of a sweep that an integrator receives at a time, by default.
 CHUNK = 1000

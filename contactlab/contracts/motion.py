@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts.status import Status
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Index
+from contactlab.numeric.types import Index, Real
 
 if TYPE_CHECKING:
     from contactlab.contracts.contact import NormalContact

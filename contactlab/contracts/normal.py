@@ -11,7 +11,7 @@ from contactlab.contracts.law import Law
 from contactlab.contracts.motion import ClosedFormMotion, NormalMotion
 from contactlab.impact.cautions import large_contact, named, size_of_contact, yielding
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Real
 
 
 class NormalLaw(Law):

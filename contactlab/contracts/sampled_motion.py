@@ -13,8 +13,7 @@ from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion, NormalSample
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import merged, spread
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array, Index, Mask
+from contactlab.numeric.types import Array, Index, Mask, Real
 
 
 class SampledMotion(NormalMotion):

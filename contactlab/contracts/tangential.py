@@ -14,8 +14,7 @@ from contactlab.contracts.tangential_motion import Observer, TangentialMotion
 from contactlab.contracts.whole_impact import WholeImpact, no_force
 from contactlab.impact.coupling import coupling
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Mask, Real
-from contactlab.numeric.types import Array, Column
+from contactlab.numeric.types import Array, Column, Mask, Real
 
 
 class Sampled(NamedTuple):

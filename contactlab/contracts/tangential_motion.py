@@ -11,8 +11,7 @@ from contactlab.contracts.batch_motion import BatchMotion
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.sampled_motion import Ends
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Mask
+from contactlab.numeric.types import Mask, Real
 
 
 def no_fields() -> Mapping[str, Any]:

@@ -15,8 +15,7 @@ from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import chosen
-from contactlab.numeric.checks import Mask, Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Mask, Real
 
 
 @attrs.frozen(kw_only=True, eq=False)

@@ -14,8 +14,7 @@ from contactlab.fitting.struck import SPIN, VELOCITY, to_the_struck_body
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.body_contact import seen
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab.scene_file import SceneFile, read_scene
 from contactlab.scene_file.entries import STRUCK_KEYS, entry_path, replaced, without_rivals
 from contactlab.scene_file.measured import Measured

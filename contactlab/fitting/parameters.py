@@ -19,9 +19,9 @@ from contactlab.fitting import tabulated
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real, Rule
+from contactlab.numeric.checks import Rule
 from contactlab.numeric.names import nearest
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 #: Range of the friction coefficient, and starts of the searches.
 FRICTION, FRICTION_STARTS = (1e-6, 10.0), tuple(np.geomspace(0.004, 4.0, 25).tolist())

@@ -27,8 +27,7 @@ from contactlab.fitting.parameters import (
 from contactlab.fitting.patterns import NO_PATTERN, Pattern
 from contactlab.fitting.problem import Problem, grid, solved
 from contactlab.fitting.readings import Reading, readings, turned
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 #: A mistake is reported if its correction makes residuals this many times smaller and the
 #: likelihood exp(CERTAIN/2) times greater, which chance does once in 20,000 times.

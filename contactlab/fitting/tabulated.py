@@ -15,7 +15,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.cautions import unit_slips
 from contactlab.impact.coupling import coupling
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Real
 from contactlab.outcome.motion import ENDS, Motion
 from contactlab.outcome.plan import Clause, Plan, PlanColumns, Words
 from contactlab.outcome.result import ImpactResult

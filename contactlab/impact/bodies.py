@@ -12,7 +12,6 @@ from contactlab.numeric.checks import (
     GYRATION,
     NON_NEGATIVE,
     POSITIVE,
-    Real,
     instance,
     key,
     quantity,
@@ -20,7 +19,7 @@ from contactlab.numeric.checks import (
     refuse,
 )
 from contactlab.numeric.names import arguments_stated
-from contactlab.numeric.types import Numbers
+from contactlab.numeric.types import Numbers, Real
 
 #: K of a solid homogeneous sphere: K² = 2/5.
 SOLID_SPHERE_GYRATION_RATIO = math.sqrt(0.4)

@@ -15,7 +15,7 @@ from contactlab.impact.hertz import elongation_of, hertz_scales, peak_pressure, 
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import for_share
-from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Real
 from contactlab.numeric.vectors import rows
 
 #: Peak pressure of Hertz's contact at which yield begins beneath the surface, over the yield

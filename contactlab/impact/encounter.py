@@ -24,9 +24,9 @@ from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.arrays import every
-from contactlab.numeric.checks import NON_NEGATIVE, Real, first_of, instance, quantity, refuse
+from contactlab.numeric.checks import NON_NEGATIVE, first_of, instance, quantity, refuse
 from contactlab.numeric.names import arguments_stated
-from contactlab.numeric.types import Array, Index, Numbers
+from contactlab.numeric.types import Array, Index, Numbers, Real
 from contactlab.numeric.vectors import (
     LEAST,
     NOTHING,

@@ -10,7 +10,7 @@ import numpy as np
 from contactlab.impact.bodies import Pair
 from contactlab.impact.bodies import size_ratio as size_ratio  # a closed form too
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Mask, Real
+from contactlab.numeric.types import Mask, Real
 
 #: 2.9432751843: duration of an elastic Hertz impact times v1/(C²R), eq. (7) unrounded.
 DURATION_CONSTANT = 4.0 * math.gamma(0.4) * math.sqrt(math.pi) / (5.0 * math.gamma(0.9))

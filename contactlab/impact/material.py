@@ -12,9 +12,9 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.numeric.checks import POISSON, POSITIVE, Real, quantity, real, refuse
+from contactlab.numeric.checks import POISSON, POSITIVE, quantity, real, refuse
 from contactlab.numeric.names import arguments_told, nearest
-from contactlab.numeric.types import Numbers
+from contactlab.numeric.types import Numbers, Real
 
 OWN = "or give your own: Material(young_modulus=..., poisson_ratio=..., density=...)"
 #: Names in common use, with the name in the collection.

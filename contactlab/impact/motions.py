@@ -11,8 +11,7 @@ from contactlab.impact import inverse_mass
 from contactlab.impact.bodies import Pair, size_ratio
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.arrays import chosen, quotient
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab.numeric.vectors import components, dot, entry, hypotenuse, joined, rows
 
 #: Groups of theory §14, where friction changes the approach.

@@ -11,9 +11,9 @@ import numpy as np
 
 from contactlab.impact.material import Material
 from contactlab.numeric.arrays import chosen, common_shape, known, some, taken
-from contactlab.numeric.checks import POSITIVE, Real, Rule, instance, key, quantity, real, refuse
+from contactlab.numeric.checks import POSITIVE, Rule, instance, key, quantity, real, refuse
 from contactlab.numeric.names import arguments_stated
-from contactlab.numeric.types import Array, Index, Numbers
+from contactlab.numeric.types import Array, Index, Numbers, Real
 from contactlab.numeric.vectors import components, dot
 
 #: Asymmetry of an inertia, and excess of a principal moment over the sum of the other two, that

@@ -20,7 +20,6 @@ from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import (
     NON_NEGATIVE,
     POSITIVE,
-    Real,
     Rule,
     check_place,
     instance,
@@ -31,7 +30,7 @@ from contactlab.numeric.checks import (
     whole,
 )
 from contactlab.numeric.names import arguments_stated
-from contactlab.numeric.types import Array, Index, Numbers
+from contactlab.numeric.types import Array, Index, Numbers, Real
 from contactlab.numeric.vectors import entry, over
 
 #: Least kinetic energy of the normal motion, in J, and least tangential velocity, in m/s. Numbers

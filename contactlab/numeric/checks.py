@@ -13,9 +13,7 @@ import attrs
 import numpy as np
 
 from contactlab.numeric.labels import misplaced
-from contactlab.numeric.types import Mask as Mask  # until all take them from there
-from contactlab.numeric.types import Numbers, Places
-from contactlab.numeric.types import Real as Real
+from contactlab.numeric.types import Numbers, Places, Real
 
 T = TypeVar("T")
 

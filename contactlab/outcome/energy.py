@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import some
-from contactlab.numeric.checks import Mask, Real
 from contactlab.numeric.names import attributes_told
+from contactlab.numeric.types import Mask, Real
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.motion import Motion
 

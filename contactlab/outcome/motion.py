@@ -15,8 +15,7 @@ from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential_motion import TangentialMotion
 from contactlab.numeric.arrays import are_zeros, chosen, finite, locked, spread, zeros
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 #: Entries of ``Motion`` by the name of their source in a normal motion.
 ENDS = {

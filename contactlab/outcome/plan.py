@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.numeric.arrays import consecutive, every, merged, share, some, taken
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Index
+from contactlab.numeric.types import Index, Real
 from contactlab.outcome.columns import json_value
 
 Mask = NDArray[np.bool_]

@@ -13,8 +13,8 @@ from contactlab.impact.bodies import Sphere
 from contactlab.impact.body_contact import pushed, seen
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import equal, plain, taken
-from contactlab.numeric.checks import Real
 from contactlab.numeric.names import attributes_told
+from contactlab.numeric.types import Real
 from contactlab.outcome.answer import Answer, statuses_told
 from contactlab.outcome.energy import EnergyLedger, ledger
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory

@@ -10,8 +10,8 @@ import numpy as np
 
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import OBLIQUE, Scene
-from contactlab.numeric.checks import NON_NEGATIVE, Real, real, refuse
-from contactlab.numeric.types import Array
+from contactlab.numeric.checks import NON_NEGATIVE, real, refuse
+from contactlab.numeric.types import Array, Real
 from contactlab.scene_file.entries import STRUCK_KEYS, UNITS
 from contactlab.scene_file.table import Table
 

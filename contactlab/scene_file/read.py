@@ -13,8 +13,8 @@ import attrs
 
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real, real, refuse
-from contactlab.numeric.types import Numbers
+from contactlab.numeric.checks import real, refuse
+from contactlab.numeric.types import Numbers, Real
 from contactlab.outcome.files import content
 from contactlab.scene_file.build import build_scene
 from contactlab.scene_file.entries import (

@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from contactlab.impact.grid import product
-from contactlab.numeric.checks import Real, refuse, whole
+from contactlab.numeric.checks import refuse, whole
+from contactlab.numeric.types import Real
 from contactlab.scene_file.entries import entry_path
 from contactlab.scene_file.table import Table, flattened, number_list
 

@@ -7,8 +7,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from contactlab.numeric.checks import Real, real, refuse
+from contactlab.numeric.checks import real, refuse
 from contactlab.numeric.names import nearest
+from contactlab.numeric.types import Real
 
 Made = TypeVar("Made")
 

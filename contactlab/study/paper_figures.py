@@ -17,8 +17,7 @@ from contactlab.compose.rebound import rebound
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab.outcome.history import scaled_forces
 
 #: chi of a solid homogeneous sphere of Poisson's ratio 0.3, eq. (38): the paper's 1.4412.

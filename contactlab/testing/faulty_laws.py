@@ -26,8 +26,7 @@ from contactlab.contracts import (
     TangentialResponse,
 )
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 #: Calls of a law after which it raises ``TooManyCallsError``.
 MOST_CALLS = 3_000_000

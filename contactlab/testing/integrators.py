@@ -10,7 +10,7 @@ from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import Integrator, Observer, TangentialMotion
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Real
 from contactlab.outcome.history import Recorder
 from contactlab.testing import limits
 from contactlab.testing.check import check, hold, hold_success

@@ -23,8 +23,7 @@ from contactlab.contracts import (
 )
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 
 class Stretched(NamedTuple):

@@ -11,8 +11,7 @@ from contactlab.contracts import NormalContact, NormalLaw
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab.testing import limits
 from contactlab.testing.check import CheckFailedError, check, hold, within
 from contactlab.testing.compare import hold_read_only, same, well_formed

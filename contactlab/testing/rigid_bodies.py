@@ -8,7 +8,7 @@ import numpy as np
 
 from contactlab.contracts import TangentialLaw
 from contactlab.impact.hertz import rigid_body_rebound
-from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Real
 from contactlab.testing.check import check, hold
 from contactlab.testing.ways import meet, ways
 

@@ -11,8 +11,7 @@ from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import SteppedTangentialLaw
 from contactlab.numeric.arrays import locked
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab.testing.check import check, hold, within, worst
 from contactlab.testing.compare import hold_read_only, same, well_formed
 from contactlab.testing.load_paths import (

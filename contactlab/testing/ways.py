@@ -24,7 +24,7 @@ from contactlab.contracts import (
     WholeImpactTangentialLaw,
 )
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Real
 from contactlab.outcome.history import History, Recorder
 from contactlab.testing import limits
 from contactlab.testing.check import apply_if, hold, hold_success

@@ -21,7 +21,7 @@ from contactlab.contracts import (
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import filled, spread
-from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Real
 
 #: Bound of the imbalance of the energy books, over the energy at the start.
 ROUNDING = 1e-9

@@ -12,7 +12,8 @@ from contactlab.contracts.contact import TOUCH
 from contactlab.impact.cautions import tabor_caution
 from contactlab.impact.hertz import hertz_stiffness
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import NON_NEGATIVE, Real, quantity
+from contactlab.numeric.checks import NON_NEGATIVE, quantity
+from contactlab.numeric.types import Real
 
 #: Tabor's parameter up to which the theory holds.
 STIFF = 0.1

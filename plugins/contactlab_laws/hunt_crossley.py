@@ -12,7 +12,8 @@ from contactlab.contracts import NormalContact, NormalLaw, without_tension
 from contactlab.contracts.restitution import one_of_two, restitution, root
 from contactlab.impact.hertz import hertz_stiffness
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import NON_NEGATIVE, Real, quantity
+from contactlab.numeric.checks import NON_NEGATIVE, quantity
+from contactlab.numeric.types import Real
 
 #: Default restitution, for laws with no damping of their own.
 DEFAULT_RESTITUTION = 0.9

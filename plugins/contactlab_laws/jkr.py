@@ -11,7 +11,8 @@ import numpy as np
 from contactlab.contracts import NormalContact, NormalLaw, NormalMotion
 from contactlab.impact.cautions import tabor_caution
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import POSITIVE, Real, quantity
+from contactlab.numeric.checks import POSITIVE, quantity
+from contactlab.numeric.types import Real
 
 #: Tabor's parameter from which the theory holds.
 SOFT = 5.0

@@ -10,8 +10,7 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import NormalContact, without_tension
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab_laws.relaxing import Parts, Relaxing
 
 #: Tolerance of the integration and of the calibration.

@@ -16,7 +16,8 @@ from contactlab.contracts import (
     TangentialResponse,
 )
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, Real, quantity
+from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, quantity
+from contactlab.numeric.types import Real
 from contactlab_laws.mindlin import (
     DAMPED,
     PARTIAL_SLIP,

@@ -19,7 +19,8 @@ from contactlab.contracts import (
     sliding,
 )
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, Mask, Real, choice, quantity
+from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, choice, quantity
+from contactlab.numeric.types import Mask, Real
 
 FORMS = ("displacement", "displacement_rescaled", "increment", "increment_rescaled")
 

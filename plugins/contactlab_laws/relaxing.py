@@ -11,7 +11,8 @@ from contactlab.contracts import NormalLaw
 from contactlab.contracts.restitution import one_of_two, restitution
 from contactlab.impact.hertz import hertz_scales, hertz_stiffness
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import NON_NEGATIVE, Real, quantity
+from contactlab.numeric.checks import NON_NEGATIVE, quantity
+from contactlab.numeric.types import Real
 
 #: Default restitution, for laws with no relaxation time of their own.
 DEFAULT_RESTITUTION = 0.9

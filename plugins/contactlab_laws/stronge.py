@@ -16,7 +16,8 @@ import numpy as np
 
 from contactlab.contracts import NormalMotion, WholeImpact, WholeImpactTangentialLaw
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import POSITIVE, Real, quantity, refuse
+from contactlab.numeric.checks import POSITIVE, quantity, refuse
+from contactlab.numeric.types import Real
 
 #: Bound of the imbalance of the energy books, over the energy at the start.
 ROUNDING = 1e-9

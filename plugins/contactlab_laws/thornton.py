@@ -12,7 +12,8 @@ from contactlab.contracts import NormalContact, NormalLaw
 from contactlab.contracts.restitution import one_of_two
 from contactlab.impact.hertz import hertz_stiffness
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import POSITIVE, Real, quantity
+from contactlab.numeric.checks import POSITIVE, quantity
+from contactlab.numeric.types import Real
 
 #: Default v_y in m/s, that of a ball of hard steel.
 DEFAULT_VELOCITY = 0.1

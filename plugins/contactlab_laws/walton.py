@@ -10,7 +10,8 @@ import numpy as np
 
 from contactlab.contracts import NormalMotion, WholeImpact, WholeImpactTangentialLaw
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real, Rule, quantity
+from contactlab.numeric.checks import Rule, quantity
+from contactlab.numeric.types import Real
 
 #: Bound of the imbalance of the energy books, over the energy at the start.
 ROUNDING = 1e-9

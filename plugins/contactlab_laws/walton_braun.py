@@ -11,7 +11,8 @@ from contactlab.contracts import NormalContact, NormalLaw
 from contactlab.contracts.restitution import restitution
 from contactlab.impact.hertz import linear_stiffness
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import POSITIVE, Real, quantity
+from contactlab.numeric.checks import POSITIVE, quantity
+from contactlab.numeric.types import Real
 
 
 class State(NamedTuple):

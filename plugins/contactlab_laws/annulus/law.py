@@ -18,8 +18,8 @@ from contactlab.contracts import (
     TangentialResponse,
 )
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real, choice, count
-from contactlab.numeric.types import Array
+from contactlab.numeric.checks import choice, count
+from contactlab.numeric.types import Array, Real
 from contactlab_laws.annulus import all_steps, step
 from contactlab_laws.annulus.tables import Tables, hertz_pressure, tables
 from contactlab_laws.differences import table as differences

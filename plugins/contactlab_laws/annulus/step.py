@@ -7,8 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab_laws.annulus.tables import Tables, hertz_pressure
 
 #: Passes of the division into stick and slip; measured never above 14 (theory §6).

@@ -15,7 +15,8 @@ from contactlab.contracts import (
 from contactlab.contracts.restitution import restitution
 from contactlab.impact.hertz import hertz_scales, hertz_stiffness, linear_stiffness
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import POSITIVE, Real, quantity
+from contactlab.numeric.checks import POSITIVE, quantity
+from contactlab.numeric.types import Real
 from contactlab_laws.dashpot.motion import DashpotMotion, ScaledMotion
 from contactlab_laws.dashpot.oscillator import damping_of
 from contactlab_laws.hertz.motion import HertzMotion

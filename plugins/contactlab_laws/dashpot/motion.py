@@ -17,9 +17,8 @@ from contactlab.contracts import (
     ScaledContact,
 )
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real
 from contactlab.numeric.lobatto import lobatto, rows
-from contactlab.numeric.types import Array, Index, Kind
+from contactlab.numeric.types import Array, Index, Kind, Real
 from contactlab_laws.dashpot.oscillator import Oscillator
 
 #: Edges of the panels over which time is summed, and nodes in each panel. Panels are even, then

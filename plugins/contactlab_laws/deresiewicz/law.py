@@ -18,7 +18,7 @@ from contactlab.contracts import (
     TangentialResponse,
 )
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Real
 from contactlab_laws.deresiewicz.branches import ContactState, Step, followed
 from contactlab_laws.differences import table as differences
 from contactlab_laws.jaeger.partial_slip import hemisphere

@@ -19,7 +19,8 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real, Rule, quantity
+from contactlab.numeric.checks import Rule, quantity
+from contactlab.numeric.types import Real
 from contactlab_laws.events.scaled import show, solve
 
 #: Rounding allows no more than the first; with the second the answer still has three digits.

@@ -24,8 +24,7 @@ from contactlab.contracts.error_model import psi_magnitude
 from contactlab.impact.hertz import slips_throughout
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import spread
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array, Mask
+from contactlab.numeric.types import Array, Mask, Real
 from contactlab_laws.fronts import compiled
 from contactlab_laws.jaeger.gross_slip import gross_slip
 from contactlab_laws.tables.elastic import ERROR, rebound

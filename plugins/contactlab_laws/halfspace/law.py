@@ -10,7 +10,8 @@ import numpy as np
 from contactlab.contracts import Law, NormalLaw, NormalMotion, WholeImpact, WholeImpactTangentialLaw
 from contactlab.impact.coupling import coupling_number
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real, choice, count, flag, refuse
+from contactlab.numeric.checks import choice, count, flag, refuse
+from contactlab.numeric.types import Real
 from contactlab_laws.differences import table as differences
 from contactlab_laws.halfspace.groups import Options
 from contactlab_laws.halfspace.whole_impacts import own_answers

@@ -9,7 +9,7 @@ import attrs
 from contactlab.contracts import ClosedFormNormalLaw, NormalContact, NormalMotion
 from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Real
 from contactlab_laws.hertz.motion import HertzMotion
 
 

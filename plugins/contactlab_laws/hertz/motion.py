@@ -19,8 +19,7 @@ from contactlab.contracts import (
 )
 from contactlab.impact.hertz import DURATION_CONSTANT, hertz_scales
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array, Index
+from contactlab.numeric.types import Array, Index, Real
 
 #: Longer tables are not cached: 64 tables of three columns of 8 bytes are 6 MB at most.
 LONGEST_KEPT = 4000

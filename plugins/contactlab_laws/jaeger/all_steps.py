@@ -7,8 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab_laws.jaeger.bundle import Bundle, of_each
 
 #: Most springs times steps of a geometry that is kept for the next impact: 8 of them take 13 MB.

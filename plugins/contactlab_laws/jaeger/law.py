@@ -19,8 +19,7 @@ from contactlab.contracts import (
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab_laws.differences import table as differences
 from contactlab_laws.jaeger import all_steps, step
 from contactlab_laws.jaeger.bundle import bundle, spring_fields

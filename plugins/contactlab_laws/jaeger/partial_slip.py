@@ -9,7 +9,7 @@ import numpy as np
 
 from contactlab.contracts import AllStepsTangentialLaw, NormalMotion, WholeImpact
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real
+from contactlab.numeric.types import Real
 from contactlab_laws.jaeger.gross_slip import gross_slip
 
 #: Phases at which the friction load is compared with Hertz's, and the relative tolerance.

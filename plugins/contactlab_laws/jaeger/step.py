@@ -6,8 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab_laws.jaeger.bundle import Bundle, Geometry, of_each, of_one
 
 #: Relative difference up to which numbers of a batch count as equal: scaled impacts of any size

@@ -23,7 +23,8 @@ from contactlab.contracts import (
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import for_share
-from contactlab.numeric.checks import Real, count, flag
+from contactlab.numeric.checks import count, flag
+from contactlab.numeric.types import Real
 from contactlab_laws.march import together
 from contactlab_laws.march.division import LARGEST_LEAD, LARGEST_PHASE_STEP, resolving
 from contactlab_laws.march.march import march

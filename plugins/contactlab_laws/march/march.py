@@ -25,8 +25,8 @@ from contactlab.contracts import (
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import filled, keep_freed_memory, locked, plain, spread
-from contactlab.numeric.checks import Real, shown
-from contactlab.numeric.types import Array
+from contactlab.numeric.checks import shown
+from contactlab.numeric.types import Array, Real
 from contactlab_laws.march.division import one_by_one
 
 

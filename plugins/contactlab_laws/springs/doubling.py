@@ -20,8 +20,7 @@ from numpy.typing import NDArray
 from contactlab.contracts import Increment, NormalContact, TangentialResponse
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab_laws.jaeger.bundle import spring_fields
 from contactlab_laws.springs.turning import Vectors, energy, turned
 

@@ -24,7 +24,8 @@ from contactlab.contracts import (
     sliding,
 )
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real, Rule, choice, count, flag, quantity, refuse
+from contactlab.numeric.checks import Rule, choice, count, flag, quantity, refuse
+from contactlab.numeric.types import Real
 from contactlab_laws.differences import table as differences
 from contactlab_laws.jaeger.law import ProfileLaw, State
 from contactlab_laws.march.together import deepest

@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.compose.rebound import TABULATED_CHI
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab_laws.tables import elastic
 from contactlab_laws.tables.file import read
 from contactlab_laws.tables.patches import Single

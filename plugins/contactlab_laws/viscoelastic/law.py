@@ -11,7 +11,8 @@ import numpy as np
 from contactlab.contracts import NormalContact, Tabulated, without_tension
 from contactlab.contracts.restitution import LEAST_RESTITUTION
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Real, Rule, quantity, refuse
+from contactlab.numeric.checks import Rule, quantity, refuse
+from contactlab.numeric.types import Real
 from contactlab_laws.relaxing import Parts, Relaxing
 from contactlab_laws.viscoelastic.relaxation import number_of
 

@@ -8,8 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial.chebyshev import chebval
 
-from contactlab.numeric.checks import Real
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 #: g by Chebyshev polynomials of (e^(1/3) - 0.6)/0.4, from ``LEAST`` up: e to 2e-10.
 TERMS = (
