@@ -124,8 +124,8 @@ def test_cohesive_law_keeps_the_declared_error(unloading, cohesion, own_load):
         for name in ("duration", "final_rate", "total_load_impulse", "maximum_force"):
             found = np.broadcast_to(getattr(together, name), 3)[index]
             assert found == pytest.approx(np.ravel(getattr(array, name))[0], rel=1e-9), name
-            # NumPy 1.26 rounds numbers and arrays otherwise: 2.3e-9 between them
-            assert found == pytest.approx(getattr(alone, name), rel=0.1 * ACCURACY), name
+            # one impact and many cross the kink in steps of their own: 1.2e-8 between them
+            assert found == pytest.approx(getattr(alone, name), rel=0.2 * ACCURACY), name
 
 
 CASES = [(20.0, 1e-6), (200.0, 2e-7), (500.0, 2e-6), (1.0, 1e-8), (600.0, 3e-6)]
