@@ -336,7 +336,7 @@ def test_half_given_or_doubly_varied_numbers_are_refused(run, given, words):
 def test_numbers_beside_a_file_are_refused(run, short_sweep):
     ran = run("compare", short_sweep, "--psi1", 1, "--chi", 1)
     assert ran.status == 2
-    assert "leave out one of them" in ran.err
+    assert "leave out the file, or both of them" in ran.err
 
 
 def test_loops_of_laws_that_have_steps(run, ball, tmp_path):
