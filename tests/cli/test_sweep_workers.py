@@ -56,6 +56,7 @@ main(sys.argv[1:])
 
 
 @pytest.mark.parametrize("workers", [(), pytest.param(("--workers", "2"), marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_killed_and_resumed_it_writes_the_same_file(run, tmp_path, workers):
     whole, killed, kept = tmp_path / "a.npz", tmp_path / "b.npz", tmp_path / "b.npz.kept"
     assert run(*SWEEP, "--out", whole).status == 0

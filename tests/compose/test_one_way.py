@@ -721,6 +721,7 @@ def test_cautions_of_a_restitution(met, restitution):
 
 
 @every_scene
+@pytest.mark.slow
 def test_a_restitution_that_is_given_is_not_by_default(scene):
     given = Simulation(normal=create("normal.tsuji", restitution=0.9)).run(scene)
     assert "by default" not in str(given)
@@ -731,6 +732,7 @@ def test_a_restitution_that_is_given_is_not_by_default(scene):
 
 
 @coupled_scene
+@pytest.mark.slow
 def test_laws_that_nobody_named_give_way_to_springs_and_the_plan_says_so(scene):
     simulation = Simulation(normal="linear")
     result = simulation.run(scene).check()
@@ -781,6 +783,7 @@ def follow(error, laws):
     ],
     ids=str,
 )
+@pytest.mark.slow
 def test_a_remedy_that_is_followed_works(scene, laws):
     """And plan and sweep refuse what run refuses, in the same words."""
     simulation = Simulation(**laws)

@@ -104,6 +104,7 @@ def states(encounter, made):
 
 
 @given(encounters())
+@pytest.mark.slow
 def test_momentum(met):
     made = collide(met)
     before = column(met.body.mass) * met.velocity + column(met.target.mass) * (met.target_velocity)

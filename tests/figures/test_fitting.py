@@ -85,6 +85,7 @@ def test_without_an_angle_the_abscissa_is_what_varies():
     assert "rad/s" in axes.get_xlabel()
 
 
+@pytest.mark.slow
 def test_each_quantity_has_a_column_under_one_legend(exact, tmp_path, monkeypatch):
     draw_fits(tmp_path / "fit.png", {"a": exact}, width="two")
     assert (tmp_path / "fit.png").read_bytes()[1:4] == b"PNG"

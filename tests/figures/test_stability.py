@@ -59,6 +59,7 @@ def test_least_steps_of_the_map_do_not_set_the_line():
     assert steps_needed(Figure().subplots(), maps).get_title().startswith("steps that keep")
 
 
+@pytest.mark.slow
 def test_a_picture_is_written_also_without_a_map(tmp_path):
     for maps in (MAPS, []):
         draw_stability(tmp_path / "a.png", maps, width="two")

@@ -130,6 +130,7 @@ def test_what_the_data_do_not_tell_of_the_restitution_is_a_caution():
     assert not any("is assumed" in text for text in fit(known, BODIES).cautions)
 
 
+@pytest.mark.slow
 def test_a_sign_that_is_told_is_turned_by_the_mapping_that_is_told():
     columns = measured(lossy(1.0), "rebound_spin", "tangential_restitution")
     bare = {"omega" if "spin" in name else name: v for name, v in columns.items()}

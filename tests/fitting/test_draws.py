@@ -43,6 +43,7 @@ def test_intervals_beside_the_truth_are_not_silent(flaw, told, silent):
     assert sum(wrong) <= silent * len(wrong)
 
 
+@pytest.mark.slow
 def test_a_zero_of_angles_that_is_likely_but_not_certain_is_a_caution():
     """With the friction coefficient that follows, nearer to the truth; none of sound angles."""
     one = draw(33, outliers=False, only=("friction_coefficient",), tilt=3.0)

@@ -76,6 +76,7 @@ def test_a_film_without_noise_gives_the_velocities_to_the_last_digits():
 
 
 @pytest.mark.parametrize("restitution", [1.0, pytest.param(0.85, marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_friction_lies_within_its_interval_from_ten_bounces_at_240_frames(restitution):
     """With noise of 1 mm; of twelve such films 95 % should hold it."""
     names = ["friction_coefficient", "restitution"][: 1 + (restitution < 1.0)]
