@@ -7,7 +7,7 @@ import pytest
 
 import contactlab
 from contactlab import Encounter, HalfSpace, Material, RigidBody, Simulation, Sphere, collide
-from tests.kernels.test_kernels import COMPILER, HERE, KERNELS, SANITIZERS, STRICT, needs_c
+from tests.kernels.test_kernels import needs_c, program
 
 pytestmark = needs_c
 APART, TURNS, RANGE = 16, 17, 18
@@ -19,17 +19,11 @@ MOTION = slice(31, 43)
 def bounced(request, tmp_path_factory):
     """Return a function of rows (n, 43) that gives statuses, motions (n, 12) and V, T, times."""
     folder = tmp_path_factory.mktemp("bodies")
-    words = (
-        [COMPILER, *STRICT, "-O0", *SANITIZERS]
-        if request.param == "c99"
-        else [COMPILER, "-x", "c++"]
-    )
-    source = [f"-I{KERNELS}", HERE / "bodies.c", "-o", folder / "bodies", "-lm"]
-    subprocess.run([*words, *source], check=True, timeout=120)
+    built = program("bodies", request.param, folder)
 
     def run(rows):
         np.asarray(rows, dtype=float).tofile(folder / "in")
-        subprocess.run([folder / "bodies", folder / "in", folder / "out"], check=True, timeout=600)
+        subprocess.run([built, folder / "in", folder / "out"], check=True, timeout=600)
         answers = np.fromfile(folder / "out").reshape(-1, 16)
         return answers[:, 0].astype(int), answers[:, 1:13], answers[:, 13:]
 

@@ -7,7 +7,7 @@ import pytest
 
 from contactlab_laws.fronts import compiled
 from contactlab_laws.fronts.path import Impact
-from tests.kernels.test_kernels import COMPILER, HERE, KERNELS, SANITIZERS, STRICT, needs_c
+from tests.kernels.test_kernels import needs_c, program
 
 pytestmark = needs_c
 #: Steps of an impact, and error of a step.
@@ -21,19 +21,13 @@ def followed(request, tmp_path_factory):
     As attributes it has those of the watched impacts, and their instants, a row each.
     """
     folder = tmp_path_factory.mktemp("impact")
-    words = (
-        [COMPILER, *STRICT, "-O0", *SANITIZERS]
-        if request.param == "c99"
-        else [COMPILER, "-x", "c++"]
-    )
-    source = [f"-I{KERNELS}", HERE / "impact.c", "-o", folder / "impact", "-lm"]
-    subprocess.run([*words, *source], check=True, timeout=120)
+    built = program("impact", request.param, folder)
 
     def run(numbers, tolerance=TOLERANCE, most=MOST):
         rows = np.full((np.shape(numbers)[1], 6), (0.0, 0.0, 0.0, 0.0, tolerance, most))
         rows[:, :4] = np.transpose(numbers)
         rows.tofile(folder / "in")
-        command = [folder / name for name in ("impact", "in", "out", "instants")]
+        command = [built, *(folder / name for name in ("in", "out", "instants"))]
         subprocess.run(command, check=True, timeout=300)
         answers = np.fromfile(folder / "out").reshape(-1, 16).T
         run.watched = answers[8].astype(int), answers[9:]

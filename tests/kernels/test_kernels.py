@@ -41,6 +41,14 @@ def built(tmp_path_factory):
     return build
 
 
+def program(name, language, folder):
+    """Return the program of a C file beside the tests, sanitized as C99, or built as C++."""
+    strict = [*STRICT, "-O0", *SANITIZERS] if language == "c99" else ["-x", "c++"]
+    source = [f"-I{KERNELS}", HERE / f"{name}.c", "-o", folder / name, "-lm"]
+    subprocess.run([COMPILER, *strict, *source], check=True, timeout=120)
+    return folder / name
+
+
 def driven(words, folder, springs, rows, **lengths):
     """Return forces and works, shape (K, 4), that a driver writes."""
     write(folder / "in", springs, rows, **lengths)
