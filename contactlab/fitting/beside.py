@@ -12,12 +12,14 @@ import numpy as np
 from contactlab.fitting.measurements import Measurements
 from contactlab.fitting.struck import SPIN, VELOCITY, to_the_struck_body
 from contactlab.impact.bodies import Sphere
-from contactlab.impact.body_contact import seen
+from contactlab.impact.body_contact import seen, sides
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array, Real
+from contactlab.numeric.vectors import components, dot
 from contactlab.scene_file import SceneFile, read_scene
 from contactlab.scene_file.entries import STRUCK_KEYS, entry_path, replaced, without_rivals
 from contactlab.scene_file.measured import Measured
+from contactlab.scene_file.plane import rim
 
 #: A column that varies by less than this share of its mean was kept constant.
 SAME = 0.1
@@ -60,7 +62,8 @@ def as_met(table: Measurements, scene: object) -> Measurements:
     if spin is not None:
         if arm is None:
             raise ValueError(f"{SPIN}: the struck body is no sphere and no body, and does not spin")
-        normal, along = normal - spin * arm[1], along + spin * arm[0]
+        inward, sideward = rim(spin, arm)
+        normal, along = normal + inward, along + sideward
     measured, errors = dict(table.measured), dict(table.errors)
     given |= dict(zip(VELOCITY, (normal, along), strict=True))
     to_the_struck_body(given, measured, errors)
@@ -82,11 +85,10 @@ def _of_file(
     impact: Any = file.tables.get("impact", {})
     own = {name: impact[name] for name in STRUCK_KEYS if isinstance(impact.get(name), float | int)}
     if file.encounter is not None and file.scene.along is not None:
-        n, t = file.encounter.normal, np.asarray(file.scene.along)
-        arm = np.asarray(file.encounter.target_contact)
-        if isinstance(file.encounter.target, Sphere):
-            arm = -np.asarray(file.encounter.target.radius)[..., None] * n
-        return own, (arm @ n, arm @ t)
+        n, still = components(file.encounter.normal), (0.0, 0.0, 0.0)  # a half-space has no arm
+        struck = (side.arm for side in sides(file.encounter, n) if side.name)
+        arm = next(struck, still)
+        return own, (dot(arm, n), dot(arm, file.scene.along))
     target = file.scene.target
     return own, (-np.asarray(target.radius), 0.0) if isinstance(target, Sphere) else None
 

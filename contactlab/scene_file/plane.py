@@ -44,7 +44,13 @@ def surface(table: Table, arm: tuple[Real, Real]) -> tuple[Real, Real]:
     ``arm`` leads from the centre of mass of the struck body to the contact, in m along both.
     """
     normal, along, spin = (_number(table, key) for key in STRUCK_KEYS)
-    return normal - spin * arm[1], along + spin * arm[0]
+    inward, sideward = rim(spin, arm)
+    return normal + inward, along + sideward
+
+
+def rim(spin: Real, arm: tuple[Real, Real]) -> tuple[Real, Real]:
+    """Return the velocity at the end of an arm by a spin, in m/s along normal and tangent."""
+    return -spin * arm[1], spin * arm[0]
 
 
 def of_bodies(
