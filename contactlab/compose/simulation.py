@@ -259,10 +259,9 @@ class Simulation:
             raise refuse("scenes", scenes, rule, "give into=folder, or Scene.grid")
         batch = scenes if isinstance(scenes, Scene) else Scene.stack(scenes)
         one_axis(batch.shape)
-        laws.accept(batch)
+        ways = laws.accept(batch)
         columns, motion = swept(laws, batch, keep=keep, **options)
-        plan = plan_of(laws, batch, columns, motion)
-        return _result(laws.ways(batch), batch, plan, motion, started)
+        return _result(ways, batch, plan_of(laws, batch, columns, motion), motion, started)
 
     def _into(
         self,
