@@ -74,7 +74,7 @@ def contactlab_command(name: str, parser: argparse.ArgumentParser) -> Execute | 
     name : str
         The entry point's name: ``"command.hello"``. It may be left out.
     parser : argparse.ArgumentParser
-        Of the subcommand.
+        The parser of the subcommand.
 
     Returns
     -------

@@ -23,7 +23,7 @@ from contactlab.contracts.law import Law
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.types import Column
+from contactlab.numeric.types import AnyArray
 from contactlab.outcome.chunk_files import (
     DAMAGED,
     chunks_in,
@@ -204,7 +204,7 @@ def _modules(tree: Any) -> set[str]:
     return names
 
 
-def _checksum(arrays: Mapping[str, Column]) -> str:
+def _checksum(arrays: Mapping[str, AnyArray]) -> str:
     """Return a hash of the arrays of a piece, in the order of their names."""
     return fingerprint([(name, np.asarray(arrays[name])) for name in sorted(arrays)])
 

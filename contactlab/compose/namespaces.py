@@ -11,7 +11,7 @@ import numpy as np
 
 from contactlab.numeric.checks import Rule, real, refuse
 from contactlab.numeric.labels import library_of, numbers_of
-from contactlab.numeric.types import Column
+from contactlab.numeric.types import AnyArray
 
 #: The shortest type that answers are computed in; shorter ones are widened.
 SHORTEST = "float32"
@@ -31,7 +31,7 @@ class TracingLibrary(Protocol):
     def arrays(self, values: Iterable[object]) -> list[Any]:
         """Return numbers and arrays as arrays of one type, that of the arrays among them."""
 
-    def constants(self, numbers: Mapping[str, Column], like: Any) -> dict[str, Any]:
+    def constants(self, numbers: Mapping[str, AnyArray], like: Any) -> dict[str, Any]:
         """Return arrays of NumPy as arrays of the type and place of ``like``, or integers."""
 
     def compiled(self, function: Callable[..., Any]) -> Callable[..., Any]:
@@ -55,7 +55,7 @@ class _Jax:
         kind = self.xp.promote_types(kind, SHORTEST)
         return [self.xp.asarray(value, kind) for value in given]
 
-    def constants(self, numbers: Mapping[str, Column], like: Any) -> dict[str, Any]:
+    def constants(self, numbers: Mapping[str, AnyArray], like: Any) -> dict[str, Any]:
         """Return arrays of NumPy as arrays of the type of ``like``, or integers."""
         with self.jax.ensure_compile_time_eval():  # else a constant of a trace would outlive it
             return {
@@ -99,7 +99,7 @@ class _Torch:
             for value in given
         ]
 
-    def constants(self, numbers: Mapping[str, Column], like: Any) -> dict[str, Any]:
+    def constants(self, numbers: Mapping[str, AnyArray], like: Any) -> dict[str, Any]:
         """Return arrays of NumPy as arrays of the type and place of ``like``, or integers."""
         with self.torch.inference_mode(False):  # else no gradient could pass them later
             return {

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from contactlab.contracts.status import Status
 from contactlab.numeric.arrays import are_zeros, consecutive, filled, merged, zeros
-from contactlab.numeric.types import Column, Mask, Real
+from contactlab.numeric.types import AnyArray, Mask, Real
 
 #: Entries of motions that are no numbers.
 NO_NUMBERS = ("status", "detail", "counters", "normal")
@@ -137,7 +137,7 @@ class BatchMotion:
             detail=detail if isinstance(detail, str) else np.array(detail, dtype=object),
         )
 
-    def failing(self, where: Mask, status: Status, detail: str | Column) -> Self:
+    def failing(self, where: Mask, status: Status, detail: str | AnyArray) -> Self:
         """Return this motion with another status for the successful impacts that ``where`` marks.
 
         Parameters

@@ -14,7 +14,7 @@ from contactlab.contracts.tangential_motion import Observer, TangentialMotion
 from contactlab.contracts.whole_impact import WholeImpact, no_force
 from contactlab.impact.coupling import coupling
 from contactlab.impact.scene import Scene
-from contactlab.numeric.types import Array, Column, Mask, Real
+from contactlab.numeric.types import AnyArray, Array, Mask, Real
 
 
 class Sampled(NamedTuple):
@@ -436,7 +436,7 @@ class SteppedTangentialLaw(TangentialLaw):
         """Return one sentence for each doubt about the law along a prescribed path; none here."""
         return ()
 
-    def fields(self, state: Any) -> Mapping[str, Column]:
+    def fields(self, state: Any) -> Mapping[str, AnyArray]:
         """Return named arrays of ``state`` for the history (traction, stuck, ...)."""
         return {}
 

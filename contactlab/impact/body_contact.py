@@ -22,7 +22,7 @@ from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import chosen, every, some
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.types import Array, Column, Mask, Real, Vector
+from contactlab.numeric.types import AnyArray, Array, Mask, Real, Vector
 from contactlab.numeric.vectors import (
     components,
     cross,
@@ -373,7 +373,7 @@ def _refuse_gap(encounter: _Meeting, rule: str, what: str) -> None:
 
 
 def _along_an_axis(
-    gap: Gap, turn: complex | Column, holds: Sequence[tuple[Any, Real]]
+    gap: Gap, turn: complex | AnyArray, holds: Sequence[tuple[Any, Real]]
 ) -> tuple[Any, Gap]:
     """Return t1 along the axis of the ellipse that holds coupling and slip, and the gap there."""
     parts = [(vector * np.conj(gap.major), rounding) for vector, rounding in holds]

@@ -17,7 +17,7 @@ LIBRARIES = {
 }  # fmt: skip
 #: Attributes of the arrays of packages that have other classes too.
 ONLY_OF = {"pandas": "iloc", "torch": "detach"}
-#: Of traced arrays.
+#: The refusal of traced arrays elsewhere.
 ONLY_ARRAYS = "of scenes and laws only rebound and Collision.of_arrays take traced arrays"
 
 

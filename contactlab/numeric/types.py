@@ -6,7 +6,7 @@ bool; ``Index`` takes a part of a batch; ``Places`` are indices in an array. A f
 float for a float and an array for an array is annotated with ``Kind`` on both sides, and one that
 gives back whatever it is given with ``Tree``. At a door, where a user's numbers are checked, an
 argument is ``Numbers``: whatever NumPy makes real numbers of. An array of any type of NumPy is
-``Column``. What may be anything is an ``object``; ``Any`` stays where nothing is known and
+``AnyArray``. What may be anything is an ``object``; ``Any`` stays where nothing is known and
 something is done with it.
 """
 
@@ -32,7 +32,7 @@ Index: TypeAlias = int | slice | EllipsisType | tuple[int, ...] | Mask | Places
 Vector: TypeAlias = Sequence[Real]
 Rows: TypeAlias = Sequence[Vector]
 #: An array of any type of NumPy: numbers, bools, codes, words.
-Column: TypeAlias = NDArray[np.generic]
+AnyArray: TypeAlias = NDArray[np.generic]
 
 #: A number of Python or NumPy; a bool is none, but checkers take it for an int.
 Number: TypeAlias = float | np.floating | np.integer

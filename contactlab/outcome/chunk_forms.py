@@ -77,7 +77,7 @@ class Form(NamedTuple):
     Attributes
     ----------
     suffix : str
-        Of the files, without a dot.
+        Suffix of the files, without a dot.
     digits : int
         Least digits of a number in a name.
     about, finished : str

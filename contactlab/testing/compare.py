@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 
 from contactlab.impact.scene import Scene
-from contactlab.numeric.types import Column
+from contactlab.numeric.types import AnyArray
 from contactlab.testing.check import hold
 
 #: Values nested deeper than this count as equal.
@@ -44,7 +44,7 @@ def same(left: object, right: object, *, depth: int = 0) -> bool:
     return bool(left == right)
 
 
-def _same_arrays(left: Column, right: Column, depth: int) -> bool:
+def _same_arrays(left: AnyArray, right: AnyArray, depth: int) -> bool:
     if left.shape != right.shape or left.dtype != right.dtype:
         return False
     if left.dtype == object:

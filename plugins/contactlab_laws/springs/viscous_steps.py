@@ -116,7 +116,7 @@ def _grid(springs: int, edge: Array, excess: Array, decay: Array) -> _Grid | Non
     )
 
 
-#: Of all steps: drift, kick, friction load, relaxation time, and what makes such rows.
+#: Drift, kick, friction load and relaxation time of all steps, and what makes such rows.
 Columns: TypeAlias = tuple[Array, Array, Array, Array, Callable[[Real], Array]]
 
 

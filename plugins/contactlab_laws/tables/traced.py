@@ -86,7 +86,7 @@ def rebound(xp: Library, constants: Mapping[str, Traced], psi1: Traced, chi: Tra
     constants : mapping of str to array
         ``elastic_constants``, as arrays of that library.
     psi1, chi : array
-        Of one shape and type.
+        Numbers of the impacts, arrays of one shape and type.
     """
     inside = xp.isfinite(psi1) & (chi > 0.0) & (chi <= of.LARGEST_CHI)
     sign = xp.where(psi1 < 0.0, -xp.ones_like(psi1), xp.ones_like(psi1))  # 1 at 0: odd and smooth
@@ -113,7 +113,7 @@ def rebound_with_loss(
     constants : mapping of str to array
         ``restituted_constants``, as arrays of that library.
     psi1, chi, e : array
-        Of one shape and type.
+        Numbers of the impacts, arrays of one shape and type.
     joined : bool
         False if no e is above ``restituted.JOINED``, where the elastic table is needed too.
     """
