@@ -59,7 +59,7 @@ def test_a_step_in_plain_numbers_is_the_same(item):
 
     step = Alone(slope, begin, slope(begin), WIDTH, tolerance=TOLERANCE)
     many = attempt(pendulum, BEGIN, np.full(2, WIDTH), tolerance=TOLERANCE, points=POINTS)
-    # The weights of an error cancel to the tolerance, so sums in another order differ by eps over it.
+    # The weights cancel to the tolerance, so sums in another order differ by eps over it.
     assert step.error == pytest.approx(many.error[item], rel=1e-9)
     assert step.last == pytest.approx(slope(step.end), rel=1e-15)
     for point, place in zip(POINTS.tolist(), many.course[..., item], strict=True):
