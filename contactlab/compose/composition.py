@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import attrs
 
@@ -20,7 +20,6 @@ from contactlab.contracts.tangential import (
     TangentialLaw,
     WholeImpactTangentialLaw,
 )
-from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 
 #: Defaults are plug-in names: of a list the first that is installed and fits. Coulomb's law at
@@ -73,53 +72,6 @@ class Laws:
         """Return the laws by kind."""
         return dict(zip(KINDS, self, strict=True))
 
-    def accept(self, scene: Scene, *, as_one: bool = False) -> list[Way]:
-        """Return the ways in which a scene is solved, or refuse one that a law cannot run.
-
-        ``as_one`` is that of ``Scene.parts``.
-        """
-        ways = self.ways(scene, as_one=as_one)
-        for _, part, laws in ways:
-            central = part.central
-            laws.normal.accept(central)
-            laws.tangential.accept(central)
-            laws.integrator.accept(central)
-        return ways
-
-    def ways(self, scene: Scene, *, as_one: bool = False) -> list[Way]:
-        """Return the ways in which a scene is solved; ``as_one`` is that of ``Scene.parts``."""
-        if scene.inverse_mass is None:  # spheres have one way
-            return [Way(..., scene, self)]
-        # Where slip turns laws are asked first: their refusal and its remedy hold for the batch.
-        parts = reversed(scene.parts(as_one=as_one))
-        return [Way(where, part, self.of(part)) for where, part in parts][::-1]
-
-    def of(self, part: Scene) -> Laws:
-        """Return the laws of impacts that are solved alike.
-
-        Where friction changes the approach, and a law that nobody named has no answer, another
-        stands in for it.
-
-        Raises
-        ------
-        ValueError
-            If a law that the user named has no answer; the message names laws that have one.
-        """
-        if part.inverse_mass is None:
-            return self
-        refused = _no_answer(self, part.planar)
-        if refused is None and not _rigid_in_silence(self):
-            return self
-        for _, other in _together(self, [kind for kind in KINDS if kind not in self.named]):
-            if _no_answer(other, part.planar) is None:
-                return other
-        remedy = _remedy(self, part.planar)
-        if refused is None:
-            name = RIGID["tangential"]
-            refused = f"{_name(self.tangential)}: rigid theory is not taken unless it is named"
-            remedy += f"; or name it: tangential={name!r}"
-        raise ValueError(f"{refused}; {remedy}")
-
     def taking(self, names: Mapping[str, str]) -> Laws:
         """Return the laws with others of some kinds, by name."""
         return self.changed(**{kind: law(kind, name) for kind, name in names.items()})
@@ -127,63 +79,6 @@ class Laws:
     def changed(self, **laws: Any) -> Laws:
         """Return the laws with others of some kinds."""
         return attrs.evolve(self, **laws)
-
-
-class Way(NamedTuple):
-    """Impacts that are solved alike: their place in a scene, their scene, and their laws."""
-
-    where: Any
-    scene: Scene
-    laws: Laws
-
-
-def _no_answer(laws: Laws, planar: bool) -> str | None:
-    """Return why laws have no answer where friction changes the approach; None if they have one."""
-    tangential: Any = laws.tangential
-    integrator = laws.integrator
-    name, reason = _name(tangential), None
-    stepped = isinstance(tangential, SteppedTangentialLaw)
-    if not (planar or tangential.vectors):
-        reason = "it follows slip along one line"
-    elif tangential.together:
-        return None
-    elif not stepped or tangential.needs_future:
-        reason = "it needs the normal motion before the march"
-    elif not integrator.together:
-        name, reason = _name(integrator), "it follows a normal motion that is known before"
-    if reason is None:
-        return None
-    where = "and slip keeps to a line" if planar else "and slip turns"
-    return f"{name}: has no answer where friction changes the approach {where}: {reason}"
-
-
-def _together(laws: Laws, kinds: Iterable[str]) -> Iterator[tuple[dict[str, str], Laws]]:
-    """Yield what ``TOGETHER`` names of ``kinds``, and the laws with it, where they fit."""
-    free = set(kinds)
-    for names in TOGETHER:
-        taken = {kind: name for kind, name in names.items() if kind in free}
-        try:
-            other = laws.taking(taken)
-        except ValueError:  # blocked, or not installed
-            continue
-        if misfit(*other) is None:
-            yield taken, other
-
-
-def _rigid_in_silence(laws: Laws) -> bool:
-    """Return whether nobody named rigid theory, and an elastic law runs beside the normal law."""
-    if "tangential" in laws.named or "rigid" not in laws.tangential.offers:
-        return False
-    return next(_together(laws, KINDS), None) is not None
-
-
-def _remedy(laws: Laws, planar: bool) -> str:
-    """Return which laws to take in place of those that have no answer."""
-    for names, other in _together(laws, KINDS):
-        if _no_answer(other, planar) is None:
-            words = ", ".join(f"{kind}={name!r}" for kind, name in names.items())
-            return f"take {words}, or leave both out"
-    return f"no law at hand has one beside normal = {_name(laws.normal)}; take another normal law"
 
 
 def law(kind: str, value: object, **options: object) -> Any:
@@ -350,14 +245,6 @@ def _name(law: Law) -> str:
 def versions(*laws: Law) -> dict[str, str]:
     """Return each law's name and version, by kind."""
     return dict(_versions(*map(type, laws)))
-
-
-def versions_of(ways: Sequence[Way]) -> dict[str, str]:
-    """Return name and version of each law by kind, of several in one scene with "and"."""
-    if len(ways) == 1:
-        return versions(*ways[0].laws)
-    used = [versions(*way.laws) for way in ways]
-    return {kind: " and ".join(dict.fromkeys(each[kind] for each in used)) for kind in KINDS}
 
 
 @lru_cache(maxsize=128)

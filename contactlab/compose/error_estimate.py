@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose import solve
+from contactlab.compose.along import CLOSED_FORM
 from contactlab.compose.composition import Laws
 from contactlab.compose.normal_motion import normal_or_failed
-from contactlab.compose.planning import CLOSED_FORM
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.status import Status, Statuses
 from contactlab.impact.scene import Scene
@@ -51,13 +51,12 @@ def estimated(laws: Laws, result: ImpactResult) -> tuple[Real, Real]:
     errors = np.array(np.broadcast_arrays(plan.psi2_error, plan.restitution_error))
     errors = np.where(_successes(result.status), np.broadcast_to(errors, (2, *scene.shape)), np.nan)
     answer, successes = _answer(scene, motion), _successes(result.status)
-    for where, part in scene.parts(as_one=bool(result.history)):
-        ended, marched = successes[where], plan.marched[where]
-        if part.inverse_mass is not None:
-            marched = ended  # an answer as a whole has the accuracy of its integrator
+    for way in solve.ways(laws, scene, as_one=bool(result.history)):
+        where, part, used = way
+        ended = successes[where]
+        refined = ended & (plan.marched[where] | way.as_integrator)
         mine = errors[:, where]
-        parts = answer[:, where], ended & marched, ended & ~marched
-        _fill(laws.of(part), scene.take(where), part, mine, *parts)
+        _fill(used, scene.take(where), part, mine, answer[:, where], refined, ended & ~refined)
         errors[:, where] = mine
     psi2, restitution = (plain(each) for each in errors)
     return psi2, restitution
@@ -131,7 +130,7 @@ def _distance(
 
 def _again(laws: Laws, scene: Scene) -> Any:
     """Return the answer of finer laws, NaN where the run failed."""
-    _, motion = solve.outcome(laws.ways(scene), scene, False, None)
+    _, motion = solve.outcome(solve.ways(laws, scene), scene, False, None)
     answer = _answer(scene, motion)
     return np.where(_successes(motion.status), answer, np.nan)
 

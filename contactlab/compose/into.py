@@ -16,6 +16,7 @@ from contactlab.compose.composition import Laws
 from contactlab.compose.fingerprints import fingerprint
 from contactlab.compose.kept import TRIED_AGAIN, opened, written_piece
 from contactlab.compose.pieces import Part, Piece
+from contactlab.compose.solve import accepted
 from contactlab.compose.sweep import WHOLE_IMPACTS, block_for, cut, one_axis, solved_parts
 from contactlab.contracts.status import Status, succeeded
 from contactlab.impact.grid import GridParts
@@ -151,7 +152,7 @@ def swept_into(
     def unsolved() -> Iterator[Part]:
         nonlocal done, stop
         for scene in _batches(scenes, size or MARCHED_AT_A_TIME):
-            laws.accept(scene)
+            accepted(laws, scene)
             begin, block = stop, block_for(laws, scene)
             usual = IMPACTS_AT_A_TIME if block == WHOLE_IMPACTS else MARCHED_AT_A_TIME
             step = math.ceil((size or usual) / block) * block

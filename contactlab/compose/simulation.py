@@ -11,12 +11,13 @@ import attrs
 import numpy as np
 
 from contactlab.compose import composition, solve
-from contactlab.compose.composition import Laws, Way, versions_of
+from contactlab.compose.composition import Laws
 from contactlab.compose.error_estimate import estimated
 from contactlab.compose.normal_motion import normal_or_failed
 from contactlab.compose.pieces import Piece
 from contactlab.compose.planning import plan_of
 from contactlab.compose.sweep import one_axis, swept
+from contactlab.compose.way import Way
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
@@ -103,7 +104,7 @@ class Simulation:
             The same as in ``run``.
         """
         laws = self.laws
-        ways = laws.accept(_scene(scene), as_one=bool(_history(history)))
+        ways = solve.accepted(laws, _scene(scene), as_one=bool(_history(history)))
         columns = solve.planned(ways, scene, history)
         return plan_of(laws, scene, columns, history=history)
 
@@ -141,10 +142,10 @@ class Simulation:
         started, laws, recorder = time.perf_counter(), self.laws, None
         if _history(history):
             recorder = Recorder(_scene(scene).shape, with_fields=history == "fields")
-        ways, flat = laws.accept(_scene(scene), as_one=bool(history)), scene
+        ways, flat = solve.accepted(laws, _scene(scene), as_one=bool(history)), scene
         if len(scene.shape) > 1:  # laws and integrators are run over one axis
             flat = scene.take(np.ones(scene.shape, dtype=bool))
-            ways = laws.ways(flat, as_one=bool(history))
+            ways = solve.ways(laws, flat, as_one=bool(history))
         columns, motion = solve.outcome(ways, flat, history, recorder)
         if flat is not scene:
             place = np.arange(flat.shape[0]).reshape(scene.shape)
@@ -259,7 +260,7 @@ class Simulation:
             raise refuse("scenes", scenes, rule, "give into=folder, or Scene.grid")
         batch = scenes if isinstance(scenes, Scene) else Scene.stack(scenes)
         one_axis(batch.shape)
-        ways = laws.accept(batch)
+        ways = solve.accepted(laws, batch)
         columns, motion = swept(laws, batch, keep=keep, **options)
         return _result(ways, batch, plan_of(laws, batch, columns, motion), motion, started)
 
@@ -280,7 +281,7 @@ class Simulation:
 
         def result_of(scene: Scene, piece: Piece) -> ImpactResult:
             plan = plan_of(laws, scene, piece.columns, piece.motion)
-            return _result(laws.ways(scene), scene, plan, piece.motion, time.perf_counter())
+            return _result(solve.ways(laws, scene), scene, plan, piece.motion, time.perf_counter())
 
         return swept_into(laws, scenes, into, result_of=result_of, **options)
 
@@ -308,7 +309,7 @@ def _result(
         scene=scene,
         plan=plan,
         motion=motion if succeeded(motion.status) else without_failures(motion),
-        laws=versions_of(ways),
+        laws=solve.versions_of(ways),
         history=history,
         run_time=time.perf_counter() - started,
     )

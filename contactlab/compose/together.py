@@ -2,29 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import attrs
 import numpy as np
 
-from contactlab.compose.answers import separated
-from contactlab.compose.composition import Laws
+from contactlab.compose.answers import Mask, separated
 from contactlab.compose.normal_motion import normal_or_failed
+from contactlab.compose.solved_motion import FailedMotion
+from contactlab.compose.way import ONE_BY_ONE, Masks, Prepared, Way, asked, halves
 from contactlab.contracts import faults
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.contracts.tangential_motion import Observer, TangentialMotion
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import chosen, spread
+from contactlab.numeric.arrays import chosen, every, spread
 from contactlab.numeric.checks import shown
-from contactlab.numeric.types import Mask, Real
+from contactlab.numeric.types import Array, Real
+from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
-from contactlab.outcome.plan import ENDLESS, MARCHED, PlanColumns, Reason
+from contactlab.outcome.plan import ENDLESS, MARCHED, Clause, PlanColumns, Reason
 
-#: Impacts solved at a time: their springs stay in the cache.
-AT_A_TIME = 1000
 #: Least bound of the imbalance of the energy books: where W is nearly singular the energy is the
 #: small difference of large products.
 CANCELS = 1e-4
@@ -40,98 +42,180 @@ GIVEN_UP = (Status.LAW_RAISED, Status.MALFORMED, Status.NON_FINITE)
 WHOLE = Reason("the law answers normal and tangential motion together")
 
 
-def moved(laws: Laws, scene: Scene, normal: NormalMotion, observer: Observer | None) -> Motion:
-    """Return the motion of impacts, or raise LawFaultError if a law fails."""
-    law, integrator = laws.tangential, laws.integrator
-    blamed: TangentialLaw | Integrator = law if law.together else integrator
-    with faults.blaming(blamed):
+#: What a plan says of such impacts.
+TOGETHER = "normal and tangential motion together: friction changes the approach, or slip turns"
+OF_CONTACT = (
+    "restitution: of a frictionless impact on the mass 1/W_nn; that of the bodies follows from it"
+)
+ONE_PLANE = "second tangent: the motion stays in a plane"
+OF_SPHERES = (
+    "cautions of laws: their sizes were measured for spheres, where friction does not change the "
+    "approach"
+)
+
+
+class Together(Way):
+    """Impacts whose approach friction changes, or whose slip turns."""
+
+    __slots__ = ()
+
+    both = as_integrator = True
+    at_a_time = 1000  # their springs stay in the cache
+
+    def prepare(self, history: bool | str) -> Prepared:
+        """Return the approach without friction and columns of the plan, or raise LawFaultError."""
+        scene, laws = self.scene, self.laws
+        own = laws.tangential.together or not laws.integrator.common_instants
+        self.refuse_history(history, own_instants=own)
+        normal = normal_or_failed(laws.normal, scene.central)
+        with faults.blaming(laws.tangential):
+            bound: Any = laws.tangential.books_bound(normal.scene)
+            least = max if isinstance(bound, float) else np.maximum
+            return Prepared(normal, [], self._columns(normal), least(bound, CANCELS))
+
+    def _columns(self, normal: NormalMotion) -> PlanColumns:
+        """Return the columns of the plan: who answers, and the declared errors."""
+        scene, law, integrator = self.scene, self.laws.tangential, self.laws.integrator
+        code = chosen(separated(normal), 0 if law.together else MARCHED, ENDLESS)
+        errors: tuple[Any, Any]
         if law.together:
-            answer = law.impacts_together(scene, normal, integrator.accuracy, observer)
+            errors = law.errors_together(scene, integrator.accuracy)
         else:
-            answer = integrator.integrate_together(normal, law, scene, observer)
-        if not isinstance(answer, TangentialMotion) or (
-            answer.normal is None and np.any(np.asarray(answer.status) == Status.SUCCESS)
-        ):
-            told = f"the answer {shown(answer)}, no TangentialMotion with the ends of its normal"
-            sentence = faults.sentence(blamed, f"{told} motion", 1)
-            raise faults.LawFaultError(Status.MALFORMED, sentence)
-        return Motion.along(normal, answer, scene.slip_axes)
+            errors = integrator.errors_together(normal, law, scene)
+        psi2, restitution = (spread(error, scene.shape) for error in errors)
+        return PlanColumns(code, psi2, (WHOLE,) if law.together else (), restitution)
 
+    def moved(self, prepared: Prepared, recorder: Recorder | None) -> Motion:
+        """Return the motion, of a batch with the impacts solved again that failed beside others."""
+        scene, normal = self.scene, prepared.normal
+        if isinstance(normal, FailedMotion):
+            return Motion.nothing(scene.shape, normal.status, normal.detail, axes=scene.slip_axes)
+        motion = self._answered(normal, recorder)
+        if recorder is None and scene.shape not in ((), (1,)):
+            return self._apart(motion)
+        return motion
 
-def given_up(motion: Motion) -> Any:
-    """Return the impacts of a batch that may have failed because of one beside them."""
-    statuses = np.asarray(motion.status, dtype=object)
-    return np.isin(statuses, np.array(GIVEN_UP, dtype=object))
+    def _answered(self, normal: NormalMotion, observer: Observer | None) -> Motion:
+        """Return the motion that law or integrator answers, or raise LawFaultError."""
+        scene, law, integrator = self.scene, self.laws.tangential, self.laws.integrator
+        blamed: TangentialLaw | Integrator = law if law.together else integrator
+        with faults.blaming(blamed):
+            if law.together:
+                answer = law.impacts_together(scene, normal, integrator.accuracy, observer)
+            else:
+                answer = integrator.integrate_together(normal, law, scene, observer)
+            if not isinstance(answer, TangentialMotion) or (
+                answer.normal is None and np.any(np.asarray(answer.status) == Status.SUCCESS)
+            ):
+                told = f"the answer {shown(answer)}, no TangentialMotion with the ends of its"
+                sentence = faults.sentence(blamed, f"{told} normal motion", 1)
+                raise faults.LawFaultError(Status.MALFORMED, sentence)
+            return Motion.along(normal, answer, scene.slip_axes)
 
+    def _apart(self, motion: Motion) -> Motion:
+        """Return the motion of a batch with the impacts that one beside them made fail."""
+        statuses = np.asarray(motion.status, dtype=object)
+        again = np.isin(statuses, np.array(GIVEN_UP, dtype=object))
+        if not again.any():
+            return motion
+        part = self.taking(again)
+        size, shape = part.scene.shape[0], self.scene.shape
+        if size == shape[0]:
+            _, repeated = part.cut(halves(size, most=ONE_BY_ONE))
+        else:
+            _, repeated = part.outcome(False, None)
+        return Motion.merged([(np.ones(shape, dtype=bool), motion), (again, repeated)], shape)
 
-def columns_of(laws: Laws, scene: Scene, normal: NormalMotion) -> PlanColumns:
-    """Return the columns of the plan: who answers, and the declared errors."""
-    shape, together = scene.shape, laws.tangential.together
-    code = chosen(separated(normal), 0 if together else MARCHED, ENDLESS)
-    errors: tuple[Any, Any]
-    if together:
-        errors = laws.tangential.errors_together(scene, laws.integrator.accuracy)
-    else:
-        errors = laws.integrator.errors_together(normal, laws.tangential, scene)
-    psi2, restitution = (spread(error, shape) for error in errors)
-    return PlanColumns(code, psi2, (WHOLE,) if together else (), restitution)
+    def line(self, scene: Scene) -> Array:
+        """Return the first tangent, along which slip has either sign."""
+        return np.array([1.0, 0.0])
 
+    @property
+    def judged(self) -> Scene:
+        """The central impacts at the larger slip: at first touch, or as pressure alone leaves it.
 
-def lasting(laws: Laws, scene: Scene, marched: Mask) -> str:
-    """Return words on how long the march of some impacts takes, empty if nobody declares it."""
-    part = scene if np.all(marched) else scene.take(marched)
-    normal = normal_or_failed(laws.normal, part.central)
-    seconds = laws.integrator.seconds_together(normal, laws.tangential, part)
-    return f": about {seconds:.1g} s" if seconds > 0.0 else ""
+        Sizes of cautions grow with the slip, and pressure makes slip where there is none at first.
+        """
+        return self._at_slip(np.maximum(*self._slips()))
 
+    @property
+    def _gripping(self) -> Scene:
+        """The central impacts at the smaller slip, but no less than a little of the larger.
 
-def books_bound(laws: Laws, central: Scene) -> Any:
-    """Return the bound of the imbalance of the energy books over the energy at the start."""
-    bound: Any = laws.tangential.books_bound(central)
-    return max(bound, CANCELS) if isinstance(bound, float) else np.maximum(bound, CANCELS)
+        Some cautions hold of contacts that grip alone.
+        """
+        slips = self._slips()
+        return self._at_slip(np.maximum(np.minimum(*slips), LITTLE * np.maximum(*slips)))
 
+    def _slips(self) -> tuple[Any, Any]:
+        """Return the slip speed at first touch, and that which pressure alone leaves."""
+        scene = self.scene
+        drag = scene.coupling(2.0 * np.asarray(scene.normal_speed))
+        return scene.slip_speed, scene.size_of(np.asarray(scene.slip_velocity) - drag)
 
-def at_larger_slip(scene: Scene) -> Scene:
-    """Return the central scene at the larger slip: at first touch, or as pressure alone leaves it.
+    def _at_slip(self, slip: Real) -> Scene:
+        """Return the central impacts at a slip speed."""
+        scene = self.scene
+        slip = spread(slip, scene.shape)
+        return attrs.evolve(scene.central, tangential_velocity=slip).numbered(scene.index)
 
-    Sizes of cautions grow with the slip, and pressure makes slip where there is none at first.
-    """
-    return _at_slip(scene, np.maximum(*_slips(scene)))
+    def how(self) -> str:
+        """Return words on how the normal motion is found."""
+        return "with the tangential motion"
 
+    def lasting(self, marched: Mask) -> str:
+        """Return words on how long the march of some impacts takes, empty if nobody declares it."""
+        laws, part = self.laws, self.scene if np.all(marched) else self.scene.take(marched)
+        normal = normal_or_failed(laws.normal, part.central)
+        seconds = laws.integrator.seconds_together(normal, laws.tangential, part)
+        return f": about {seconds:.1g} s" if seconds > 0.0 else ""
 
-def at_smaller_slip(scene: Scene) -> Scene:
-    """Return the central scene at the smaller slip, but no less than a little of the larger.
+    def one_by_one(self, masks: Masks) -> Mask:
+        """Return the impacts that a law takes one by one, if it does."""
+        return masks.ended
 
-    Some cautions hold of contacts that grip alone.
-    """
-    slips = _slips(scene)
-    return _at_slip(scene, np.maximum(np.minimum(*slips), LITTLE * np.maximum(*slips)))
+    def remarks(self, masks: Masks) -> list[Clause]:
+        """Return that both motions are found together, and of what a restitution is."""
+        said = [TOGETHER]
+        if getattr(self.laws.normal, "restitution", None) not in (None, 1.0):
+            said.append(OF_CONTACT)
+        return [Clause(text, masks.known) for text in said]
 
+    def errors(self, columns: PlanColumns) -> Mapping[str, Real]:
+        """Return both errors; of spheres that of the restitution is far smaller."""
+        return {"psi2": columns.psi2_error, "the normal restitution": columns.restitution_error}
 
-def _slips(scene: Scene) -> tuple[Any, Any]:
-    """Return the slip speed at first touch, and that which pressure alone leaves."""
-    drag = scene.coupling(2.0 * np.asarray(scene.normal_speed))
-    return scene.slip_speed, scene.size_of(np.asarray(scene.slip_velocity) - drag)
+    def left_out(self, masks: Masks) -> list[Clause]:
+        """Return what impacts in a plane leave out."""
+        return [Clause(ONE_PLANE, masks.known)] if self.scene.planar else []
 
+    def reused(self, motion: Motion | None) -> None:
+        """Return None: friction changed the normal motion of the run."""
 
-def _at_slip(scene: Scene, slip: Real) -> Scene:
-    """Return the central scene at a slip speed."""
-    slip = spread(slip, scene.shape)
-    return attrs.evolve(scene.central, tangential_velocity=slip).numbered(scene.index)
+    def cautions_of_laws(self, scene: Scene, normal: NormalMotion, known: Mask) -> list[str]:
+        """Return what the laws say, and what one that shares the loss adds of the smaller slip."""
+        said, law = super().cautions_of_laws(scene, normal, known), self.laws.tangential
+        if law.shares_loss(self.laws.normal):
+            grip = self._gripping if every(known) else self._gripping.take(known)
+            usual = TangentialLaw.cautions(law, grip, normal)
+            said += [text for text in asked(law, law.cautions, grip, normal) if text not in usual]
+        return said
 
+    def cautions_of_contact(self, scene: Scene, normal: NormalMotion) -> list[str]:
+        """Return those of yield and of a large contact, which hold for any bodies."""
+        return list(NormalLaw.cautions(self.laws.normal, scene, normal))
 
-def cautions(laws: Laws, scene: Scene) -> list[str]:
-    """Return a sentence for each doubt that only impacts with coupling raise."""
-    said = []
-    if not scene.planar and "partial_slip" in laws.tangential.offers:
-        said.append(
-            "springs in space: abs(q) <= mu p holds for each spring, not at every point; psi2 "
-            "moves by less than 0.01 in four of five random impacts, by up to 0.1 where the slip "
-            "turns most (model)"
-        )
-    if not laws.tangential.together:
-        said += _near_singular(scene)
-    return said
+    def own_cautions(self, of_laws: bool) -> list[str]:
+        """Return a sentence for each doubt that only such impacts raise."""
+        scene, law = self.scene, self.laws.tangential
+        said = [OF_SPHERES] if of_laws else []
+        if not scene.planar and "partial_slip" in law.offers:
+            said.append(
+                "springs in space: abs(q) <= mu p holds for each spring, not at every point; psi2 "
+                "moves by less than 0.01 in four of five random impacts, by up to 0.1 where the "
+                "slip turns most (model)"
+            )
+        return said if law.together else said + _near_singular(scene)
 
 
 def _near_singular(scene: Scene) -> list[str]:

@@ -23,6 +23,7 @@ from contactlab.compose.names import (
 )
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
+from contactlab.compose.solve import ways
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
@@ -146,7 +147,7 @@ class LawChoice:
         """Return the choice with every law named, as those that answer a scene."""
         choice = self.resolved()
         laws = self.simulation().laws
-        for kind, used in laws.of(scene).by_kind().items():
+        for kind, used in ways(laws, scene)[-1].laws.by_kind().items():
             if used is not getattr(laws, kind):
                 choice = choice.choose(**{kind: REGISTRY.short_name(used)})
         return choice
