@@ -149,6 +149,14 @@ class Motions:
         return sides[..., None] * W[..., 1:, 1:] / W[..., :1, :1]
 
     @property
+    def largest_chi(self) -> Any:
+        """The largest eigenvalue of chi, of the batch shape."""
+        if self.planar:
+            return self.chi
+        root = np.sqrt(self._sides)  # the symmetric tensor with the same eigenvalues
+        return np.linalg.eigvalsh(self.chi * (root[..., None, :] / root[..., None]))[..., -1]
+
+    @property
     def lam(self) -> Any:
         """Lam = mu W_nt/W_nn, what friction adds to the approach; (..., 2) in space."""
         return self.coupling(self.friction_coefficient)

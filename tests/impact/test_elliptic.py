@@ -278,3 +278,13 @@ def test_groups_in_space_have_the_stiffness_of_each_direction():
     for other in (-1.0, 0.49, 2.01, [1.0, 100.0]):
         with pytest.raises(ValueError, match=r"cross_stiffness_ratio.*\[0.5, 2\]"):
             Scene.nondimensional(**given, cross_stiffness_ratio=other)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 0.7])
+def test_the_largest_chi_is_an_eigenvalue_of_a_tensor_that_is_not_symmetric(ratio):
+    given = {"psi1": [2.0, 1.0], "lam": [0.2, 0.1], "rho": 0.2}
+    chi = np.array([[0.9, 0.2], [0.2 * ratio, 1.4 * ratio]])
+    scene = Scene.nondimensional(**given, chi=chi, cross_stiffness_ratio=ratio)
+    assert scene.largest_chi == pytest.approx(np.linalg.eigvals(scene.chi).max(), rel=1e-14)
+    plane = Scene.nondimensional(psi1=[1.0, 2.0], chi=1.5, lam=0.1, rho=0.2)
+    assert plane.largest_chi.tolist() == plane.chi.tolist()

@@ -151,9 +151,7 @@ class Springs(ProfileLaw):
         measured = self.shares_loss(normal.law) and self.shear_loss == 1.0
         if not measured or self.springs < LEAST_MEASURED:
             return math.nan, math.nan
-        chi: Any = scene.chi
-        if not scene.planar:
-            chi = np.linalg.eigvalsh(chi)[..., -1]
+        chi: Any = scene.largest_chi
         lam, eta = scene.size_of(np.asarray(scene.lam)), scene.size_of(np.asarray(scene.eta))
         own = BODY_BY_SPRINGS / self.springs**2 + BODY_BY_STEPS / np.square(steps)
         error: Any = own * np.sqrt(deepest(scene))
@@ -170,7 +168,7 @@ class Springs(ProfileLaw):
             return math.nan
         count = int(np.count_nonzero(followed))
         each = EACH_BLOCK * math.ceil(count / BLOCK)
-        each += EACH_SPRING[not scene.planar] * count * self.springs
+        each += EACH_SPRING[len(scene.slip_axes)] * count * self.springs
         return each * float(np.max(steps, where=followed, initial=0.0))
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
