@@ -104,6 +104,8 @@ class _Into:
             sweep=self.sweep,
             scene=scene,
         )
+        # A sweep that grew and was stopped is not the one that was finished.
+        (self.folder / self.form.finished).unlink(missing_ok=True)
         with written_piece("into", self.folder, chunk, "impacts", self.form) as stream:
             self.form.write(stream, arrays, about, NAMES)
 
@@ -144,6 +146,8 @@ def swept_into(
     ``result_of`` makes the result of a piece.
     """
     size = None if chunk is None else whole("chunk", chunk)
+    if not isinstance(scenes, Scene | Iterable):
+        raise refuse("scenes", scenes, "must be a Scene, or an iterable of them")
     target = _Into(folder, laws)
     waiting: dict[Chunk, tuple[Scene, str]] = {}
     done = stop = 0

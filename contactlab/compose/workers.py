@@ -31,6 +31,7 @@ from contactlab.outcome.chunk_forms import Chunk
 #: Most processes: more than any machine has processors.
 MOST_PROCESSES = 1024
 MAIN_REMEDY = 'in a script, call sweep under if __name__ == "__main__":'
+FUTURES = "submit(call, *arguments) must return a future of call(*arguments)"
 MODULE_REMEDY = "define its class at the top of a module that can be imported"
 
 
@@ -68,6 +69,8 @@ def pieces_of(
                 yield unsolved(chunk, axes, Status.WORKER_DIED, short(error) + remedy)
                 continue
             answered = True
+            if not isinstance(answer, Reply):
+                raise refuse("executor", executor, "answers what its call did not return", FUTURES)
             if answer.raised is not None:
                 raise answer.raised
             if answer.versions != ours:
@@ -101,6 +104,8 @@ def _submitted(executor: Executor, *call: Any) -> Future[Reply]:
         future.set_exception(error)
     except RuntimeError as error:
         raise refuse("executor", executor, f"takes no work: {error}", "open one") from error
+    if not callable(getattr(future, "add_done_callback", None)):
+        raise refuse("executor", executor, "has a submit that returns no future", FUTURES)
     return future
 
 

@@ -12,6 +12,7 @@ from contactlab.numeric.checks import (
     GYRATION,
     NON_NEGATIVE,
     POSITIVE,
+    Rule,
     instance,
     key,
     quantity,
@@ -23,6 +24,12 @@ from contactlab.numeric.types import Numbers, Real
 
 #: K of a solid homogeneous sphere: K² = 2/5.
 SOLID_SPHERE_GYRATION_RATIO = math.sqrt(0.4)
+#: Largest radius in m: the approach to larger ones underflows.
+MOST_RADIUS = 1e100
+RADIUS = Rule(
+    lambda value: (value > 0.0) & (value <= MOST_RADIUS),
+    "must be positive and finite, at most 1e100",
+)
 
 
 def _material() -> Any:
@@ -54,7 +61,7 @@ class Sphere:
         If a value is out of range, or neither mass nor density is given.
     """
 
-    radius: Real = quantity("m", rule=POSITIVE, empty=True)
+    radius: Real = quantity("m", rule=RADIUS, empty=True)
     material: Material = _material()
     mass: Real = quantity("kg", rule=POSITIVE, default=None, kw_only=True, empty=True)
     gyration_ratio: Real = quantity(

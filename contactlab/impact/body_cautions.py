@@ -31,6 +31,7 @@ SPREAD, OVER_ARM = 100.0, 200.0
 LEAST_SPIN, MOST_RIM = 50.0, 8.0
 
 
+@np.errstate(all="ignore")
 def shells(scene: Scene) -> list[str]:
     """Return the caution of each sphere that is a shell, or far heavier than a solid one."""
     said = []
@@ -38,7 +39,8 @@ def shells(scene: Scene) -> list[str]:
         if not isinstance(body, Sphere):
             continue
         density = body.material.density
-        solid = None if density is None else 4.0 / 3.0 * math.pi * body.radius**3 * density
+        radius = np.asarray(body.radius)  # the cube of a float raises OverflowError
+        solid = None if density is None else 4.0 / 3.0 * math.pi * radius**3 * density
         share = 1.0 if solid is None else float(np.min(body.mass / solid))
         if solid is not None and float(np.max(body.mass / solid)) > HEAVY:
             said.append(
@@ -66,7 +68,7 @@ def _spring(scene: Scene, body: Sphere) -> str:
     deflection under a force at a point, until the wall buckles at about its thickness.
     """
     density: Any = body.material.density
-    wall = body.mass / (4.0 * math.pi * body.radius**2 * density)
+    wall = np.asarray(body.mass) / (4.0 * math.pi * np.asarray(body.radius) ** 2 * density)
     nu = body.material.poisson_ratio
     young = 2.0 * body.material.shear_modulus * (1.0 + nu)
     stiffness = 4.0 * young * wall * wall / (body.radius * np.sqrt(3.0 * (1.0 - nu * nu)))

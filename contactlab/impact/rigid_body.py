@@ -9,6 +9,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from contactlab.impact.bodies import MOST_RADIUS
 from contactlab.impact.material import Material
 from contactlab.numeric.arrays import chosen, common_shape, known, some, taken
 from contactlab.numeric.checks import POSITIVE, Rule, instance, key, quantity, real, refuse
@@ -20,10 +21,13 @@ from contactlab.numeric.vectors import components, dot
 #: count as rounding, over the largest moment.
 ROUNDING = 1e-9
 #: A flat surface has an infinite radius; ``real`` refuses infinity, so this one is put in for it.
-FLAT = 1e200
+FLAT = 1e100
 #: Curvatures of smaller radii, in m, would overflow.
 LEAST_RADIUS = 1e-100
-CURVED = Rule(lambda radius: abs(radius) >= LEAST_RADIUS, "must be a number, not zero")
+CURVED = Rule(
+    lambda radius: (abs(radius) >= LEAST_RADIUS) & (abs(radius) <= MOST_RADIUS),
+    "must be a number, not zero, of a size up to 1e100",
+)
 #: Length of an axis in the tangent plane over its length, below which it has no direction there.
 LOST = 1e-9
 #: Ratio of first bending period to duration of contact from which a body rings: a half-sine pulse

@@ -385,8 +385,8 @@ static inline double contactlab_bounce_change(double psi1, double chi, double e)
  * other_spin       a wall has none: zeros
  *
  * Returns 1 if they bounced, 0 if they part along the normal, which may point the wrong way, and -1 if a number is
- * none or out of range: Poisson's ratio from -1 to 0.5, young positive, mass times speed up to 1e300. Then nothing is
- * changed. */
+ * none or out of range: Poisson's ratio from -1 to 0.5, young positive, mass times speed up to 1e300, with friction too. Then
+ * nothing is changed. */
 static inline int contactlab_bounce(const contactlab_body *one, const contactlab_body *other, double friction,
     double restitution, const double *normal, double *velocity, double *spin, double *other_velocity,
     double *other_spin)
@@ -430,7 +430,7 @@ static inline int contactlab_bounce(const contactlab_body *one, const contactlab
   slip = sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
   if (!(restitution >= 0 && restitution <= 1)) return -1;
   if (!(one->radius > 0 && masses > 0 && chi <= 1e4)) return -1;
-  if (!(friction >= 0 && slip + friction + fabs(approach) <= 1e300 * fmin(1, masses))) return -1;
+  if (!(friction >= 0 && slip + friction + fabs(approach) * (1 + friction) <= 1e300 * fmin(1, masses))) return -1;
   if (!(approach > 0)) return 0;
   unit = friction * approach / kappa; /* of psi */
   if (unit > 0 && slip > 0)

@@ -50,7 +50,7 @@ export function bounce(one, other, contact, normal, velocity, spin = ZERO, other
   const slip = Math.hypot(u, v, w), mobility = masses + r1 * c1 + r2 * c2, kappa = stiffnesses(one, other);
   const chi = 0.5 * kappa * mobility / masses;
   if (!(r1 > 0 && masses > 0 && chi <= MOST && friction >= 0 && restitution >= 0 && restitution <= 1
-    && slip + friction + Math.abs(approach) <= LARGE * Math.min(1, masses) && Number.isFinite(restitution))) {
+    && slip + friction + Math.abs(approach) * (1 + friction) <= LARGE * Math.min(1, masses) && Number.isFinite(restitution))) {
     refuse(arguments);
   }
   const after = {bounced: approach > 0, velocity: [...velocity], spin: [...spin],
@@ -172,7 +172,7 @@ function refuse([one, other, contact, normal, velocity, spin = ZERO, otherVeloci
 
 /** Returns radius, 1 over mass, and radius over inertia of a body: 0 of a wall. */
 const inertias = ({radius, mass = Infinity, inertia = 0.4 * mass * radius * radius}) =>
-  radius === undefined ? [0, 0, 0] : [radius, mass > 0 ? 1 / mass : NaN, inertia > 0 ? radius / inertia : NaN];
+  radius === undefined ? [0, 0, 0] : [radius > 0 ? radius : NaN, mass > 0 ? 1 / mass : NaN, inertia > 0 ? radius / inertia : NaN];
 
 /** Returns kappa = G* over E* of two bodies, from 2/3 to 4/3; NaN if a number is none. */
 function stiffnesses(one, other) {

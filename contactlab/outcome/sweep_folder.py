@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import math
+import os
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
@@ -18,7 +19,7 @@ from contactlab.contracts.status import Status
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import attributes_told, nearest
 from contactlab.outcome.answer import Checked
-from contactlab.outcome.chunk_files import abouts_in, columns_of
+from contactlab.outcome.chunk_files import DAMAGED, abouts_in, columns_of, refuse_damaged
 from contactlab.outcome.chunk_forms import COLUMN_OF_STATUS, FORMS, NPZ, About
 from contactlab.outcome.result import ImpactResult
 
@@ -95,6 +96,8 @@ class SweepFolder(Checked):
     """
 
     def __init__(self, path: str | Path) -> None:
+        if not isinstance(path, str | os.PathLike):
+            raise refuse("path", path, "must be the path of a folder")
         self.path = Path(path)
         there = (form for form in FORMS if (self.path / form.about).exists())
         self._form = next(there, NPZ)
@@ -118,7 +121,12 @@ class SweepFolder(Checked):
     def impacts(self) -> int | None:
         """The number of impacts of the whole sweep; None until it is finished."""
         path = self.path / self._form.finished
-        return int(json.loads(path.read_text("utf-8"))["impacts"]) if path.exists() else None
+        try:
+            return int(json.loads(path.read_text("utf-8"))["impacts"])
+        except FileNotFoundError:
+            return None
+        except DAMAGED as error:
+            raise refuse_damaged("path", path, error) from error
 
     @property
     def missing(self) -> list[tuple[int, int]]:

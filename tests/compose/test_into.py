@@ -182,6 +182,16 @@ def test_a_sweep_goes_on_where_it_stopped(tmp_path, monkeypatch, scenes):
     assert again.complete
 
 
+def test_a_sweep_that_grows_is_finished_once_more(tmp_path):
+    simulation, target = Simulation(**RIGID), tmp_path / "swept"
+    assert simulation.sweep([*parts()][:2], into=target).complete
+    half = simulation.sweep(parts(), into=target, progress=stopped(120))
+    assert (len(half), half.complete) == (120, False)
+    with pytest.raises(ImpactError, match=r"not complete: it stopped after impact 119"):
+        half.check()
+    assert len(simulation.sweep(parts(), into=target).check()) == 150
+
+
 def test_what_does_not_fit_the_folder_is_refused(tmp_path):
     simulation, target = Simulation(**RIGID), tmp_path / "swept"
     simulation.sweep(parts(), into=target)
@@ -218,6 +228,10 @@ def test_bad_arguments_are_refused(tmp_path):
         SweepFolder(tmp_path / "nowhere")
     with pytest.raises(ValueError, match="must be the path of a folder"):
         simulation.sweep(scene(), into=3)
+    with pytest.raises(ValueError, match=r"path = None: must be the path of a folder"):
+        SweepFolder(None)
+    with pytest.raises(ValueError, match=r"scenes = 3: must be a Scene, or an iterable"):
+        simulation.sweep(3, into=tmp_path / "three")
     with pytest.raises(ValueError, match="at least one Scene"):
         simulation.sweep(iter([]), into=tmp_path / "none")
     with pytest.raises(ValueError, match=r"scenes\[1\] = 4: must be a Scene"):
@@ -249,6 +263,13 @@ def test_a_damaged_file_is_told(tmp_path):
     path.write_bytes(bytes(bit))
     with pytest.raises(ValueError, match=r"impacts-40-80.npz': is damaged: .*CRC"):
         SweepFolder(target)["psi2"]
+    finished = target / "finished.json"
+    words = finished.read_text("utf-8")
+    for bad in ('{"impact": 150}', "[150]", '{"impacts": "?"}', ""):
+        finished.write_text(bad, "utf-8")
+        with pytest.raises(ValueError, match=r"path = .*finished.json': is damaged: .*; delete"):
+            SweepFolder(target).check()
+    finished.write_text(words, "utf-8")
     path.unlink()
     folder = SweepFolder(target)
     assert folder.missing == [(40, 80)]

@@ -264,6 +264,12 @@ def test_what_is_no_executor_is_refused():
     closed.shutdown()
     with pytest.raises(ValueError, match=r"executor = .*takes no work"):
         Simulation(**RIGID).sweep(scene(), executor=closed)
+    done = Future()
+    done.set_result(None)
+    for answer, words in ((4, "returns no future"), (done, "what its call did not return")):
+        wrong = types.SimpleNamespace(submit=lambda *_, answer=answer: answer)
+        with pytest.raises(ValueError, match=rf"executor = .*{words}; submit\(call"):
+            Simulation(**RIGID).sweep(scene(), executor=wrong)
     for bad in (0, 1.5, True):
         with pytest.raises(ValueError, match="workers"):
             processes(bad).__enter__()

@@ -161,6 +161,7 @@ def test_a_rod_across_a_rod_keeps_its_digits_however_unlike():
             None, "a line.*crown_radius",
         ),
         ({"curvature_radius": 0.0}, None, "curvature_radius.*zero"),
+        ({"curvature_radius": 1e101}, None, "curvature_radius.*up to 1e100; .*inf if flat"),
         ({"curvature_radius": 1.0, "cross_radius": 0.0}, None, "cross_radius.*zero"),
         ({"curvature_radius": math.inf}, None, "two planes"),
         ({"curvature_radius": -0.01}, Sphere(0.02, STEEL), "curve apart.*a hollow must be less"),

@@ -27,7 +27,13 @@ def angled(**changes):
 
 
 REFUSED = [
-    (lambda: Sphere(0.0, STEEL), "radius = 0.0: must be positive and finite; give it in m"),
+    *(
+        (
+            lambda radius=radius: Sphere(radius, STEEL, mass=1.0),
+            f"radius = {radius}: must be positive and finite, at most 1e100; give it in m",
+        )
+        for radius in (0.0, 1e101)
+    ),
     (
         lambda: Sphere(0.01, "steel"),
         "material = 'steel': must be a Material; make one, Material(...), or by its name: "

@@ -109,6 +109,11 @@ def test_extremes_of_what_a_float_holds_raise_nothing():
     with np.errstate(all="raise"):
         scene = Scene(Sphere(1e-150, STEEL, mass=1e-3), HalfSpace(STEEL), 0.1, 1.0, 1e150)
         assert unit_slips(scene) == []
+        for radius in (1e-150, 1e99):  # whose cubes are no numbers
+            ball = Sphere(np.array([radius, radius]), STEEL, mass=1.0)
+            assert "shell" in str(Simulation().plan(Scene(ball, HalfSpace(STEEL), 0.1, 1.0))) or (
+                radius < 1.0
+            )
 
 
 PING_PONG = Material(young_modulus=2.2e9, poisson_ratio=0.35, density=1400.0)

@@ -366,12 +366,13 @@ def test_what_is_no_number_is_refused_and_changes_nothing(bounced):
 
 
 def test_a_normal_of_no_length_fixed_bodies_and_too_large_impulses_are_refused(bounced):
-    rows, _, _ = rows_and_laws(7, True, 0.6, FEW)
+    rows = rows_and_laws(7, True, 0.6, FEW)[0].copy()
     rows[0, NORMAL] = 0.0
     rows[1, [1, 2]] = 0.0
     rows[2:4, [1, 2]] = 1e290, 0.0  # a solid sphere, by its mass and a fast one
     rows[2, 1], rows[3, VECTORS] = 1e304, rows[3, VECTORS] * 1e20
-    assert (bounced(rows[:4])[:, 0] == -1).all()
+    rows[4, PLACES["friction"]], rows[4, VECTORS] = 1e130, rows[4, VECTORS] * 1e200
+    assert (bounced(rows[:5])[:, 0] == -1).all()
 
 
 def test_a_normal_of_any_length_is_a_normal(bounced):
@@ -393,6 +394,8 @@ SENTENCES = [
     ({"one": "{radius: 1, poisson: 0.3}"}, "one.mass = undefined must be finite"),
     ({"one": BALL + ", inertia: 1e-12}"}, "one.inertia = 1e-12 must be above 1e-4 mass"),
     ({"one": BALL + ", mass: '1 kg'}"}, 'one.mass = "1 kg" must be positive'),
+    ({"other": "{radius: 0, mass: 1, inertia: 1}"}, "other.radius = 0 must be positive"),
+    ({"contact": "1e130", "velocity": "[1, 0, -1e200]"}, "are of a size that rounds away"),
     ({"other": "{young: 1e7, poisson: 0.3}"}, "other.young = 10000000 must be given for both"),
     ({"contact": "undefined"}, "contact = undefined must be a coefficient of friction"),
     ({"contact": "-0.1"}, "friction = -0.1 must be a finite number, at least 0"),
