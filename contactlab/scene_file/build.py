@@ -203,9 +203,7 @@ def _impact(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Scene:
     numbers |= _present(table, ("spin", "normal_spin"))
     normal, along = plane.velocity(table)
     if table.has(*STRUCK_KEYS):
-        if table.has("target_spin") and isinstance(target, HalfSpace):
-            raise ValueError(f"{table.at('target_spin')}: a half-space does not spin; leave it out")
-        surface = plane.surface(table, (-getattr(target, "radius", 0.0), 0.0))
+        surface = plane.surface(table, target)
         numbers |= {"normal_speed": normal - surface[0], "tangential_velocity": along - surface[1]}
         return table.make(Scene, sphere=sphere, target=target, **numbers)
     if table.has(*plane.POLAR):

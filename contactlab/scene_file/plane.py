@@ -8,6 +8,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import OBLIQUE, Scene
 from contactlab.numeric.checks import NON_NEGATIVE, real, refuse
@@ -38,14 +39,22 @@ def velocity(table: Table) -> tuple[Real, Real]:
     return normal, along
 
 
-def surface(table: Table, arm: tuple[Real, Real]) -> tuple[Real, Real]:
-    """Return the velocity of the struck surface at the contact in m/s, normal and tangential.
-
-    ``arm`` leads from the centre of mass of the struck body to the contact, in m along both.
-    """
+def surface(table: Table, target: Sphere | HalfSpace) -> tuple[Real, Real]:
+    """Return the velocity of the struck surface at the contact in m/s, normal and tangential."""
     normal, along, spin = (_number(table, key) for key in STRUCK_KEYS)
-    inward, sideward = rim(spin, arm)
+    if isinstance(target, HalfSpace):
+        check_spin(table.at(STRUCK_KEYS[2]), spin)
+        return normal, along
+    inward, sideward = rim(spin, (-np.asarray(target.radius), 0.0))
     return normal + inward, along + sideward
+
+
+def check_spin(path: str, spin: Real) -> None:
+    """Refuse a spin of a half-space that is not zero."""
+    turning = np.ravel(spin)[np.flatnonzero(spin)]
+    if turning.size:
+        rule = "must be zero: a half-space does not spin"
+        raise refuse(path, turning[0].item(), rule, f"give {STRUCK_KEYS[1]}, that of its surface")
 
 
 def rim(spin: Real, arm: tuple[Real, Real]) -> tuple[Real, Real]:
@@ -67,6 +76,8 @@ def of_bodies(
     spin, target_spin = (
         np.asarray(_number(table, key))[..., None] * across for key in ("spin", "target_spin")
     )
+    if isinstance(bodies[1], HalfSpace):
+        check_spin(table.at(STRUCK_KEYS[2]), _number(table, STRUCK_KEYS[2]))
     friction = table.number("friction_coefficient", remedy="it has no unit")
 
     before = vector(*velocity(table))

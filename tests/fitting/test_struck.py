@@ -208,6 +208,38 @@ def test_a_spinning_ball_that_is_struck():
         fit(data, Scene(BALL, HalfSpace(STEEL), friction_coefficient=0.5, normal_speed=1.0))
 
 
+FIRST = {
+    "ball": "[sphere]\nradius = 0.01\nmaterial = 'steel'\n",
+    "rod": "[body]\nshape = 'rod'\nlength = 1.0\nradius = 0.02\nmaterial = 'steel'\n",
+}
+OF_THE_ROD = "normal = [0, 0, -1]\nalong = [1, 0, 0]\n"
+
+
+@pytest.mark.parametrize("command", ["fit", "compare", "report"])
+@pytest.mark.parametrize("body", FIRST)
+def test_a_half_space_does_not_spin_at_any_door_of_measurements(tmp_path, capsys, body, command):
+    """Under a ball this was refused, under a rod it was passed over."""
+    scene, data = tmp_path / "scene.toml", tmp_path / "spins.csv"
+    scene.write_text(
+        f"{FIRST[body]}[target]\nkind = 'half-space'\nmaterial = 'steel'\n[impact]\n"
+        f"{OF_THE_ROD if body == 'rod' else ''}speed = 1.0\nangle_deg = 9.0\n"
+        "friction_coefficient = 0.3\n", "utf-8",
+    )  # fmt: skip
+    data.write_text("angle_deg,target_spin (rad/s),slip_restitution\n9,0,0.1\n20,30,0.3\n", "utf-8")
+    out = ["--out", str(tmp_path / "page.html")] if command == "report" else []
+    given = [str(data), str(scene)] if command == "fit" else [str(scene), "--measured", str(data)]
+    assert main([command, *given, *out]) == 2
+    told = "spins.csv: target_spin = 30.0: must be zero: a half-space does not spin"
+    assert told in capsys.readouterr().err
+
+
+def test_a_spin_of_zero_is_that_of_a_half_space():
+    data = columns(HalfSpace(STEEL))
+    bodies = Scene(BALL, HalfSpace(STEEL), friction_coefficient=0.5, normal_speed=1.0)
+    still = data | {"target_spin (rad/s)": np.zeros(len(ANGLES))}
+    assert fit(still, bodies).parameters == fit(data, bodies).parameters
+
+
 MOVING = {"speed (m/s)": [2.0], "angle_deg": [20.0], "target_normal_velocity (m/s)": [-1.0]}
 
 

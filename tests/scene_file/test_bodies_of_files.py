@@ -249,7 +249,10 @@ def test_a_body_by_its_speed_and_angle_which_may_be_swept(read):
         (SPEEDS[1].replace("11.31", "95"), "impact.angle_deg = 95.0: must lie between -90 and 90"),
         (f"{SPEEDS[0]}\n{SPEEDS[1]}", "has velocity, a vector, and along"),
         (SPEEDS[1].partition("\n")[2], "along = [x, y, z]"),
-        (f"{SPEEDS[1]}\ntarget_spin = 3.0", "must be zero: a half-space does not spin"),
+        (
+            f"{SPEEDS[1]}\ntarget_spin = 3.0",
+            "impact.target_spin = 3.0: must be zero: a half-space does not spin",
+        ),
         (f"{SPEEDS[1]}\ncontact = [0, 0, -1]", "follows from the shape; leave it out"),
     ],
 )

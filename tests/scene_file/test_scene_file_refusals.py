@@ -128,6 +128,8 @@ def test_missing(tmp_path, missing, named):
         ("sphere.material.shear_modulus = 8e10", "exactly one of shear_modulus"),
         ("nondimensional.psi1 = 1.0", "leave out one or the other"),
         ("target.radius = 0.1", "target.radius: is not a known key"),
+        ("impact.target_spin = 3.0", "target_spin = 3.0: must be zero: a half-space does not spin"),
+        ("sweep.target_spin = [0, 3]", "target_spin = 3.0: must be zero: a half-space does not"),
     ],
 )
 def test_at_odds(tmp_path, line, named):
