@@ -202,13 +202,17 @@ def laws_over_sweep(
     """
     varied, x, ordered = _abscissa(comparison, agreement)
     words = LESS.get((quantity, varied))
+    # of impacts that differ in several entries, a line between two is no impact
+    several = len(comparison.varied) > 1 or not np.ptp(x)
+    rows = agreement is not None and several and not _axes(comparison)
 
     def drawn(values: Array, at: Array) -> Array:
         return values if words is None else values - at
 
     for number, name in enumerate(comparison.names):
         values = drawn(ordered(comparison.values(quantity, name)), x)
-        axes.plot(x, values, label=verbatim(_said(comparison, name)), **law_style(number))
+        look = law_style(number) | (_marked(number) if rows else {})
+        axes.plot(x, values, label=verbatim(_said(comparison, name)), **look)
         half = ordered(comparison.band(quantity, name))
         error_band(axes, x, values, half, law_style(number))
     if agreement is not None:
@@ -228,6 +232,11 @@ def laws_over_sweep(
         axes.set_title(f"a curve for each {' and '.join(map(verbatim, parted))}")
     axes.legend()
     return axes
+
+
+def _marked(number: int) -> dict[str, Any]:
+    """Return the look of a law whose impacts are points, joined by a thin line."""
+    return {"marker": "os^Dv<"[number % 6], "markersize": 4.0, "linewidth": 1.0}
 
 
 def differences(
@@ -251,15 +260,10 @@ def differences(
     for number, name in enumerate(names):
         style = law_style(number)
         if agreement is not None:
-            axes.plot(
-                agreement.measured.x,
-                agreement.difference(name),
-                marker="os^Dv<"[number % 6],
-                markersize=4.0,
-                linewidth=1.0,
-                color=style["color"],
-                linestyle=style["linestyle"],
-            )
+            order = np.argsort(agreement.measured.x, kind="stable")
+            at, off = agreement.measured.x[order], agreement.difference(name)[order]
+            look = {key: style[key] for key in ("color", "linestyle")} | _marked(number)
+            axes.plot(at, off, **look)
         elif number:
             axes.plot(x, ordered(comparison.difference(quantity, name)), **style)
     axes.set_xlabel(label(varied, entry_unit(varied)))

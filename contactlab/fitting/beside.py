@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 
 from contactlab.fitting.measurements import Measurements
-from contactlab.fitting.struck import SPIN, VELOCITY, to_the_struck_body
+from contactlab.fitting.struck import CARTESIAN, SPIN, VELOCITY, to_the_struck_body
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.body_contact import seen, sides
 from contactlab.impact.scene import Scene
@@ -19,7 +19,7 @@ from contactlab.numeric.vectors import components, dot
 from contactlab.scene_file import SceneFile, read_scene
 from contactlab.scene_file.entries import STRUCK_KEYS, entry_path, replaced, without_rivals
 from contactlab.scene_file.measured import Measured
-from contactlab.scene_file.plane import rim
+from contactlab.scene_file.plane import check_spin, rim
 
 #: A column that varies by less than this share of its mean was kept constant.
 SAME = 0.1
@@ -43,25 +43,28 @@ def as_met(table: Measurements, scene: object) -> Measurements:
     Raises
     ------
     ValueError
-        If a column cannot be changed without another one, or the struck body does not spin.
+        If a column cannot be changed without another one, or a half-space has a spin.
     """
     own: Mapping[str, float] = {}
     arm: tuple[Real, Real] | None = None
     if isinstance(scene, SceneFile | str | Path):
         own, arm = _of_file(scene, table)
+    elif isinstance(scene, Scene) and scene.sphere is None:
+        return table  # of other bodies than spheres columns change a file
     elif isinstance(scene, Scene) and isinstance(scene.target, Sphere):
         arm = -np.asarray(scene.target.radius), 0.0
     spin: Any = table.given.get(SPIN, None if table.struck else own.get(SPIN))
+    if spin is not None and arm is None:
+        check_spin(f"{table.source}: {SPIN}" if table.source else SPIN, spin)
+        spin = None
     moving = {name: own[name] for name in VELOCITY if name in own and not table.struck}
     at_rest = {name: np.zeros(len(table)) for name in own}
     given = {name: values for name, values in table.given.items() if name != SPIN} | at_rest
     if spin is None and not moving:
-        return attrs.evolve(table, given=given) if own else table
+        return attrs.evolve(table, given=given)
     zeros = np.zeros(len(table))
     normal, along = (moving.get(name, 0.0) + zeros for name in VELOCITY)
-    if spin is not None:
-        if arm is None:
-            raise ValueError(f"{SPIN}: the struck body is no sphere and no body, and does not spin")
+    if spin is not None and arm is not None:
         inward, sideward = rim(spin, arm)
         normal, along = normal + inward, along + sideward
     measured, errors = dict(table.measured), dict(table.errors)
@@ -76,7 +79,7 @@ def as_met(table: Measurements, scene: object) -> Measurements:
 def _of_file(
     scene: SceneFile | str | Path, table: Measurements
 ) -> tuple[Mapping[str, float], tuple[Real, Real] | None]:
-    """Return the motion of the struck body that a file tells, and its arm to the contact."""
+    """Return the motion of the struck body of a file, and its arm; None for a half-space."""
     path = scene.path if isinstance(scene, SceneFile) else scene
     entries = {name: values for name, values in table.given.items() if name != SPIN}
     if table.struck:
@@ -85,10 +88,13 @@ def _of_file(
     impact: Any = file.tables.get("impact", {})
     own = {name: impact[name] for name in STRUCK_KEYS if isinstance(impact.get(name), float | int)}
     if file.encounter is not None and file.scene.along is not None:
-        n, still = components(file.encounter.normal), (0.0, 0.0, 0.0)  # a half-space has no arm
+        n = components(file.encounter.normal)
         struck = (side.arm for side in sides(file.encounter, n) if side.name)
-        arm = next(struck, still)
-        return own, (dot(arm, n), dot(arm, file.scene.along))
+        arms = [(dot(arm, n), dot(arm, file.scene.along)) for arm in struck]
+        return own, (arms[0] if arms else None)
+    if SPIN in table.given and file.scene.sphere is None:
+        rule = "has no speeds of bodies, which columns could replace"
+        raise ValueError(f"{SPIN}: {path} {rule}; give them, beside along = [x, y, z] of a body")
     target = file.scene.target
     return own, (-np.asarray(target.radius), 0.0) if isinstance(target, Sphere) else None
 
@@ -96,13 +102,15 @@ def _of_file(
 def with_measurements(file: SceneFile, table: Measurements) -> SceneFile:
     """Return a scene file whose measured series are the columns of a table.
 
-    The one column that varies, such as the angle, is the abscissa. The scene provides all other
-    entries, such as the speed. A file without a sweep gets one over the measured range.
+    Each impact has the entries of its row; the scene provides all others. The abscissa is the one
+    column that varies; of several the angle, or else the most spread. A file without a sweep gets
+    one over the measured range, or the measured impacts themselves where several columns vary.
 
     Raises
     ------
     ValueError
-        If more than one column varies, or the speeds differ.
+        If the table has no column before the impact; or, beside a sweep, if several columns vary,
+        or the speeds differ.
     """
     impact: Any = file.tables.get("impact", {})
     own = [name for name in STRUCK_KEYS if name in impact]
@@ -111,32 +119,67 @@ def with_measurements(file: SceneFile, table: Measurements) -> SceneFile:
             f"{file.path}: its struck body moves, and its sweep is of the laboratory, where the "
             "measured impacts are relative; leave out [sweep]"
         )
-    table = as_met(table, file)
-    moving = [name for name, values in table.given.items() if not _constant(values)]
-    if len(moving) != 1:
-        varying = f"these vary by more than {SAME:.0%}: {', '.join(moving) or 'none'}"
-        raise ValueError(f"{table.source}: one column must vary, such as angle_deg; {varying}")
-    _check_speed(file, table)
-    x = table.given[moving[0]]
-    if not file.varied:
-        varied = {moving[0]: np.linspace(float(np.min(x)), float(np.max(x)), SWEPT)}
-        if own:
-            file = _relative(file, table)
-        file = attrs.evolve(file, varied=varied, scene=file.scene_at(**varied))
+    table = _by_angle(as_met(table, file))
+    if not table.given:
+        raise ValueError(
+            f"{table.source}: no column is of the impact itself, over which to set the measured "
+            "values; give one, such as angle_deg"
+        )
+    moving = _moving(table)
+    spread = {name: np.ptp(x) / (np.max(np.abs(x)) or 1.0) for name, x in table.given.items()}
+    x_name = (
+        "angle_deg" if "angle_deg" in moving else max(moving or table.given, key=spread.__getitem__)
+    )
+    if file.varied and len(moving) > 1:
+        raise ValueError(
+            f"{table.source}: {', '.join(moving)} vary together, by more than {SAME:.0%}, and the "
+            f"[sweep] of {file.path} cannot; leave it out, and each impact runs as it was measured"
+        )
+    if file.varied:
+        _check_speed(file, table)
+    else:
+        file = _swept(_relative(file, table), table, x_name, alone=len(moving) == 1)
     return attrs.evolve(
-        file, measured=tuple(_series(table, name, moving[0], x) for name in table.measured)
+        file, measured=tuple(_series(table, name, x_name) for name in table.measured)
     )
 
 
-def _constant(values: Array) -> bool:
-    return bool(np.ptp(values) <= SAME * abs(float(np.mean(values))))
+def _by_angle(table: Measurements) -> Measurements:
+    """Return velocities that vary along both directions as speeds and angles."""
+    if not set(CARTESIAN) <= {*_moving(table)}:
+        return table
+    given = dict(table.given)
+    normal, along = (given.pop(name) for name in CARTESIAN)
+    given |= {"speed": np.hypot(normal, along), "angle_deg": np.degrees(np.arctan2(along, normal))}
+    return attrs.evolve(table, given=given)
+
+
+def _moving(table: Measurements) -> list[str]:
+    """Return the columns before the impact that vary by more than a tenth of their mean."""
+    return [
+        name
+        for name, values in table.given.items()
+        if np.ptp(values) > SAME * abs(float(np.mean(values)))
+    ]
+
+
+def _swept(file: SceneFile, table: Measurements, x_name: str, *, alone: bool) -> SceneFile:
+    """Return a file with a sweep over the one column that varies, or with the rows as a sweep."""
+    x = table.given[x_name]
+    varied: dict[str, Array] = {x_name: np.linspace(float(np.min(x)), float(np.max(x)), SWEPT)}
+    if not alone:
+        order = np.argsort(x, kind="stable")
+        rest = {name: values[order] for name, values in table.given.items() if np.ptp(values)}
+        varied = {x_name: x[order]} | rest
+    return attrs.evolve(file, varied=varied, scene=file.scene_at(**varied))
 
 
 def _relative(file: SceneFile, table: Measurements) -> SceneFile:
-    """Return a file whose struck body moves with its numbers in the frame of the measurements."""
+    """Return a file with the mean impact of the measurements, relative to the struck body."""
     tables: Mapping[str, Any] = without_rivals(file.tables, table.given)
     for name, values in table.given.items():
-        tables = replaced(tables, entry_path(name), float(np.mean(values)))
+        same = float(values[0]) if not np.ptp(values) else float(np.mean(values))
+        tables = replaced(tables, entry_path(name), same)
     return attrs.evolve(file, tables=tables)
 
 
@@ -156,15 +199,17 @@ def _check_speed(file: SceneFile, table: Measurements) -> None:
             )
 
 
-def _series(table: Measurements, quantity: str, against: str, x: Array) -> Measured:
+def _series(table: Measurements, quantity: str, against: str) -> Measured:
     """Return the measured numbers of one quantity over the entry ``against``."""
     values = table.measured[quantity]
     present = np.isfinite(values)
     errors = table.errors.get(quantity, np.zeros(len(values)))
+    given = {name: entries[present] for name, entries in table.given.items()}
     return Measured(
         quantity=quantity,
         against=against,
-        x=x[present],
+        x=given.pop(against),
+        beside=given,
         values=values[present],
         x_error=np.zeros(int(present.sum())),
         error=errors[present],

@@ -253,7 +253,8 @@ def _from_scene_file(file: SceneFile) -> Measurements:
     """Return the series of a scene file, one below the other."""
     if not file.measured:
         raise ValueError(f"{file.path}: has no [[measured]] values; give a CSV file of them")
-    if len({series.against for series in file.measured}) > 1:
+    entries = [series.entries for series in file.measured]
+    if len({tuple(each) for each in entries}) > 1:
         raise ValueError(
             f"{file.path}: its measured series vary different entries; give a CSV file"
         )
@@ -265,7 +266,7 @@ def _from_scene_file(file: SceneFile) -> Measurements:
         measured[series.quantity][first : first + size] = series.values
         first += size
     return Measurements(
-        given={file.measured[0].against: np.concatenate([series.x for series in file.measured])},
+        given={name: np.concatenate([each[name] for each in entries]) for name in entries[0]},
         measured=measured,
         errors={},
         source=str(file.path),

@@ -11,6 +11,7 @@ import numpy as np
 from contactlab.compose.simulation import Simulation
 from contactlab.fitting import tabulated
 from contactlab.fitting.parameters import RESTITUTION, Parameter, Setup
+from contactlab.fitting.struck import CARTESIAN
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array
@@ -28,7 +29,7 @@ TABULATED = "exact elastic law (tabulated rebound)"
 DIGITS = 7
 #: The quantity that takes the course of the normal motion, not its restitution alone.
 CONTACT_TIME = "contact_time"
-POLAR, CARTESIAN = ("speed", "angle_deg"), ("normal_speed", "tangential_velocity")
+POLAR = ("speed", "angle_deg")
 
 
 @attrs.frozen(kw_only=True, eq=False)

@@ -83,7 +83,7 @@ def _answer(
     if not result.scene.shape:
         return [html.one_impact(result)]
     if agreements:
-        return [*_at_measured_points(agreements), html.pairs(closing(result))]
+        return [*_at_measured_points(agreements, varied), html.pairs(closing(result))]
     shown = {name: (entry_unit(name), values) for name, values in varied.items()}
     headings, rows = sweep_section(result, shown, most=ROWS)
     parts = [f"<div class='wide'>{html.table(headings, rows)}</div>"]
@@ -93,12 +93,13 @@ def _answer(
     return [*parts, html.pairs(closing(result))]
 
 
-def _at_measured_points(agreements: Sequence[Agreement]) -> list[str]:
+def _at_measured_points(agreements: Sequence[Agreement], varied: Mapping[str, Real]) -> list[str]:
     """Return the table of the first law at the points of the longest series, measured beside."""
     longest = max(agreements, key=lambda each: len(each.measured.x))
     x, against = longest.measured.x, longest.measured.against
     result = next(iter(longest.results.values()))
-    headings, rows = sweep_section(result, {against: (entry_unit(against), x)})
+    shown = {name: (entry_unit(name), values) for name, values in longest.measured.varied.items()}
+    headings, rows = sweep_section(result, shown)
     for each in agreements:
         if np.array_equal(each.measured.x, x):
             headings = [*headings, f"{heading(each.measured.quantity, each.unit)}, measured"]
@@ -106,7 +107,10 @@ def _at_measured_points(agreements: Sequence[Agreement]) -> list[str]:
                 [*row, float(value)] for row, value in zip(rows, each.measured.values, strict=True)
             ]
     rows = [rows[place] for place in np.argsort(x, kind="stable")]
-    words = f"At the measured values of {against}, by the first law; the curves below are a sweep."
+    joined = np.array_equal(np.sort(x), varied.get(against, ()))
+    curves = f"join these impacts over {against}" if joined else "are a sweep"
+    words = f"At the measured values of {', '.join(shown)}, by the first law; the curves below"
+    words += f" {curves}."
     return [f"<div class='wide'>{html.table(headings, rows)}</div>", html.paragraph(words)]
 
 
@@ -114,7 +118,7 @@ def _over_angle(comparison: Comparison) -> list[str]:
     """Return pictures of e_t and of the rebound angle over the angle, if they are not measured."""
     shown = {agreement.measured.quantity for agreement in comparison.agreements}
     names = [name for name in OVER_ANGLE if name not in shown]
-    if list(comparison.varied) != ["angle_deg"]:
+    if next(iter(comparison.varied), "") != "angle_deg" or len(comparison.scene.axes) > 1:
         return []
 
     def drawing(name: str) -> Callable[[Axes], Axes]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import attrs
@@ -33,6 +34,8 @@ class Measured:
         Half-widths; zero if the file has none. If the file has several readings of the same
         points, values are their means and errors half their range; NaN for a single reading.
     label, source : str
+    beside : mapping of str to array, shape (n,)
+        Other entries of each impact, that vary with it; empty if the scene has them.
     """
 
     quantity: str
@@ -43,6 +46,18 @@ class Measured:
     error: Array
     label: str
     source: str
+    beside: Mapping[str, Array] = attrs.field(factory=dict)
+
+    @property
+    def entries(self) -> dict[str, Array]:
+        """Entries of each impact by name, the abscissa first."""
+        return {self.against: self.x, **self.beside}
+
+    @property
+    def varied(self) -> dict[str, Array]:
+        """Those of ``entries`` that differ from impact to impact, the abscissa first."""
+        beside = {name: values for name, values in self.beside.items() if np.ptp(values)}
+        return {self.against: self.x, **beside}
 
 
 def read_measured(content: object) -> tuple[Measured, ...]:

@@ -172,7 +172,7 @@ def compare(
                     run = _estimated(run, simulation) if estimate_error else run
                 else:
                     assert file is not None
-                    answers.append(_run(simulation, file.scene_at(**{job.against: job.x})))
+                    answers.append(_run(simulation, file.scene_at(**job.entries)))
                 done += 1
                 if progress is not None:
                     progress(done, total)

@@ -21,7 +21,7 @@ from contactlab.numeric.types import Real
 from contactlab.outcome.columns import QUANTITIES, csv_heading, json_value
 from contactlab.outcome.tables import number, time
 from contactlab.outcome.text_table import table
-from contactlab.scene_file import LawChoice, SceneFile
+from contactlab.scene_file import LawChoice, Measured, SceneFile
 from contactlab.study.comparison import Comparison
 from contactlab.study.side_by_side import wrapped
 
@@ -184,6 +184,7 @@ def to_dict(comparison: Comparison, quantities: Sequence[str]) -> dict[str, Any]
                 "against": agreement.measured.against,
                 "source": agreement.measured.source,
                 "x": _list(agreement.measured.x),
+                **_beside(agreement.measured),
                 "values": _list(agreement.measured.values),
                 "error": _list(agreement.measured.error),
                 "laws": {
@@ -220,9 +221,16 @@ def write_csv(comparison: Comparison, quantities: Sequence[str], stream: TextIO)
         measured, unit = agreement.measured, agreement.unit
         for law, values in agreement.predicted.items():
             columns = (measured.x, values, measured.values, agreement.difference(law))
-            for row in _rows(*columns):
+            beside = (measured.beside.get(name, np.nan) for name in others)
+            for row in _rows(*columns, *beside):
                 start = ["measured", measured.quantity, unit, measured.against]
-                writer.writerow([*start, row[0], law, *row[1:], *("" for _ in others)])
+                writer.writerow([*start, row[0], law, *row[1:]])
+
+
+def _beside(measured: Measured) -> dict[str, Any]:
+    """Return the other entries of measured impacts, if they have some."""
+    entries = {name: _list(values) for name, values in measured.beside.items()}
+    return {"beside": entries} if entries else {}
 
 
 def _rows(*columns: Real) -> Iterator[list[Any]]:

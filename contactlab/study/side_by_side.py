@@ -127,9 +127,14 @@ def _points(agreement: Agreement) -> str:
     """Return measured values beside the laws, one row for each value."""
     measured = agreement.measured
     names = list(agreement.predicted)
-    headings = [_with_unit(measured.against), "measured", "reading error"]
+    headings = [*map(_with_unit, measured.varied), "measured", "reading error"]
     headings += [*names, *(f"{name} - measured" for name in names)]
-    columns = [measured.x, measured.values, measured.error, *agreement.predicted.values()]
+    columns = [
+        *measured.varied.values(),
+        measured.values,
+        measured.error,
+        *agreement.predicted.values(),
+    ]
     columns += [agreement.difference(name) for name in names]
     rows = np.transpose(columns).tolist()
     title = heading(measured.quantity, agreement.unit)

@@ -59,6 +59,49 @@ def test_the_distance_of_a_law_is_the_disturbance(files, capsys):
     assert series["laws"]["coulomb"]["rms"] > 0.02
 
 
+@pytest.fixture
+def laboratory(tmp_path):
+    """A made-up laboratory: each impact at its own speed, its spin off by a known disturbance."""
+    steel, speeds = Material.named("steel"), np.array([1.0, 2.5, 1.5, 3.0, 0.8, 2.0])
+    noise = 100.0 * NOISE
+    rows = [
+        (v * np.cos(a), v * np.sin(a), Simulation().run(Scene.at_angle(
+            Sphere(0.01, steel), HalfSpace(steel), 0.15, speed=v, angle_deg=np.degrees(a)
+        )).rebound_spin + off)
+        for v, a, off in zip(speeds, np.radians(ANGLES), noise, strict=True)
+    ]  # fmt: skip
+    ball, data = tmp_path / "ball.toml", tmp_path / "drops.csv"
+    ball.write_text(BALL, "utf-8")
+    lines = [f"{n!r},{t!r},{spin!r}" for n, t, spin in np.array(rows).tolist()]
+    heads = "normal_speed (m/s),tangential_velocity (m/s),rebound_spin (rad/s)"
+    data.write_text("\n".join([heads, *lines]) + "\n", "utf-8")
+    return speeds, [str(ball), "--measured", str(data), "--tangential", "fronts"]
+
+
+def test_speeds_and_angles_that_vary_together(laboratory, capsys):
+    speeds, arguments = laboratory
+    command = ["compare", *arguments]
+    assert main([*command, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    (series,) = found["measured"]
+    assert series["laws"]["fronts"]["rms"] == pytest.approx(1.0, rel=1e-6)
+    assert (series["against"], series["x"]) == ("angle_deg", pytest.approx(ANGLES))
+    assert series["beside"]["speed"] == pytest.approx(speeds)
+    assert list(found["varied"]) == ["angle_deg", "speed"]
+    assert main([*command, "--csv"]) == 0
+    table = csv.DictReader(capsys.readouterr().out.splitlines())
+    told = [float(row["speed (m/s)"]) for row in table if row["table"] == "measured"]
+    assert told == pytest.approx(speeds)
+
+
+@pytest.mark.slow
+def test_a_report_of_speeds_and_angles_that_vary_together(laboratory, tmp_path):
+    page = tmp_path / "page.html"
+    assert main(["report", *laboratory[1], "--out", str(page)]) == 0
+    words = "At the measured values of angle_deg, speed, by the first law; the curves below join"
+    assert words in page.read_text("utf-8")
+
+
 def test_a_picture_shows_laws_over_the_measured_range(files, tmp_path, capsys):
     ball, data = map(str, files)
     figure = tmp_path / "laws.png"

@@ -128,19 +128,53 @@ def test_a_table_takes_the_place_of_measured_series(bodies):
 
 
 @pytest.mark.parametrize(
-    ("columns", "varying"),
+    ("given", "varied"),
     [
-        ({"speed (m/s)": [2.0, 2.0, 2.3]}, "angle_deg, speed"),
-        ({"angle_deg": [30.0, 30.0, 32.0]}, "none"),
-        ({"angle_deg": [-30.0, -30.0, -32.0]}, "none"),
+        ({"angle_deg": [40.0, 10.0, 20.0], "speed (m/s)": [2.0, 2.5, 1.0]},
+         {"angle_deg": [10.0, 20.0, 40.0], "speed": [2.5, 1.0, 2.0]}),
+        ({"normal_speed (m/s)": [3.0, 4.0], "tangential_velocity (m/s)": [4.0, 3.0],
+          "spin (rad/s)": [5.0, 7.0]},
+         {"angle_deg": np.degrees(np.arctan([0.75, 4.0 / 3.0])), "spin": [7.0, 5.0]}),
+        ({"angle_deg": [30.0, 30.0], "speed (m/s)": [2.0, 4.0], "spin (rad/s)": [5.0, 4.0]},
+         {"speed": [2.0, 4.0], "spin": [5.0, 4.0]}),
+        ({"angle_deg": [30.0, 30.0]}, {"angle_deg": [30.0, 30.0]}),
+        ({"speed (m/s)": [-2.0, 2.0], "angle_deg": [10.0, 20.0]}, None),
     ],
-)
-def test_one_column_varies(bodies, columns, varying):
-    words = (
-        ": one column must vary, such as angle_deg; these vary by more than 10%: " + varying
-    )  # the source is empty
-    with pytest.raises(ValueError, match=f"^{re.escape(words)}$"):
-        with_measurements(bodies(), table(**columns))
+)  # fmt: skip
+def test_each_impact_has_the_entries_of_its_row(bodies, given, varied):
+    """The abscissa is the angle, or the most spread entry; in its order the rows are a sweep."""
+    count = len(next(iter(given.values())))
+    made = read_measurements(given | {"slip_restitution": np.arange(count)})
+    if varied is None:
+        with pytest.raises(ValueError, match=r"impact.speed = .*must be"):
+            with_measurements(bodies(), made)
+        return
+    file = with_measurements(bodies(), made)
+    for name, values in varied.items():
+        assert file.varied[name] == pytest.approx(values, rel=1e-15)
+    assert list(file.varied) == [*varied, *file.varied.keys() - varied]
+    assert file.measured[0].against == next(iter(varied))
+    again = read_measurements(file)  # each row as it was
+    for name in made.given:
+        expected = made.given[name]
+        found = again.given.get(name)
+        if found is None:
+            speed, angle = again.given["speed"], np.radians(again.given["angle_deg"])
+            found = speed * (np.cos(angle) if name == "normal_speed" else np.sin(angle))
+        assert found == pytest.approx(expected, rel=1e-15)
+    ordered = np.argsort(file.measured[0].x, kind="stable")
+    at_rows = file.scene_at(**file.measured[0].entries)
+    assert file.scene.normal_speed == pytest.approx(at_rows.normal_speed[ordered], rel=1e-15)
+    assert file.scene.spin == pytest.approx(np.broadcast_to(at_rows.spin, count)[ordered])
+
+
+def test_a_sweep_of_one_entry_beside_impacts_that_vary_in_two_is_refused(bodies):
+    swept, made = bodies("[sweep]\nangle_deg = [1.0, 2.0]\n"), table(**{"speed (m/s)": [2, 2, 3]})
+    words = r"angle_deg, speed vary together, .*leave it out, and each impact runs as it was"
+    with pytest.raises(ValueError, match=words):
+        with_measurements(swept, made)
+    with pytest.raises(ValueError, match=r"no column is of the impact itself.*such as angle_deg"):
+        with_measurements(bodies(), read_measurements({"slip_restitution": [0.1, 0.2]}))
 
 
 @pytest.mark.parametrize(("speed", "varies"), [(1.1, False), (1.11, True)])
@@ -157,8 +191,8 @@ def test_a_column_varies_by_more_than_a_tenth_of_its_mean(bodies, speed, varies)
 
 @pytest.mark.parametrize(("speed", "off"), [(2.2, False), (2.23, True), (1.83, False), (1.8, True)])
 def test_a_scene_at_another_speed_is_refused(bodies, speed, off):
-    """The scene's 2 m/s is within a tenth of the measured speed, or not."""
-    file = bodies()
+    """Beside a sweep the scene's 2 m/s is within a tenth of the measured speed, or not."""
+    file = bodies("[sweep]\nangle_deg = [1.0, 2.0]\n")
     made = attrs.evolve(table(**{"speed (m/s)": [speed] * 3}), source="t.csv")
     if not off:
         assert with_measurements(file, made).measured[0].source == "t.csv"
@@ -166,6 +200,8 @@ def test_a_scene_at_another_speed_is_refused(bodies, speed, off):
     words = f"t.csv: speed is {speed:g} m/s, and 2 m/s in {file.path}; write the measured one in"
     with pytest.raises(ValueError, match=re.escape(words)):
         with_measurements(file, made)
+    alone = with_measurements(bodies(), made).scene
+    assert np.hypot(alone.normal_speed, alone.tangential_velocity) == pytest.approx(speed)
 
 
 def test_the_normal_speed_of_the_scene_is_its_own(bodies):
@@ -174,7 +210,7 @@ def test_the_normal_speed_of_the_scene_is_its_own(bodies):
     made = read_measurements(columns | {"slip_restitution": [0.1, 0.2, 0.3]})
     words = "normal_speed is 1 m/s, and 1.732 m/s in"
     with pytest.raises(ValueError, match=re.escape(words)):
-        with_measurements(bodies(), made)
+        with_measurements(bodies("[sweep]\nspin = [1.0, 2.0]\n"), made)
 
 
 def test_only_a_file_or_a_mapping_has_headings_to_name():
