@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import Any
+from typing import Any, Generic
 
 import attrs
 import numpy as np
@@ -20,10 +20,10 @@ from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.body_contact import in_space, pushed
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.rigid_body import RigidBody
-from contactlab.numeric.arrays import every, filled
+from contactlab.numeric.arrays import every, filled, of_each, plain
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import attributes_told
-from contactlab.numeric.types import Array, Labelled, Mask, Numbers, Real
+from contactlab.numeric.types import Array, Each, Labelled, Mask, Numbers, Real
 from contactlab.numeric.vectors import NOTHING, components, cross, joined
 from contactlab.outcome.answer import Answer
 from contactlab.outcome.columns import json_value
@@ -40,8 +40,12 @@ VECTORS_AFTER = (
 
 @attributes_told
 @attrs.frozen(kw_only=True, eq=False, repr=False, slots=False)
-class Collision(Answer):
+class Collision(Answer, Generic[Each]):
     """Both bodies after an encounter; vectors have the shape ``(..., 3)``, numbers the batch's.
+
+    To type checkers numbers are as of an ``ImpactResult``: floats of ``Collision[float]``, arrays
+    of ``Collision[Array]``, and either of ``collide``, as encounters are one or a batch by their
+    arrays. ``collided`` and ``status`` are ``Any``: those of one, or an array of them.
 
     Attributes
     ----------
@@ -74,9 +78,9 @@ class Collision(Answer):
     spin: Array
     target_velocity: Array
     target_spin: Array
-    normal_velocity: Real
+    normal_velocity: Each
     slip_velocity_change: Any
-    friction_work: Real
+    friction_work: Each
     collided: Any
     restitution: Real = 1.0
     simulation: Simulation | None = None
@@ -212,33 +216,32 @@ class Collision(Answer):
         return np.asarray(each if np.all(self.collided) else each[self.collided])
 
     @property
-    def energy(self) -> EnergyLedger:
+    def energy(self) -> EnergyLedger[Each]:
         """The energy books of the relative motion, in J; its loss is the loss of both bodies.
 
         Of bodies that are no spheres and passed through all entries are 0.
         """
         if not self.encounter.of_spheres:
             return self._energy_of_bodies()
-        contact = self.encounter.meeting()
-        checked: Any = False
-        exchange: Any = 0.0
-        shear: Any = 0.0
-        if self.known is not None:
-            checked = np.ones(self.encounter.shape, dtype=bool)
-            checked[self.collided] = self.known.energy.checked
-            exchange = np.zeros(self.encounter.shape)
-            exchange[self.collided] = self.known.motion.exchange
-            shear = np.zeros(self.encounter.shape)
-            shear[self.collided] = self.known.motion.shear_loss
+        known, contact = self.known, self.encounter.meeting()
+        told: tuple[Any, ...] = (0.0, 0.0, True)
+        if known is not None:
+            unchecked = np.logical_not(known.energy.checked)
+            told = known.motion.exchange, known.motion.shear_loss, unchecked
+        exchange, shear, unchecked = self._spread(*told)
         after = self.normal_velocity, self.slip_velocity_change
         with np.errstate(over="ignore", under="ignore", invalid="ignore"):
             start, lost, slip = self.encounter.pair.energies(contact.approach, contact.slip, *after)
             if np.any(self.collided) and (scene := self._met.scene).turns:
-                change = 0.0 if self.known is None else self.known.motion.normal_spin_change
-                whole, taken = np.zeros(self.encounter.shape), np.zeros(self.encounter.shape)
-                whole[self.collided], taken[self.collided] = scene.spin_energies(change)
+                change = 0.0 if known is None else known.motion.normal_spin_change
+                whole, taken = self._spread(*scene.spin_energies(change))
                 start, slip = start + whole, slip + taken
-            return books((start, lost, slip), (self.friction_work, shear), exchange, checked)
+            energies = of_each(start, self.encounter.shape), lost, slip
+            return books(energies, (self.friction_work, shear), exchange, unchecked == 0.0)
+
+    def _spread(self, *quantities: Real) -> list[Any]:
+        """Return quantities of the encounters that collided as those of all, else 0."""
+        return [plain(row) for row in _columns(self.encounter, self.collided, *quantities)]
 
     def _energy_of_bodies(self) -> EnergyLedger:
         """Return the books of the impacts, spread over the encounters."""

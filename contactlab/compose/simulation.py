@@ -29,6 +29,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import taken
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import arguments_told
+from contactlab.numeric.types import Array
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory, Recorder
 from contactlab.outcome.motion import Motion, without_failures
 from contactlab.outcome.plan import Plan
@@ -170,7 +171,7 @@ class Simulation:
         executor: Executor | None = None,
         keep: str | Path | None = None,
         into: None = None,
-    ) -> ImpactResult: ...
+    ) -> ImpactResult[Array]: ...
     @overload
     def sweep(
         self,

@@ -170,6 +170,11 @@ def spread(value: Real, shape: tuple[int, ...]) -> Any:
     return np.array(np.broadcast_to(value, shape))
 
 
+def of_each(value: Real, shape: tuple[int, ...]) -> Any:
+    """Return a number that all impacts of a batch share as one of each, an array as it is."""
+    return value if np.ndim(value) >= len(shape) else spread(value, shape)
+
+
 def zeros(shape: tuple[int, ...]) -> Any:
     """Return 0 for one impact, or read-only zeros of a batch that take no memory and no time."""
     return np.broadcast_to(0.0, shape) if shape else 0.0

@@ -4,17 +4,17 @@ Inside the house a number, or an array with one value for each impact, is a ``Re
 arrays come it is an ``Array``, and where only numbers come a ``float``. ``Mask`` is the same of
 bool; ``Index`` takes a part of a batch; ``Places`` are indices in an array. A function that gives a
 float for a float and an array for an array is annotated with ``Kind`` on both sides, and one that
-gives back whatever it is given with ``Tree``. At a door, where a user's numbers are checked, an
-argument is ``Numbers``: whatever NumPy makes real numbers of. An array of any type of NumPy is
-``AnyArray``. What may be anything is an ``object``; ``Any`` stays where nothing is known and
-something is done with it.
+gives back whatever it is given with ``Tree``. Numbers of a result are ``Each``, those of its motion
+``Either``. At a door, where a user's numbers are checked, an argument is ``Numbers``: whatever
+NumPy makes real numbers of. An array of any type of NumPy is ``AnyArray``. What may be anything is
+an ``object``; ``Any`` stays where nothing is known and something is done with it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from types import EllipsisType
-from typing import Protocol, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,9 @@ Real: TypeAlias = float | Array
 Mask: TypeAlias = bool | np.bool_ | NDArray[np.bool_]
 #: Indices in an array.
 Places: TypeAlias = NDArray[np.intp]
+#: A ``Real`` of a motion, which users read: checkers take it for either. A user knows which it is,
+#: and as a ``Real`` most programs would have to say so in each line.
+Either: TypeAlias = Any
 #: What takes a part of a batch.
 Index: TypeAlias = int | slice | EllipsisType | tuple[int, ...] | Mask | Places
 #: Components of a vector, or of one for each impact; and the rows of a tensor.
@@ -58,3 +61,12 @@ class Labelled(Protocol):
 Kind = TypeVar("Kind", float, Array, Real)
 #: A number, an array, or an object of such: the same on both sides of a function.
 Tree = TypeVar("Tree")
+#: Numbers of a result: ``float`` of one impact, ``Array`` of a batch, and ``Any`` where no checker
+#: knows which: a scene is one impact or a batch by its numbers, and by those of its bodies and
+#: their materials.
+if TYPE_CHECKING:  # a default needs Python 3.13, or a checker
+    from typing_extensions import TypeVar as WithDefault
+
+    Each = WithDefault("Each", bound=Real, default=Any, covariant=True)
+else:
+    Each = TypeVar("Each", covariant=True)

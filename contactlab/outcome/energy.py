@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Generic
 
 import attrs
 import numpy as np
@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import some
+from contactlab.numeric.arrays import of_each, some
 from contactlab.numeric.names import attributes_told
-from contactlab.numeric.types import Mask, Real
+from contactlab.numeric.types import Each, Mask, Real
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.motion import Motion
 
@@ -35,7 +35,7 @@ def _energy() -> Any:
 
 @attributes_told
 @attrs.frozen(kw_only=True, eq=False)
-class EnergyLedger:
+class EnergyLedger(Generic[Each]):
     """Kinetic energy of the relative motion at the contact, in J.
 
     Attributes
@@ -59,19 +59,20 @@ class EnergyLedger:
         False where the books close by construction and the imbalance checks nothing.
     """
 
-    start: Real = _energy()
-    end: Real = _energy()
-    normal_loss: Real = _energy()
-    friction_work: Real = _energy()
-    shear_loss: Real = _energy()
-    imbalance: Real = _energy()
+    start: Each = _energy()
+    end: Each = _energy()
+    normal_loss: Each = _energy()
+    friction_work: Each = _energy()
+    shear_loss: Each = _energy()
+    imbalance: Each = _energy()
     checked: Mask = True
 
     @property
-    def relative_imbalance(self) -> Real:
+    def relative_imbalance(self) -> Each:
         """Imbalance over the energy at the start, unit 1."""
         with np.errstate(under="ignore"):
-            return self.imbalance / self.start
+            imbalance: Any = self.imbalance
+            return imbalance / self.start
 
     def to_dict(self) -> dict[str, Any]:
         """Return the entries and the relative imbalance as plain numbers or lists."""
@@ -87,6 +88,7 @@ def ledger(scene: Scene, motion: Motion, checked: Mask = True) -> EnergyLedger:
             whole, taken = scene.spin_energies(motion.normal_spin_change)
             start, slip = start + whole, slip + taken
         losses = motion.friction_work, motion.shear_loss
+        start = of_each(start, scene.shape)
         return books((start, lost, slip), losses, motion.exchange, checked)
 
 

@@ -15,7 +15,7 @@ from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential_motion import TangentialMotion
 from contactlab.numeric.arrays import are_zeros, chosen, finite, locked, spread, zeros
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Array, Either, Real
 
 #: Entries of ``Motion`` by the name of their source in a normal motion.
 ENDS = {
@@ -49,13 +49,13 @@ class Motion(TangentialMotion):
         How often the approach grew: 1, or more where friction pressed the bodies together again.
     """
 
-    duration: Real
-    normal_velocity: Real
-    maximum_radius: Real
-    maximum_approach: Real
-    maximum_force: Real
-    exchange: Real = 0.0
-    compressions: Real = 1.0
+    duration: Either
+    normal_velocity: Either
+    maximum_radius: Either
+    maximum_approach: Either
+    maximum_force: Either
+    exchange: Either = 0.0
+    compressions: Either = 1.0
 
     def turned(self, along: Array) -> Self:
         """Return the motion with its slip along unit vectors of the tangent plane, (..., 2)."""

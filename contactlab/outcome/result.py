@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, Generic, Self, overload
 
 import attrs
 import numpy as np
@@ -12,9 +12,9 @@ import numpy as np
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.body_contact import pushed, seen
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import equal, plain, taken
+from contactlab.numeric.arrays import equal, of_each, plain, taken
 from contactlab.numeric.names import attributes_told
-from contactlab.numeric.types import Real
+from contactlab.numeric.types import Array, Each, Real
 from contactlab.outcome.answer import Answer, statuses_told
 from contactlab.outcome.energy import EnergyLedger, ledger
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory
@@ -36,11 +36,17 @@ if TYPE_CHECKING:
 
 @attributes_told
 @attrs.frozen(kw_only=True, eq=False, repr=False)
-class ImpactResult(Answer):
+class ImpactResult(Answer, Generic[Each]):
     """Result of one impact, or of a batch: every quantity has the scene's shape.
 
     A batch can be indexed, sliced and iterated; each item is the result of one impact. Items keep
     the run time and the counters of the whole batch.
+
+    To type checkers the numbers of ``ImpactResult[float]`` are floats, and those of a sweep, an
+    ``ImpactResult[Array]``, are arrays. What ``run`` returns, and an item of a batch, they take for
+    either: no type tells whether a scene is one impact or a batch, in the plane or in space. A
+    program that knows may say so: ``result: ImpactResult[float] = simulation.run(scene)``.
+    ``status`` is ``Any``: a ``Status``, or an array of them.
 
     Attributes
     ----------
@@ -67,8 +73,8 @@ class ImpactResult(Answer):
     run_time: float = attrs.field(metadata={"unit": "s"})
     laws: Mapping[str, str]
     history: History | NoHistory = attrs.field(default=NO_HISTORY, repr=False)
-    psi2_error_estimate: Real | None = attrs.field(default=None, repr=False)
-    restitution_error_estimate: Real | None = attrs.field(default=None, repr=False)
+    psi2_error_estimate: Each | Any = attrs.field(default=None, repr=False)
+    restitution_error_estimate: Each | Any = attrs.field(default=None, repr=False)
 
     def __repr__(self) -> str:
         """Return the answer, statuses and laws on one line."""
@@ -115,48 +121,48 @@ class ImpactResult(Answer):
         return f"<pre>{html.escape(str(self))}</pre>"
 
     @property
-    def psi1(self) -> Any:
+    def psi1(self) -> Each:
         """Local angle of incidence of the paper's eq. (29), without unit."""
-        return self.scene.psi1
+        return of_each(self.scene.psi1, self.scene.shape)
 
     @property
-    def psi_change(self) -> Any:
+    def psi_change(self) -> Each:
         """psi2 - psi1, without the rounding error of a huge psi1."""
         return self.scene.psi(self.motion.slip_velocity_change)
 
     @property
-    def psi2(self) -> Any:
+    def psi2(self) -> Each:
         """Non-dimensional local angle of reflexion; a vector (..., 2) in space."""
         return self.scene.psi(self.rebound_slip_velocity)
 
     @property
-    def compressions(self) -> Real:
+    def compressions(self) -> Each:
         """How often the approach grew: 1, or more where friction pressed the bodies together."""
         return self.motion.compressions
 
     @property
-    def impulse(self) -> Any:
+    def impulse(self) -> Array:
         """Impulse on the target along n, t1 and t2, shape (..., 3), in N s."""
         motion = self.motion
         return self.scene.impulse(motion.normal_velocity, motion.slip_velocity_change)
 
     @property
-    def couple(self) -> Any:
+    def couple(self) -> Each:
         """Angular impulse on the target about the normal, of the batch shape, in N m s."""
         return -self.scene.normal_inertia * self.motion.normal_spin_change
 
     @property
-    def normal_velocity(self) -> Real:
+    def normal_velocity(self) -> Each:
         """Rate of approach of the contact points after the impact, in m/s; negative: they part."""
         return self.motion.normal_velocity
 
     @property
-    def rebound_slip_velocity(self) -> Any:
+    def rebound_slip_velocity(self) -> Each:
         """Slip velocity at the contact after the impact in m/s; along t1 and t2 in space."""
         return self.scene.slip_velocity + self.motion.slip_velocity_change
 
     @property
-    def rebound_normal_velocity(self) -> Any:
+    def rebound_normal_velocity(self) -> Each | Any:
         """Velocity of the sphere along the normal, in m/s; negative: away from the target.
 
         None for bodies that are no spheres, but where the scene has a tangent ``along``: see
@@ -169,7 +175,7 @@ class ImpactResult(Answer):
         return speed - share * (speed - self.motion.normal_velocity)
 
     @property
-    def rebound_tangential_velocity(self) -> Any:
+    def rebound_tangential_velocity(self) -> Each | Any:
         """Tangential velocity of the sphere's centre in m/s; None for a non-dimensional scene."""
         sphere = self.scene.sphere
         if sphere is None:
@@ -178,13 +184,15 @@ class ImpactResult(Answer):
         return self.scene.tangential_velocity + share * self.motion.slip_velocity_change
 
     @property
-    def rebound_speed(self) -> Real | None:
+    def rebound_speed(self) -> Each | Any:
         """Speed of the sphere's centre in m/s; None for a non-dimensional scene."""
         tangential = self.rebound_tangential_velocity
-        return None if tangential is None else np.hypot(self.rebound_normal_velocity, tangential)
+        if tangential is None:
+            return None
+        return plain(np.hypot(self.rebound_normal_velocity, tangential))
 
     @property
-    def velocity_in_space(self) -> Any:
+    def velocity_in_space(self) -> Array | Any:
         """Velocity in space of the first body of an encounter, shape (..., 3), in m/s; else None.
 
         Bodies that are no spheres have it; of spheres see ``Collision.velocity``.
@@ -192,7 +200,7 @@ class ImpactResult(Answer):
         return self._in_space("velocity")
 
     @property
-    def target_velocity_in_space(self) -> Any:
+    def target_velocity_in_space(self) -> Array | Any:
         """Velocity in space of the target of an encounter, as ``velocity_in_space``."""
         return self._in_space("target_velocity")
 
@@ -204,7 +212,7 @@ class ImpactResult(Answer):
         return pushed(encounter, axes, self.impulse, self.couple)[name]
 
     @property
-    def rebound_spin(self) -> Any:
+    def rebound_spin(self) -> Each | Any:
         """Spin of the sphere in rad/s; of other bodies a vector (..., 3), None without bodies."""
         sphere = self.scene.sphere
         if sphere is None:
@@ -214,7 +222,7 @@ class ImpactResult(Answer):
         return self.scene.spin + share * self.motion.slip_velocity_change
 
     @property
-    def rebound_normal_spin(self) -> Any:
+    def rebound_normal_spin(self) -> Each:
         """Spin about the normal of the first body over the target after the impact, in rad/s.
 
         By the right-hand rule about the normal into the target. Where the law does not answer spin
@@ -222,18 +230,19 @@ class ImpactResult(Answer):
         """
         axes = self.scene.frame
         if axes is None:
-            return self.scene.normal_spin + self.motion.normal_spin_change
+            before: Any = self.scene.normal_spin
+            return before + self.motion.normal_spin_change
         relative = self._in_space("spin") - self._in_space("target_spin")
         spin = np.einsum("...i,...i->...", relative, axes[..., 0, :])
         return plain(spin)
 
     @property
-    def w2(self) -> Any:
+    def w2(self) -> Each:
         """W = kappa omega_n a/(mu v1) of the spin about the normal after the impact, theory §17."""
         return self.scene.rim(self.rebound_normal_spin)
 
     @property
-    def target_rebound_normal_velocity(self) -> Real | None:
+    def target_rebound_normal_velocity(self) -> Each | Any:
         """Velocity of the target along the normal, in m/s; positive: away from the sphere.
 
         Velocities and spin of the target are 0 for a half-space, None without bodies.
@@ -244,12 +253,12 @@ class ImpactResult(Answer):
         )
 
     @property
-    def target_rebound_tangential_velocity(self) -> Real | None:
+    def target_rebound_tangential_velocity(self) -> Each | Any:
         """Tangential velocity of the target's centre, in m/s, positive as that of the sphere."""
         return self._of_target(-self.scene.pair.tangential_mass * self.motion.slip_velocity_change)
 
     @property
-    def target_rebound_spin(self) -> Any:
+    def target_rebound_spin(self) -> Each | Any:
         """Spin of the target in rad/s, positive where it adds to the slip, as the sphere's."""
         if self.scene.sphere is None:
             return self._in_space("target_spin")
@@ -259,7 +268,7 @@ class ImpactResult(Answer):
             turn = turn / (target.gyration_ratio**2 * target.radius)
         return self._of_target(turn)
 
-    def _of_target(self, momentum: Real) -> Real | None:
+    def _of_target(self, momentum: Real) -> Any:
         """Return ``momentum`` (N s) over the target's mass: 0 for a half-space."""
         target = self.scene.target
         if isinstance(target, Sphere):
@@ -267,12 +276,12 @@ class ImpactResult(Answer):
         return None if target is None else 0.0 * momentum + 0.0  # no -0
 
     @property
-    def normal_restitution(self) -> Real:
+    def normal_restitution(self) -> Each:
         """Coefficient of normal restitution, e = -v_z after / v_z before."""
         return -self.motion.normal_velocity / self.scene.normal_speed
 
     @property
-    def tangential_restitution(self) -> Any:
+    def tangential_restitution(self) -> Each | Any:
         """e_t = centre's tangential velocity after over before; NaN where zero before."""
         after, before = self.rebound_tangential_velocity, self.scene.tangential_velocity
         if self.scene.along is not None:
@@ -280,35 +289,36 @@ class ImpactResult(Answer):
         return None if after is None else _ratio(after, before)
 
     @property
-    def slip_restitution(self) -> Real:
+    def slip_restitution(self) -> Each:
         """Slip velocity after over before (psi2/psi1), along the slip; NaN where zero before."""
         scene = self.scene
         after, before = map(scene.along_slip, (self.rebound_slip_velocity, scene.slip_velocity))
         return _ratio(after, before)
 
     @property
-    def incidence_angle(self) -> Real:
+    def incidence_angle(self) -> Each:
         """Angle of the centre's path from the normal before the impact, in rad."""
         scene = self.scene
         if scene.along is not None:
             normal, along = seen(scene, scene.encounter.velocity)
             return _angle(along, normal)
-        return _angle(scene.along_slip(scene.tangential_velocity), scene.normal_speed)
+        angle = _angle(scene.along_slip(scene.tangential_velocity), scene.normal_speed)
+        return of_each(angle, scene.shape)
 
     @property
-    def rebound_angle(self) -> Real | None:
+    def rebound_angle(self) -> Each | Any:
         """Angle of the centre's path from the normal after the impact, in rad."""
         after = self.rebound_tangential_velocity
         return None if after is None else _angle(after, -self.rebound_normal_velocity)
 
     @property
-    def local_rebound_angle(self) -> Real:
+    def local_rebound_angle(self) -> Each:
         """Angle of reflexion of the contact point, in rad: (39) with psi2 in place of psi1."""
         after = self.scene.along_slip(self.rebound_slip_velocity)
         return _angle(after, -self.motion.normal_velocity)
 
     @property
-    def energy(self) -> EnergyLedger:
+    def energy(self) -> EnergyLedger[Each]:
         """Energy books in J: energy before and after, losses, imbalance."""
         unchecked = self.plan.unchecked
         checked = not unchecked if isinstance(unchecked, bool) else ~unchecked
@@ -398,6 +408,10 @@ class ImpactResult(Answer):
             raise TypeError("the result of a single impact has no length")
         return int(self.scene.shape[0])
 
+    @overload
+    def __getitem__(self, index: int) -> ImpactResult: ...
+    @overload
+    def __getitem__(self, index: slice) -> Self: ...
     def __getitem__(self, index: int | slice) -> ImpactResult:
         """Return the result of one impact of a batch, or of a slice."""
         shape = self.scene.shape
@@ -431,14 +445,14 @@ def _numbers_told(value: Real) -> str:
     )
 
 
-def _ratio(after: Real, before: Real) -> Real:
+def _ratio(after: Real, before: Real) -> Any:
     """Return ``after / before``, NaN where ``before`` is zero."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         ratio = np.where(np.asarray(before) == 0.0, np.nan, np.divide(after, before))
     return float(ratio) if ratio.ndim == 0 else ratio
 
 
-def _angle(tangential: Real, normal: Real) -> Real:
+def _angle(tangential: Real, normal: Real) -> Any:
     """Return the angle from the normal in rad, a float for a single impact."""
     angle = np.arctan2(tangential, normal)
     return float(angle) if np.ndim(angle) == 0 else angle

@@ -296,6 +296,15 @@ def test_the_plan_says_what_passes_through():
         assert checked.tolist() == [followed, True]
 
 
+@pytest.mark.parametrize("laws", [None, Simulation()])
+def test_the_books_have_the_shape_of_the_encounters(laws):
+    books = collide(meeting(friction_coefficient=[0.1, 0.2]), laws).energy
+    entries = (books.start, books.end, books.friction_work, books.shear_loss, books.imbalance)
+    assert [np.shape(each) for each in (*entries, books.checked)] == 6 * [(2,)]
+    books = collide(meeting(), laws).energy
+    assert {*map(type, (books.start, books.end, books.shear_loss))} == {float}
+
+
 def test_a_failure_is_a_status():
     made = collide(meeting(), Simulation(normal=ForceFree(), tangential="coulomb"))
     assert made.status is Status.NOT_SEPARATED

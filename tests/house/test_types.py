@@ -32,8 +32,10 @@ MOST_ANY = 0.03
 ERROR = re.compile(r"(\w+)\.py:(\d+)(?::\d+)?(?: -)?:? error: ")
 #: A program of a user: a checker must refuse the lines that end with "# refused", and no other.
 PROGRAM = """
-from typing import assert_type
+import math
+from typing import Any, assert_type
 
+import matplotlib.pyplot as plt
 import numpy as np
 from numpy.typing import NDArray
 
@@ -47,6 +49,30 @@ scene = Scene.at_angle(ball, plane, friction_coefficient=0.2, speed=1.0, angle_d
 simulation = Simulation(normal="hertz", tangential="springs")
 result = simulation.run(scene).check()
 assert_type(result, cl.ImpactResult)
+many = simulation.sweep(Scene.grid(chi=[1.2, 1.4412], psi1=np.linspace(0, 6, 25)))
+assert_type(many.check()[1:], cl.ImpactResult[Array])
+assert_type(many.psi2, Array)
+assert_type(many.energy.start, Array)
+told: cl.ImpactResult[float] = simulation.run(scene)
+assert_type(told.psi2, float)
+assert_type(told.energy, cl.EnergyLedger[float])
+assert_type(result.psi2, Any)
+assert_type(result.impulse, Array)
+one: float = result.psi2 + result.psi1 * 2
+all_of_them: Array = simulation.run(Scene.grid(chi=[1, 2], psi1=[1, 2])).psi2
+rows: list[tuple[float, float]] = [(each.psi1, each.psi2) for each in many]
+print(round(result.psi2, 3), f"{result.psi2:.3f}", max(result.psi2, 0.0), abs(result.psi2) < 1)
+print(math.degrees(result.rebound_angle), result.rebound_speed**2, round(result.motion.duration, 9))
+print(round(result.normal_restitution, 3), result.normal_velocity < 0, result.rebound_spin / 2)
+print(result.energy.friction_work / result.energy.start, result.status is cl.Status.SUCCESS)
+print((many.status == cl.Status.SUCCESS).all(), many.psi2[many.psi2 < 0].max(), many[3].psi2)
+print(min(many, key=lambda each: each.psi2), np.degrees(many.local_rebound_angle).reshape(2, 25))
+print(simulation.run(scene, estimate_error=True).psi2_error_estimate < 1e-4, result.run_time + 1)
+plt.plot(many.psi1, many.psi2)
+plt.plot([result.psi1], [result.psi2], "o")
+told.psi2.shape  # refused
+many.psi2.is_integer()  # refused
+result.psi3  # refused
 assert_type(rebound(1.2, 1.44), float)
 assert_type(rebound(1, 1.44, restitution=np.float32(0.9)), float)
 assert_type(rebound(np.linspace(0, 4, 5), 1.44), Array)
@@ -57,7 +83,11 @@ assert_type(rebound(1.2, 1.44, derivatives=True), tuple[float, float, float])
 assert_type(rebound(1.2, 1.44, derivatives=True, restitution=0.9)[3], float)
 assert_type(rebound([1.2], 1.44, derivatives=True), tuple[Array, Array, Array])
 met = Encounter(ball, plane, 0.1, normal=[1, 0, 0], velocity=[2, 0, 0])
-assert_type(collide(met).velocity, Array)
+hit = collide(met)
+assert_type(hit.velocity, Array)
+print(round(hit.friction_work, 3), hit.normal_velocity < 0, hit.velocity @ hit.spin, hit.impulse[0])
+print(hit.energy.start + 1, hit.status is cl.Status.SUCCESS, hit.result.psi2[0], hit.spin.tolist())
+hit.speed  # refused
 Encounter(ball, plane, [0.1, 0.2], normal=(1, 0, 0), velocity=np.array([2, 0, 0]))
 collide(met, restitution=lambda speed: 1 - 0.1 * speed)
 Scene.grid(chi=[1.2, 1.4412], psi1=np.linspace(0, 6, 25))

@@ -12,6 +12,12 @@ from tests.laws.normal_laws import Damped, LinearSpring
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 RADIUS, FRICTION, SPEED, TANGENTIAL, SPIN = 0.01, 0.1, 2.0, 3.0, 40.0
 KAPPA = 1.4 / 1.7
+NUMBERS = (
+    "psi1", "psi2", "psi_change", "normal_velocity", "couple", "rebound_slip_velocity",
+    "rebound_normal_velocity", "rebound_tangential_velocity", "rebound_speed", "rebound_spin",
+    "rebound_normal_spin", "target_rebound_spin", "normal_restitution", "tangential_restitution",
+    "slip_restitution", "incidence_angle", "rebound_angle", "local_rebound_angle",
+)  # fmt: skip
 
 
 def sliding(side=1.0, **laws):
@@ -121,6 +127,40 @@ def test_restitutions_of_what_did_not_move_are_no_numbers():
     result = Simulation(tangential="coulomb").run(scene).check()
     assert np.isnan(result.tangential_restitution).all()
     assert np.isnan(result.slip_restitution).tolist() == [True, False]
+
+
+def made(varied):
+    """One impact of a ball that turns, or a batch of two that differ in one number."""
+
+    def of(name, value):
+        return value * np.array([1.0, 1.1]) if name == varied else value
+
+    shear, strength = of("shear_modulus", 8e10), of("yield_stress", 3e9)
+    soft = Material(shear_modulus=shear, poisson_ratio=0.3, density=7850.0, yield_stress=strength)
+    ball = Sphere(of("radius", 0.01), STEEL, gyration_ratio=of("gyration_ratio", 0.6))
+    entries = {"friction_coefficient": 0.2, "normal_speed": 1.0, "tangential_velocity": 0.5}
+    entries |= {"spin": 3.0, "normal_spin": 2.0}
+    return Scene(ball, HalfSpace(soft), **{name: of(name, each) for name, each in entries.items()})
+
+
+@pytest.mark.parametrize(
+    "varied",
+    [
+        "", "friction_coefficient", "normal_speed", "tangential_velocity", "spin", "normal_spin",
+        "radius", "gyration_ratio", "shear_modulus", "yield_stress",
+    ],
+)  # fmt: skip
+def test_every_number_has_the_shape_of_the_scene(varied):
+    """The incidence of impacts that differ in friction alone is an angle for each."""
+    scene = made(varied)
+    result = Simulation(tangential="stronge").run(scene).check()
+    energy = result.energy
+    named = {name: getattr(result, name) for name in NUMBERS}
+    named |= {name: getattr(energy, name) for name in ("start", "end", "friction_work", "checked")}
+    assert {name: np.shape(each) for name, each in named.items()} == dict.fromkeys(
+        named, scene.shape
+    )
+    assert scene.shape or {*map(type, named.values())} == {float, bool}
 
 
 def test_the_result_of_one_impact_is_no_batch():
