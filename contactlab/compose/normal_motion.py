@@ -12,7 +12,8 @@ from contactlab.contracts import faults
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
 from contactlab.contracts.status import Status
-from contactlab.impact.scene import NoIndexError, Scene
+from contactlab.impact.batches import NoIndexError
+from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import shown
 
 

@@ -35,11 +35,50 @@ class Motions:
         tangential_velocity: Any
         normal_spin: Real
         index: Any
-
-        slip_velocity: Any
-        psi1: Any
-        psi: Any
+        sphere: Any
+        spin: Real
         take: Any
+
+    @property
+    def slip_velocity(self) -> Any:
+        """v_x = v + omega R, the slip velocity (20), in m/s; along t1 and t2 in space."""
+        if self.sphere is None:
+            return self.tangential_velocity
+        return self.tangential_velocity + self.spin * self.sphere.radius
+
+    @property
+    def psi_scale(self) -> Real:
+        """kappa/(mu v1) of eq. (29), psi per m/s of slip velocity; infinite without friction."""
+        if not self.shape:  # plain numbers are ten times as fast
+            unit = float(self.friction_coefficient * self.normal_speed)
+            return float(self.pair.stiffness_ratio) / unit if unit else math.inf
+        with np.errstate(divide="ignore", over="ignore"):
+            scale = np.divide(
+                self.pair.stiffness_ratio, self.friction_coefficient * self.normal_speed
+            )
+        return float(scale) if np.ndim(scale) == 0 else scale
+
+    def psi(self, velocity: Real) -> Any:
+        """Return psi of a slip velocity, eq. (29), without unit: (...), or (..., 2) in space.
+
+        Parameters
+        ----------
+        velocity : float or array
+            Slip velocity in m/s, with the sign and shape of ``slip_velocity``.
+        """
+        if isinstance(velocity, float) and not self.shape:
+            return 0.0 if velocity == 0.0 else float(velocity) * self.psi_scale
+        scale = self.psi_scale
+        if not self.planar:
+            scale = np.asarray(scale)[..., None] * self._sides
+        with np.errstate(invalid="ignore", over="ignore"):
+            value = np.where(np.asarray(velocity) == 0.0, 0.0, velocity * scale)
+        return float(value) if value.ndim == 0 else value
+
+    @property
+    def psi1(self) -> Any:
+        """Dimensionless angle of incidence, psi of the slip velocity, eqs (20) and (29)."""
+        return self.psi(self.slip_velocity)
 
     @property
     def slip_speed(self) -> Any:

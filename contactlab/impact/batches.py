@@ -1,0 +1,203 @@
+"""What a scene does as a batch of impacts: parts of it, scenes stacked, the axes of a grid."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Self
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.impact.grid import product
+from contactlab.impact.motions import Motions
+from contactlab.numeric import arrays as batch
+from contactlab.numeric.checks import check_place, refuse
+from contactlab.numeric.types import Array, Index, Numbers
+
+
+class NoIndexError(LookupError):
+    """A law asked for the index of a scene that stands for many impacts."""
+
+
+class Batches(Motions):
+    """Base of scenes: one impact or many, each with an index, perhaps over the axes of a grid."""
+
+    __slots__ = ()
+
+    if TYPE_CHECKING:
+        sphere: Any
+        encounter: Any
+        unit_friction: bool
+        _index: Any
+        _axes: tuple[tuple[str, Array], ...]
+        _varied: tuple[tuple[str, Array], ...]
+        _shapes: Any
+
+    def over(self, axes: Mapping[str, Numbers]) -> Self:
+        """Return this batch as a grid of ``axes``, whose combinations it must have in order.
+
+        Parameters
+        ----------
+        axes : mapping of str to array, shape (n_i,)
+            Values of each entry that varies, the last varying fastest.
+        """
+        lines = [(name, np.array(values, dtype=np.float64)) for name, values in axes.items()]
+        return self._with(_axes=tuple((name, batch.locked(v)) for name, v in lines))
+
+    def varying(self, entries: Mapping[str, Numbers]) -> Self:
+        """Return this batch with the values of the entries that vary in it together.
+
+        Parameters
+        ----------
+        entries : mapping of str to array
+            Values of the batch shape.
+        """
+        lines = tuple((name, batch.locked(np.array(each))) for name, each in entries.items())
+        return self._with(_varied=lines)
+
+    @property
+    def varied(self) -> Mapping[str, Array]:
+        """The values of each entry that varies, of each impact, by name; empty if not known."""
+        return MappingProxyType(product(dict(self._axes)) if self._axes else dict(self._varied))
+
+    @property
+    def axes(self) -> Mapping[str, Array]:
+        """The values of each entry that varies over a grid, by name; empty for other scenes.
+
+        ``np.unravel_index(i, scene.dimensions)`` is the index of impact ``i`` on each axis.
+        """
+        return MappingProxyType({name: batch.locked(values) for name, values in self._axes})
+
+    @property
+    def dimensions(self) -> tuple[int, ...]:
+        """The length of each axis of a grid; () for other scenes."""
+        return tuple(values.size for _, values in self._axes)
+
+    @classmethod
+    def stack(cls, scenes: Sequence[Self]) -> Self:
+        """Return one batch scene of shape (len(scenes),) from scalar scenes.
+
+        Parameters
+        ----------
+        scenes : sequence of Scene
+            Scenes of single impacts, all with bodies or all without.
+        """
+        if not isinstance(scenes, Iterable):
+            raise refuse("scenes", scenes, "must be a sequence of Scene")
+        scenes = list(scenes)
+        if not scenes:
+            raise refuse("scenes", scenes, "must hold at least one Scene")
+        for position, scene in enumerate(scenes):
+            if not isinstance(scene, cls):
+                raise refuse(f"scenes[{position}]", scene, "must be a Scene")
+            if scene.shape:
+                remedy = "batches go one after another into a folder: sweep(scenes, into=...)"
+                raise refuse(f"scenes[{position}]", scene.shape, "must be a single impact", remedy)
+            if (scene.sphere is None) != (scenes[0].sphere is None):
+                raise refuse(
+                    f"scenes[{position}]",
+                    scene,
+                    "must have a sphere if, and only if, scenes[0] has: else spin would be lost",
+                    "give all of spheres, all of other bodies, or all by psi1 and chi",
+                )
+            if scene.unit_friction != scenes[0].unit_friction:
+                raise refuse(
+                    f"scenes[{position}]",
+                    scene,
+                    "must have a friction coefficient if, and only if, scenes[0] has",
+                    "give friction_coefficient to every Scene.nondimensional, or to none",
+                )
+        kinds = {
+            tuple(type(getattr(scene.encounter, name, None)) for name in ("body", "target"))
+            for scene in scenes
+        }
+        if len(kinds) > 1:  # no one encounter has bodies of several kinds
+            scenes = [scene._checked(encounter=None) for scene in scenes]
+        if any(scene.inverse_mass is not None for scene in scenes):
+            planar = all(scene.planar for scene in scenes)
+            scenes = [scene._of_any_shape(planar) for scene in scenes]
+        stacked = batch.stacked(scenes)
+        assert isinstance(stacked, cls)
+        if stacked.shape:
+            return stacked
+        return stacked._checked(normal_speed=np.full(len(scenes), stacked.normal_speed))
+
+    def _checked(self, **entries: object) -> Self:
+        """Return this scene with other entries, which are checked."""
+        scene: Any = self
+        changed: Self = attrs.evolve(scene, **entries)
+        return changed
+
+    def _of_any_shape(self, planar: bool) -> Self:
+        """Return this scene of one impact with its inverse mass, and slip as a vector in space."""
+        slip = self.tangential_velocity
+        if self.planar and not planar:
+            slip = np.array([slip, 0.0])
+        W, pair = self.inverse_mass, self.pair
+        if W is None:
+            W = np.diag([1.0 / pair.normal_mass, *2 * [1.0 / pair.tangential_mass]])
+        return self._checked(tangential_velocity=slip, inverse_mass=W, planar=planar)
+
+    def take(self, part: Index) -> Self:
+        """Return the scene of the impacts that ``part`` indexes.
+
+        Numbers that all impacts share stay plain numbers, which are faster. Each impact keeps its
+        ``index`` in the whole batch.
+
+        Parameters
+        ----------
+        part : slice, array of bool or int, int, tuple of int or Ellipsis
+            Index of an array of the batch shape.
+        """
+        if part is ... or (
+            isinstance(part, slice) and self.shape and part == slice(0, self.shape[0])
+        ):
+            return self
+        plain = self if self.encounter is None else self._with(encounter=None)
+        taken: Self = batch.taken(plain, self.shape, part)
+        if self.encounter is not None:
+            object.__setattr__(taken, "encounter", self.encounter.take(part))
+        object.__setattr__(taken, "_varied", ())
+        object.__setattr__(taken, "shape", np.broadcast_shapes(*taken._shapes().values()))
+        object.__setattr__(taken, "_axes", ())
+        if taken.shape or isinstance(part, int | tuple):
+            return taken
+        count = np.shape(taken.index)
+        spread = taken._checked(normal_speed=np.full(count, taken.normal_speed))
+        return spread.numbered(taken.index)
+
+    @property
+    def index(self) -> Any:
+        """Index of each impact in the whole batch, integers of the batch shape; 0 for one impact.
+
+        ``take``, blocks, chunks and workers keep the index, which a law may use as a random seed.
+        """
+        if self._index is None:
+            raise NoIndexError("the scene stands for many impacts")
+        return self._index
+
+    def unnumbered(self) -> Self:
+        """Return this scene without ``index``: a law that asks for it raises ``NoIndexError``."""
+        return self._with(_index=None)
+
+    def numbered(self, index: int | np.integer | Sequence[int] | NDArray[np.integer]) -> Self:
+        """Return this scene with another ``index`` of its impacts in the whole batch.
+
+        Parameters
+        ----------
+        index : int or array of int
+            Indices, of the batch shape.
+
+        Raises
+        ------
+        ValueError
+            If ``index`` has another shape, or its numbers are not integers.
+        """
+        check_place("index", index)
+        indices = np.array(index)
+        if indices.shape != self.shape or indices.dtype.kind not in "iu":
+            rule = f"must be whole numbers of the shape {self.shape}"
+            raise refuse("index", index, rule, "such as scene.index of the whole batch")
+        return self._with(_index=indices if self.shape else int(indices))
