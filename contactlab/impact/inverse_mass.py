@@ -73,7 +73,9 @@ def ways(tensor: Rows, speed: Real, slip: Vector, cross_stiffness_ratio: Real = 
     pressed = hypotenuse(W[0][1], W[0][2]) > ROUNDING * size
     turned = abs((W[1][1] * x + W[1][2] * y) * y - (W[2][1] * x + W[2][2] * y) * x)
     leaves = abs(y) > ROUNDING * (abs(x) + abs(speed))
-    turns = turned > ROUNDING * W[1][1] * (x * x + y * y)
+    moved = x * x + y * y
+    # across its line slip changes by a share of itself: a slip that is rounding turns by nothing
+    turns = turned > ROUNDING * W[1][1] * (moved + square_root(moved) * abs(speed))
     turns = turns | (leaves & (cross_stiffness_ratio != 1.0))
     leaves = leaves | (abs(W[0][2]) > ROUNDING * size) | (abs(W[1][2]) > ROUNDING * W[1][1])
     return chosen(pressed | turns, chosen(leaves, SPATIAL, PLANAR), CENTRAL)

@@ -102,7 +102,8 @@ static inline int contactlab_bodies_line(const contactlab_rigid *const *bodies, 
   if (fabs(contactlab_bodies_dot(slip, across)) > little * (approach + fabs(contactlab_bodies_dot(slip, t))))
     return CONTACTLAB_BODIES_TURNS;
   contactlab_bodies_yield(bodies, t, yielded);
-  if (fabs(contactlab_bodies_dot(yielded, across)) > little * contactlab_bodies_dot(yielded, t))
+  along = *coupled ? 1 : 1 + approach / slips; /* across its line slip changes by a share of itself */
+  if (fabs(contactlab_bodies_dot(yielded, across)) > little * along * contactlab_bodies_dot(yielded, t))
     return CONTACTLAB_BODIES_TURNS;
   return CONTACTLAB_IMPACT_DONE;
 }

@@ -42,3 +42,27 @@ def test_no_inverse_mass_is_refused_or_taken_but_by_its_eigenvalues():
             Scene(None, None, inverse_mass=inverse, **entries)
     for inverse in (W[right], *W[right]):
         assert Scene(None, None, inverse_mass=inverse, **entries).shape == inverse.shape[:-2]
+
+
+def turned_poles(count, *slip):
+    """Bodies of three moments that land on a pole, in any frame; slip along two of their axes."""
+    random = np.random.default_rng(2)
+    axes = np.linalg.qr(random.normal(size=(count, 3, 3)))[0]
+    axes[:, :, 0] *= np.sign(np.linalg.det(axes))[:, None]
+    normal, turn = axes[:, :, 2], random.uniform(0.0, np.pi, count)
+    cosine, sine = np.cos(turn)[:, None], np.sin(turn)[:, None]
+    about = np.stack([cosine * axes[:, :, 0] + sine * axes[:, :, 1],
+                      cosine * axes[:, :, 1] - sine * axes[:, :, 0], normal], axis=-1)  # fmt: skip
+    body = RigidBody(mass=0.3, principal=(1e-4, 2e-4, 3e-4), axes=about,
+                     material=Material.named("steel"), curvature_radius=0.02)  # fmt: skip
+    return Encounter(body, HalfSpace(body.material), 0.3, normal=normal, contact=0.05 * normal,
+                     velocity=1.3 * normal + about[:, :, :2] @ slip)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("slip", "central"),
+    [((0.0, 0.0), True), ((1e-13, 1e-13), True), ((1e-9, 0.0), True), ((1e-6, 1e-6), False)],
+)
+def test_a_slip_that_is_rounding_turns_by_nothing(slip, central):
+    """Its rounding has no direction beside the axes of W: the impact is central, and exact."""
+    assert (turned_poles(50, *slip).scene.inverse_mass is None) == central

@@ -7,6 +7,7 @@ import pytest
 
 import contactlab
 from contactlab import Encounter, HalfSpace, Material, RigidBody, Simulation, Sphere, collide
+from tests.impact.test_inverse_mass import turned_poles
 from tests.kernels.test_kernels import needs_c, program
 
 pytestmark = needs_c
@@ -230,6 +231,17 @@ def test_the_unit_of_mass_and_the_order_of_bodies_do_not_matter(bounced):
     swapped[:, 31:37], swapped[:, 37:43] = rows[:, 37:43], rows[:, 31:37]
     _, again, _ = bounced(swapped)
     assert again[:, :6] == pytest.approx(found[:, 6:], rel=1e-9, abs=1e-9)
+
+
+def test_a_slip_that_is_rounding_turns_by_nothing(bounced):
+    encounter, rows = turned_poles(60, 1e-9, 0.0), np.zeros((60, BODY * 2 + 2 + 15))
+    rows[:, 0], rows[:, 26], rows[:, 27] = encounter.body.mass, 0.3, 0.8
+    rows[:, 1:10] = np.linalg.inv(encounter.body.inertia).reshape(60, 9)
+    rows[:, 10:13], rows[:, 28:31] = encounter.contact, encounter.normal
+    rows[:, 31:34] = encounter.velocity
+    status, moved, _ = bounced(rows)
+    assert not status.any()
+    assert moved[:, :3] == pytest.approx(-encounter.velocity, abs=1e-8)
 
 
 def test_without_friction_any_two_bodies_rebound(bounced):
