@@ -52,7 +52,8 @@ class Along(Way):
     def prepare(self, history: bool | str) -> Prepared:
         """Return normal motion, answers and columns of the plan, or raise LawFaultError."""
         scene, laws = self.scene, self.laws
-        self.refuse_history(history, own_instants=not laws.integrator.common_instants)
+        if history:
+            self.refuse_history(history, common_instants=laws.integrator.common_instants)
         normal = normal_or_failed(laws.normal, scene)
         with faults.blaming(laws.tangential):
             accuracy = laws.integrator.accuracy

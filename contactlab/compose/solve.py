@@ -22,16 +22,15 @@ from contactlab.outcome.plan import PlanColumns
 
 def ways(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
     """Return the ways in which a scene is solved; ``as_one`` is that of ``Scene.parts``."""
+    found: list[Way] = []
     # Where slip turns laws are asked first: their refusal and its remedy hold for the batch.
-    parts = reversed(scene.parts(as_one=as_one))
-    return [_way(laws, where, part) for where, part in parts][::-1]
-
-
-def _way(laws: Laws, where: object, part: Scene) -> Way:
-    """Return the way of impacts that are solved alike."""
-    if part.inverse_mass is None:
-        return Along(where, part, laws)
-    return Together(where, part, stand_ins.together(laws, part))
+    for where, part in reversed(scene.parts(as_one=as_one)):
+        if part.inverse_mass is None:
+            found.append(Along(where, part, laws))
+        else:
+            found.append(Together(where, part, stand_ins.together(laws, part)))
+    found.reverse()
+    return found
 
 
 def accepted(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
@@ -39,8 +38,9 @@ def accepted(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
     found = ways(laws, scene, as_one=as_one)
     for _, part, used in found:
         central = part.central
-        for law in used:
-            law.accept(central)
+        used.normal.accept(central)
+        used.tangential.accept(central)
+        used.integrator.accept(central)
     return found
 
 

@@ -65,8 +65,9 @@ class Together(Way):
     def prepare(self, history: bool | str) -> Prepared:
         """Return the approach without friction and columns of the plan, or raise LawFaultError."""
         scene, laws = self.scene, self.laws
-        own = laws.tangential.together or not laws.integrator.common_instants
-        self.refuse_history(history, own_instants=own)
+        if history:
+            common = laws.integrator.common_instants and not laws.tangential.together
+            self.refuse_history(history, common_instants=common)
         normal = normal_or_failed(laws.normal, scene.central)
         with faults.blaming(laws.tangential):
             bound: Any = laws.tangential.books_bound(normal.scene)

@@ -141,7 +141,7 @@ class Way(Entries, ABC):
     def outcome(self, history: bool | str, recorder: Recorder | None) -> tuple[PlanColumns, Motion]:
         """Return columns of the plan, and motion; a law that raises costs its impacts only."""
         scene, laws = self.scene, self.laws
-        divisible = recorder is None and math.prod(scene.shape) > 1
+        divisible = bool(scene.shape) and recorder is None and math.prod(scene.shape) > 1
         if divisible and scene.shape[0] > self.at_a_time:
             return self.cut(blocks(scene.shape[0], int(self.at_a_time)))
         try:
@@ -176,9 +176,9 @@ class Way(Entries, ABC):
             return motion
         return motion.turned(self.line(scene))
 
-    def refuse_history(self, history: bool | str, *, own_instants: bool) -> None:
+    def refuse_history(self, history: bool | str, *, common_instants: bool) -> None:
         """Refuse the history of a batch whose impacts have instants of their own."""
-        if history and self.scene.shape and own_instants:
+        if self.scene.shape and not common_instants:
             rule = f"impacts of a batch have instants of their own under {self.laws.integrator!r}"
             raise refuse("history", history, rule, "run them one by one")
 
