@@ -49,6 +49,24 @@ def check_enough(problem: Problem) -> None:
         )
 
 
+def check_defined(problem: Problem) -> None:
+    """Refuse a number of a quantity that has none there, such as e_t without tangential velocity.
+
+    Raises
+    ------
+    ValueError
+        With the quantity and the impact.
+    """
+    ends = np.array([[parameter.starts[0] for parameter in problem.model.parameters]])
+    for name, residuals in problem.residuals(ends).items():
+        lost = np.flatnonzero(np.isfinite(problem.measured[name]) & ~np.isfinite(residuals[0]))
+        if lost.size:
+            raise ValueError(
+                f"{name}: impact {lost[0] + 1} has none to be measured: it is a quotient, by zero "
+                "there, as of an impact without tangential velocity; leave this cell empty"
+            )
+
+
 def check_scatter(problem: Problem) -> None:
     """Refuse a quantity with too few numbers to estimate its scatter.
 

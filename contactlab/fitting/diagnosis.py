@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Collection, Mapping
 
 import attrs
 import numpy as np
@@ -29,6 +30,8 @@ LARGE_CHI_SQUARE = 2.0
 SMALL_RATIO = 0.5
 #: A value lies at the end of its range if nearer than this share of the range.
 AT_END = 1e-6
+#: Least impacts of a table whose copies are told.
+FEWEST_ROWS = 3
 
 
 @attrs.frozen(kw_only=True)
@@ -180,6 +183,21 @@ def error_notes(problem: Problem, values: Array) -> list[str]:
                 f"{name}: residuals are {ratio:.2g} times the errors given: these are too large; "
                 f"look at the unit of {name}_error, and whether they are standard errors"
             )
+    return notes
+
+
+def table_notes(table: Measurements, parameters: Collection[str]) -> list[str]:
+    """Return sentences on columns that are fitted, and on a table that is there several times."""
+    notes = [
+        f"the column {name} is not used: it is fitted" for name in table.given if name in parameters
+    ]
+    columns = [*table.given.values(), *table.measured.values(), *table.errors.values()]
+    counts = [*Counter(row.tobytes() for row in np.stack(columns, axis=1)).values()]
+    if len(counts) >= FEWEST_ROWS and 1 < min(counts) == max(counts):
+        notes.append(
+            f"each impact is there {counts[0]} times, to the last digit: copies tell nothing "
+            "new, and make the intervals too narrow"
+        )
     return notes
 
 

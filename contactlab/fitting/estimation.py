@@ -21,6 +21,7 @@ from contactlab.fitting.diagnosis import (
     error_notes,
     lost,
     moved,
+    table_notes,
 )
 from contactlab.fitting.fit_result import Estimate, Fit
 from contactlab.fitting.measurements import Measurements, read_measurements
@@ -120,6 +121,8 @@ def fit(
         laws = default_laws(parameters)
     problem = _problem(table, scene, parameters, laws)
     determined.check_enough(problem)
+    determined.check_defined(problem)
+    said = (*table.notes, *table_notes(table, parameters))
     counted = None if samples else progress
     values, *others = _solutions(problem, counted)
     left_out: tuple[str, ...] = ()
@@ -152,7 +155,7 @@ def fit(
         *(() if notes else assumed(every, table.given, values, reaches)),
     )
     aic = every.criterion(values)  # over all numbers, so that laws that leave some out compare
-    outcome = attrs.evolve(outcome, notes=(*table.notes, *notes), cautions=warned, aic=aic)
+    outcome = attrs.evolve(outcome, notes=(*said, *notes), cautions=warned, aic=aic)
     if counted is not None:
         counted(1, 1)
     if not samples:
