@@ -176,7 +176,13 @@ def _bounces(film: dict[str, Array]) -> Measurements:
         )
     rows = [_row(*pair, scatter) for pair in pairs]
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    measured = [name for name in columns if f"{name}_error" in columns]
+    told = [name for name in columns if f"{name}_error" in columns]
+    measured = [name for name in told if columns[f"{name}_error"].all()]
+    notes += [
+        f"{name} is left out: its positions have no scatter, as a column of zeros has none"
+        for name in told
+        if name not in measured
+    ]
     return Measurements(
         given={name: columns[name] for name in GIVEN if name in columns},
         measured={name: columns[name] for name in measured},

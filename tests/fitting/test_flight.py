@@ -149,6 +149,16 @@ def test_a_scale_off_by_five_percent_and_short_flights_are_told():
         read_flight(few)
 
 
+def test_a_film_of_one_vertical_has_a_restitution():
+    """Its column of zeros has no scatter to weigh it by."""
+    frames, _ = film(4, restitution=0.9)
+    frames["x (m)"] = np.zeros_like(frames["x (m)"])
+    found = fit(read_flight(frames), BODIES, parameters=["restitution"],
+                quantities=["rebound_normal_velocity"])  # fmt: skip
+    assert found["normal.restitution"] == pytest.approx(0.9, abs=0.01)
+    assert "rebound_tangential_velocity is left out" in found.notes[0]
+
+
 def test_the_command(tmp_path, capsys):
     path, bodies = tmp_path / "film.csv", tmp_path / "bodies.toml"
     frames, _ = film(5, restitution=0.85)
