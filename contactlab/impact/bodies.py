@@ -20,7 +20,7 @@ from contactlab.numeric.checks import (
     refuse,
 )
 from contactlab.numeric.names import arguments_stated
-from contactlab.numeric.types import Numbers, Real
+from contactlab.numeric.types import Either, Numbers, Real
 
 #: K of a solid homogeneous sphere: K² = 2/5.
 SOLID_SPHERE_GYRATION_RATIO = math.sqrt(0.4)
@@ -61,10 +61,10 @@ class Sphere:
         If a value is out of range, or neither mass nor density is given.
     """
 
-    radius: Real = quantity("m", rule=RADIUS, empty=True)
+    radius: Either = quantity("m", rule=RADIUS, empty=True)
     material: Material = _material()
-    mass: Real = quantity("kg", rule=POSITIVE, default=None, kw_only=True, empty=True)
-    gyration_ratio: Real = quantity(
+    mass: Either = quantity("kg", rule=POSITIVE, default=None, kw_only=True, empty=True)
+    gyration_ratio: Either = quantity(
         "1", rule=GYRATION, default=SOLID_SPHERE_GYRATION_RATIO, kw_only=True
     )
 
@@ -242,24 +242,24 @@ class Pair:
         )
 
 
-def normal_compliance(material: Material) -> Real:
+def normal_compliance(material: Material) -> Either:
     """Return (1-nu)/(2G) = (1-nu²)/E, one body's part of 1/E*, in 1/Pa."""
     return (1.0 - material.poisson_ratio) / (2.0 * material.shear_modulus)
 
 
-def coupling_compliance(sphere: Material, target: Material) -> Real:
+def coupling_compliance(sphere: Material, target: Material) -> Either:
     """Return half the difference of (1-2nu)/(2G), which is Dundurs' beta over E*, in 1/Pa."""
     first = (1.0 - 2.0 * sphere.poisson_ratio) / (2.0 * sphere.shear_modulus)
     second = (1.0 - 2.0 * target.poisson_ratio) / (2.0 * target.shear_modulus)
     return 0.5 * (first - second)
 
 
-def shear_compliance(material: Material) -> Real:
+def shear_compliance(material: Material) -> Either:
     """Return (2-nu)/(4G), one body's part of 1/G*, in 1/Pa."""
     return (2.0 - material.poisson_ratio) / (4.0 * material.shear_modulus)
 
 
-def _inverse_tangential_mass(sphere: Sphere) -> Real:
+def _inverse_tangential_mass(sphere: Sphere) -> Either:
     """Return (1 + 1/K²)/m, one body's part of 1/M_t, in 1/kg, eq. (21)."""
     return (1.0 + 1.0 / sphere.gyration_ratio**2) / sphere.mass
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from contactlab.numeric.checks import POISSON, POSITIVE, quantity, real, refuse
 from contactlab.numeric.names import arguments_told, nearest
-from contactlab.numeric.types import Numbers, Real
+from contactlab.numeric.types import Either, Numbers
 
 OWN = "or give your own: Material(young_modulus=..., poisson_ratio=..., density=...)"
 #: Names in common use, with the name in the collection.
@@ -49,10 +49,10 @@ class Material:
         If a value is out of range, or both moduli or neither are given.
     """
 
-    shear_modulus: Real = quantity("Pa", rule=POSITIVE)
-    poisson_ratio: Real = quantity("1", rule=POISSON)
-    density: Real | None = quantity("kg/m³", rule=POSITIVE, default=None, unknown=True)
-    yield_stress: Real | None = quantity("Pa", rule=POSITIVE, default=None, unknown=True)
+    shear_modulus: Either = quantity("Pa", rule=POSITIVE)
+    poisson_ratio: Either = quantity("1", rule=POISSON)
+    density: Either = quantity("kg/m³", rule=POSITIVE, default=None, unknown=True)
+    yield_stress: Either = quantity("Pa", rule=POSITIVE, default=None, unknown=True)
 
     def __init__(
         self,
@@ -106,7 +106,7 @@ class Material:
         return entry(name).material()
 
     @property
-    def young_modulus(self) -> Real:
+    def young_modulus(self) -> Either:
         """E = 2 G (1 + nu), in Pa."""
         return 2.0 * self.shear_modulus * (1.0 + self.poisson_ratio)
 

@@ -14,7 +14,7 @@ from contactlab.impact.material import Material
 from contactlab.numeric.arrays import chosen, common_shape, known, some, taken
 from contactlab.numeric.checks import POSITIVE, Rule, instance, key, quantity, real, refuse
 from contactlab.numeric.names import arguments_stated
-from contactlab.numeric.types import Array, Index, Numbers, Real
+from contactlab.numeric.types import Array, Either, Index, Numbers, Real
 from contactlab.numeric.vectors import components, dot
 
 #: Asymmetry of an inertia, and excess of a principal moment over the sum of the other two, that
@@ -136,17 +136,17 @@ class RigidBody:
         without an axis.
     """
 
-    mass: Real = quantity("kg", rule=POSITIVE)
+    mass: Either = quantity("kg", rule=POSITIVE)
     _inertia: Any = _array("kg m²", (3, 3))
     material: Material = instance(
         Material, remedy="make one, Material(...), or by its name: Material.named('steel')"
     )
-    curvature_radius: Real = _curved()
+    curvature_radius: Either = _curved()
     principal: Any = _array("kg m²", (3,))
     axes: Any = _array("1", (3, 3))
-    cross_radius: Real | None = _curved(default=None)
+    cross_radius: Either = _curved(default=None)
     curvature_axis: Any = _array("1", (3,))
-    bending_period: Real | None = quantity("s", rule=POSITIVE, default=None, unknown=True)
+    bending_period: Either = quantity("s", rule=POSITIVE, default=None, unknown=True)
     #: Inertia about the centre of mass, in kg m², shape (..., 3, 3), whatever was given.
     inertia: Any = attrs.field(init=False, eq=False, repr=False)
     #: Batch shape of mass, inertia and curvature together.
@@ -212,7 +212,7 @@ class RigidBody:
             raise refuse("curvature_axis", axis.tolist(), "must not be zero")
 
     @property
-    def crossing(self) -> Real:
+    def crossing(self) -> Either:
         """Radius of curvature across ``curvature_axis``, in m."""
         return self.curvature_radius if self.cross_radius is None else self.cross_radius
 

@@ -5,9 +5,10 @@ arrays come it is an ``Array``, and where only numbers come a ``float``. ``Mask`
 bool; ``Index`` takes a part of a batch; ``Places`` are indices in an array. A function that gives a
 float for a float and an array for an array is annotated with ``Kind`` on both sides, and one that
 gives back whatever it is given with ``Tree``. Numbers of a result are ``Each``, those of its motion
-``Either``. At a door, where a user's numbers are checked, an argument is ``Numbers``: whatever
-NumPy makes real numbers of. An array of any type of NumPy is ``AnyArray``. What may be anything is
-an ``object``; ``Any`` stays where nothing is known and something is done with it.
+and of bodies ``Either``. At a door, where a user's numbers are checked, an argument is
+``Numbers``: whatever NumPy makes real numbers of. An array of any type of NumPy is ``AnyArray``.
+What may be anything is an ``object``; ``Any`` stays where nothing is known and something is done
+with it.
 """
 
 from __future__ import annotations
@@ -26,8 +27,8 @@ Real: TypeAlias = float | Array
 Mask: TypeAlias = bool | np.bool_ | NDArray[np.bool_]
 #: Indices in an array.
 Places: TypeAlias = NDArray[np.intp]
-#: A ``Real`` of a motion, which users read: checkers take it for either. A user knows which it is,
-#: and as a ``Real`` most programs would have to say so in each line.
+#: A ``Real`` of a body, a material or a motion, which programs read: checkers take it for either.
+#: The user knows which it is, and of a ``Real`` would have to say so in each line.
 Either: TypeAlias = Any
 #: What takes a part of a batch.
 Index: TypeAlias = int | slice | EllipsisType | tuple[int, ...] | Mask | Places

@@ -32,10 +32,10 @@ RENAMED = {
 }
 
 
-def run(*words: object, **keywords: object) -> None:
+def run(*words: object) -> None:
     """Print a command and run it."""
     print("+", *words)
-    subprocess.run([str(word) for word in words], check=True, **keywords)
+    subprocess.run([str(word) for word in words], check=True)
 
 
 def same_year(sources: Path, wheel: Path) -> None:
@@ -88,7 +88,7 @@ def plugin(lammps: Path, build: Path, wheel: Path | None, mpi: str) -> Path:
 
 def main() -> None:
     """Build what the arguments ask for, and print its path."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("what", choices=("merge", "sources", "plugin"))
     parser.add_argument("lammps", type=Path, help="folder of the sources of LAMMPS")
     parser.add_argument("--build", type=Path, default=Path("build"))

@@ -11,9 +11,10 @@ Examples
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from engine import DUMP, Array, Engine, Grains, arguments, engine, folder, friction, read, write
@@ -85,7 +86,7 @@ def run(lammps: Engine, text: str, grains: Grains, low: Array, high: Array) -> A
         return read(Path(name) / "out")
 
 
-def whole(lammps: Engine, **options: object) -> Array:
+def whole(lammps: Engine, **options: Any) -> Array:
     """Return the answers of one run of STEPS steps."""
     grains, low, high = cluster()
     text = script(lammps, **options) + DUMP.format(every=STEPS) + f"run {STEPS}\n"
@@ -136,7 +137,8 @@ def restarted(lammps: Engine, at: int, first: str, then: str) -> Array:
 def swapped(lammps: Engine, law: str) -> Array:
     """Return the answers of the same grains numbered backwards, in the order of the first run."""
     grains, low, high = cluster()
-    backwards = Grains(*(column[::-1] for column in grains))
+    columns: Any = [column[::-1] for column in grains]
+    backwards = Grains(*columns)
     text = script(lammps, law=law, sort=False) + DUMP.format(every=STEPS) + f"run {STEPS}\n"
     return run(lammps, text, backwards, low, high)[::-1]
 
@@ -153,7 +155,7 @@ def touching(lammps: Engine, law: str) -> Array:
 
 def main() -> int:
     """Print each check for elastic springs and for springs with loss; return 1 if one fails."""
-    parser = arguments(__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--two", help="the command with two processes")
     given = parser.parse_args()
     lammps = engine(given)
@@ -206,7 +208,7 @@ def checked(lammps: Engine, two: Engine | None, law: str) -> bool:
 def refusing(lammps: Engine) -> bool:
     """Print what must be refused; return whether something is not."""
     model = MODEL.format("tangential mindlin_springs {}")
-    refusals: dict[str, tuple[Callable[[], object], str]] = {
+    refusals: Mapping[str, tuple[Callable[[], object], str]] = {
         f"restart of {first} with {then}": (
             partial(restarted, lammps, STEPS // 8, first, then), "history of another"
         )

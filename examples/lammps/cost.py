@@ -48,7 +48,9 @@ def packed(lammps: Engine, count: int, place: Path) -> None:
     """Write a data file of a dense pack: loose grains, pressed together and sheared a little."""
     random = np.random.default_rng(1)
     side = int(np.ceil(count ** (1 / 3)))
-    lattice = np.stack(np.meshgrid(*[np.arange(side)] * 3), axis=-1).reshape(-1, 3)[:count]
+    lattice = np.stack(np.meshgrid(*[np.arange(side, dtype=float)] * 3), axis=-1).reshape(-1, 3)[
+        :count
+    ]
     pitch = 2.25 * RADIUS
     diameter = 2.0 * RADIUS * random.uniform(0.85, 1.15, count)
     grains = Grains(
@@ -93,13 +95,14 @@ run {steps}
 
 def main() -> None:
     """Print ratios."""
-    parser = arguments(__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--grains", type=int, default=5000)
     parser.add_argument("--steps", type=int, default=1000)
     parser.add_argument("--repeats", type=int, default=5)
     given = parser.parse_args()
     lammps = engine(given)
     times: dict[str, list[float]] = {law: [] for law in LAWS}
+    contacts = 0.0
     with folder() as name:
         packed(lammps, given.grains, Path(name))
         for _ in range(given.repeats):

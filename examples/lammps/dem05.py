@@ -66,7 +66,7 @@ def in_lammps(
 
 def main() -> None:
     """Print a table for each restitution."""
-    given = arguments(__doc__.splitlines()[0]).parse_args()
+    given = arguments(__doc__).parse_args()
     lammps = engine(given)
     for restitution in (1.0, 0.9):
         true = exact(restitution)

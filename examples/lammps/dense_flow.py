@@ -33,7 +33,9 @@ def sheared(lammps: Engine, law: str, mu: float, count: int, seed: int, filled: 
     """Return shear stress over pressure, scaled pressure and contacts a grain of one pack."""
     random = np.random.default_rng(seed)
     side = int(np.ceil(count ** (1 / 3)))
-    lattice = np.stack(np.meshgrid(*[np.arange(side)] * 3), axis=-1).reshape(-1, 3)[:count]
+    lattice = np.stack(np.meshgrid(*[np.arange(side, dtype=float)] * 3), axis=-1).reshape(-1, 3)[
+        :count
+    ]
     pitch = 2.5 * RADIUS
     diameter = 2.0 * RADIUS * random.uniform(0.85, 1.15, count)
     grains = Grains(
@@ -85,7 +87,7 @@ run {steps[1]}
 
 def main() -> None:
     """Print the means with their errors, and draw them."""
-    parser = arguments(__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--grains", type=int, default=400)
     parser.add_argument("--packs", type=int, default=4)
     parser.add_argument("--mu", type=float, nargs="+", default=[0.1, 0.3, 0.5])

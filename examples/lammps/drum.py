@@ -107,7 +107,7 @@ run {begun + measured + rest}
 """
     edge = np.array([RADIUS, RADIUS, 0.0]) * 1.01
     with folder() as name:
-        write(grains, Path(name) / "data", -edge, [*edge[:2], length])
+        write(grains, Path(name) / "data", -edge, np.array([*edge[:2], length]))
         text = lammps.run(script, Path(name))
     number = r" +(\S+)"
     rows = np.array(re.findall(rf"^ *\d+{number * 3} *$", text, flags=re.MULTILINE), float)
@@ -125,7 +125,7 @@ def numbers(drum: Drum) -> Array:
 
 def main() -> None:
     """Print the means with their errors."""
-    parser = arguments(__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--grains", type=int, default=2000)
     parser.add_argument("--fillings", type=int, default=4)
     given = parser.parse_args()

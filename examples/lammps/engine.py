@@ -68,9 +68,9 @@ def _absolute(word: str) -> str:
     return str(Path(word).absolute()) if "/" in word and Path(word).exists() else word
 
 
-def arguments(description: str) -> argparse.ArgumentParser:
-    """Return a parser of the engine's options."""
-    parser = argparse.ArgumentParser(description=description)
+def arguments(description: str | None) -> argparse.ArgumentParser:
+    """Return a parser of the engine's options, with the first line of a description."""
+    parser = argparse.ArgumentParser(description=(description or "").partition("\n")[0])
     parser.add_argument("--lmp", default="lmp", help='command, such as "mpirun -np 2 build/lmp"')
     parser.add_argument("--plugin", type=Path, help="springsplugin.so, for a program without it")
     return parser

@@ -12,6 +12,7 @@ Examples
 from __future__ import annotations
 
 import re
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -96,7 +97,8 @@ def direct(mu: float, count: int, seed: int) -> float:
     velocity, spin = beginning(count, seed)
     material = Material(young_modulus=YOUNG, poisson_ratio=POISSON, density=DENSITY)
     ball = Sphere(RADIUS, material)
-    energy, ratio = [], []
+    energy: list[float] = []
+    ratio: list[float] = []
     while not energy or energy[0] / energy[-1] < np.exp(COOLED[1]):
         energy.append(np.sum(velocity**2))
         ratio.append(0.4 * RADIUS**2 * np.sum(spin**2) / energy[-1])
@@ -123,7 +125,7 @@ def direct(mu: float, count: int, seed: int) -> float:
 
 def main() -> None:
     """Print the ratios with their errors, and draw them."""
-    parser = arguments(__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--grains", type=int, default=1000)
     parser.add_argument("--gases", type=int, default=4)
     parser.add_argument("--mu", type=float, nargs="+", default=[1.0])
@@ -133,9 +135,9 @@ def main() -> None:
     found: dict[float, dict[str, tuple[float, float]]] = {}
     for mu in given.mu:
         print(f"mu = {mu}")
-        gases = {"direct": lambda seed, mu=mu: direct(mu, 10 * given.grains, seed)}
+        gases = {"direct": partial(direct, mu, 10 * given.grains)}
         for law in LAWS:
-            gases[law] = lambda seed, law=law, mu=mu: in_lammps(lammps, law, mu, given.grains, seed)
+            gases[law] = partial(in_lammps, lammps, law, mu, given.grains)
         found[mu] = {}
         for name, gas in gases.items():
             ratios = np.array([gas(seed) for seed in range(given.gases)])

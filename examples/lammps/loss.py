@@ -128,11 +128,11 @@ run {count(steps)}
 
 def kernel(path: Path) -> ctypes.CDLL:
     """Compile the kernel in a folder, and return it as a library."""
-    words = [sys.executable, "-m", "contactlab", "kernel", "--out", path]
+    words = [sys.executable, "-m", "contactlab", "kernel", "--out", str(path)]
     subprocess.run(words, check=True, capture_output=True)
     (path / "step.c").write_text(STEP)
-    words = ["cc", "-std=c99", "-O2", "-fPIC", "-shared", path / "step.c", "-o", path / "step.so"]
-    subprocess.run([*words, "-lm"], check=True)
+    files = [str(path / "step.c"), "-o", str(path / "step.so")]
+    subprocess.run(["cc", "-std=c99", "-O2", "-fPIC", "-shared", *files, "-lm"], check=True)
     library = ctypes.CDLL(str(path / "step.so"))
     number, numbers = ctypes.c_double, ctypes.POINTER(ctypes.c_double)
     library.springs_step.restype = number
@@ -194,7 +194,7 @@ def alone(library: ctypes.CDLL, springs: int, steps: int) -> Array:
 
 def main() -> None:
     """Print a table of errors."""
-    parser = arguments(__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--laws", nargs="+", default=LAWS, help='such as "mindlin 1" (xt), lossy8')
     parser.add_argument("--steps", type=int, default=50, help="steps a contact")
     given = parser.parse_args()

@@ -197,7 +197,8 @@ def style(lammps: Path) -> int:
     names = (*SUB_MODEL, UNIT_TEST, *IMPACTS, INPUT, *(Path(page).name for page in PAGES))
     told = []
     for check in ("whitespace", "permissions", "homepage", "errordocs", "fmtlib"):
-        words = [sys.executable, lammps / "tools" / "coding_standard" / f"{check}.py", lammps]
+        script = lammps / "tools" / "coding_standard" / f"{check}.py"
+        words = [sys.executable, str(script), str(lammps)]
         run = subprocess.run(words, capture_output=True, text=True, check=False)
         told += [line for line in run.stdout.splitlines() if any(name in line for name in names)]
     granular = lammps / "src" / "GRANULAR"

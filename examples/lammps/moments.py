@@ -114,7 +114,7 @@ def rolling(lammps: Engine) -> None:
 
 def main() -> None:
     """Print both tables."""
-    lammps = engine(arguments(__doc__.splitlines()[0]).parse_args())
+    lammps = engine(arguments(__doc__).parse_args())
     torsion(lammps)
     rolling(lammps)
 

@@ -14,6 +14,7 @@ Examples
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from engine import (
@@ -87,7 +88,7 @@ run {count}
 def rows(count: int, pitch: float) -> Array:
     """Return places on a square lattice in the plane z = 0, shape (count, 3)."""
     side = int(np.ceil(np.sqrt(count)))
-    place = np.arange(count)
+    place = np.arange(count, dtype=float)
     return pitch * np.stack([place % side, place // side, 0.0 * place], axis=1)
 
 
@@ -191,13 +192,14 @@ def in_space(
 
 def main() -> None:
     """Print a table of errors."""
-    parser = arguments(__doc__.splitlines()[0])
+    parser = arguments(__doc__)
     parser.add_argument("--laws", nargs="+", default=[*OWN, "springs4", "springs8", "springs12"])
     parser.add_argument("--steps", type=int, default=50, help="steps a contact")
     parser.add_argument("--newton", choices=("on", "off"), default="off")
     parser.add_argument("--save", type=Path, help="velocities, to compare two runs")
     given = parser.parse_args()
-    lammps, kept = engine(given), {}
+    lammps = engine(given)
+    kept: dict[str, Any] = {}
     print(f"{'law':24} {'wall: worst':>12} {'rms':>8} {'pairs: worst':>14} {'rms':>8}")
     for law in given.laws:
         cells = []

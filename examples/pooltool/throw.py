@@ -94,7 +94,7 @@ def draw(axes: Any) -> None:
 
 def main() -> None:
     """Print three tables, and draw."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--figure", type=Path, help="picture of the throw, at 1.34 m/s")
     figure = parser.parse_args().figure
     print("throw (°)" + "".join(f"{name:>12}" for name in BALLS))

@@ -5,6 +5,7 @@ radius, mass and moment of inertia that they are given, here those of a sphere.
 """
 
 import math
+from typing import Any
 
 import pymunk
 
@@ -17,7 +18,7 @@ ROUND, FLAT = 1, 2  # collision types
 SLOW = 0.05  # m/s of approach, below which pymunk keeps the contact, and the ball rests
 
 
-def bounce(arbiter, _space, _data):
+def bounce(arbiter: Any, _space: Any, _data: Any) -> None:
     """Give a ball that meets the floor its velocity and spin after the impact."""
     body, normal = arbiter.shapes[0].body, arbiter.contact_point_set.normal
     arbiter.process_collision = body.velocity.dot(normal) < SLOW
@@ -31,7 +32,9 @@ def bounce(arbiter, _space, _data):
     body.velocity, body.angular_velocity = tuple(made.velocity[:2]), made.spin[2]
 
 
-def thrown(velocity, spin, *, ours=True, gravity=9.81):
+def thrown(
+    velocity: tuple[float, float], spin: float, *, ours: bool = True, gravity: float = 9.81
+) -> tuple[Any, Any]:
     """Return a space with a floor and the body of a ball that flies towards it."""
     space = pymunk.Space()
     space.gravity = 0.0, -gravity

@@ -4,14 +4,23 @@ Run with ``python event_driven_gas.py``. Every event costs a look at all pairs: 
 hundred spheres keep the times of the pairs whose spheres did not collide.
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterator
+
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab import Encounter, Material, Sphere, collide
+
+Array = NDArray[np.float64]
 
 BALL = Sphere(0.01, Material(young_modulus=5e9, poisson_ratio=0.3, density=1200.0))
 
 
-def beginning(side=3, filled=0.05, random=None):
+def beginning(
+    side: int = 3, filled: float = 0.05, random: np.random.Generator | None = None
+) -> tuple[float, Array, Array, Array]:
     """Return the edge of a periodic box and places, velocities and spins, shape (n, 3), in it."""
     random = np.random.default_rng(0) if random is None else random
     count = side**3
@@ -22,8 +31,13 @@ def beginning(side=3, filled=0.05, random=None):
     return edge, (lattice + 0.5) * edge / side, velocity - velocity.mean(axis=0), spin
 
 
-def next_pair(place, velocity, edge):
-    """Return the time until two spheres touch, both of them, and the normal from one to other."""
+def next_pair(
+    place: Array, velocity: Array, edge: float
+) -> tuple[float, tuple[int, int, Array] | None]:
+    """Return the time until two spheres touch, both of them and the normal from one to other.
+
+    None in their place: none touch in this time.
+    """
     one, other = np.triu_indices(len(place), 1)
     apart, closing = place[other] - place[one], velocity[other] - velocity[one]
     apart -= edge * np.round(apart / edge)  # the nearest images
@@ -36,19 +50,27 @@ def next_pair(place, velocity, edge):
     safe = (0.5 * edge - 2.0 * BALL.radius) / np.sqrt(speed.max())
     pair = wait.argmin()
     if wait[pair] > safe:
-        return safe, None, None, None
+        return safe, None
     soon = max(wait[pair], 0.0)
-    return soon, one[pair], other[pair], apart[pair] + soon * closing[pair]
+    return soon, (int(one[pair]), int(other[pair]), apart[pair] + soon * closing[pair])
 
 
-def events(place, velocity, spin, edge, friction=0.3, restitution=1.0):
+def events(
+    place: Array,
+    velocity: Array,
+    spin: Array,
+    edge: float,
+    friction: float = 0.3,
+    restitution: float = 1.0,
+) -> Iterator[tuple[float, Array, Array, Array, float]]:
     """Yield after every event the time since the last, places, velocities, spins, friction work."""
     since, work = 0.0, 0.0
     while True:
-        wait, one, other, normal = next_pair(place, velocity, edge)
+        wait, pair = next_pair(place, velocity, edge)
         place, since = (place + wait * velocity) % edge, since + wait
-        if one is None:
+        if pair is None:
             continue
+        one, other, normal = pair
         met = Encounter(
             BALL, BALL, friction, normal=normal,
             velocity=velocity[one], spin=spin[one],
@@ -64,8 +86,9 @@ def events(place, velocity, spin, edge, friction=0.3, restitution=1.0):
 
 
 if __name__ == "__main__":
-    edge, *state = beginning(side=4)
-    for number, (_, _, velocity, spin, work) in enumerate(events(*state, edge), 1):
+    edge, place, velocity, spin = beginning(side=4)
+    course = events(place, velocity, spin, edge)
+    for number, (*_, velocity, spin, work) in enumerate(course, 1):
         if number % 500 == 0:
             ratio = 0.4 * BALL.radius**2 * (spin**2).sum() / (velocity**2).sum()
             print(f"{number} collisions: {work:.4f} J lost, temperatures in the ratio {ratio:.3f}")

@@ -43,20 +43,21 @@ double springs_step(double *state, int n, const double *moved, const double *nor
 """
 
 
-def library(folder):
+def library(folder: Path) -> Path:
     """Compile the kernel in a folder, and return the library."""
-    words = [sys.executable, "-m", "contactlab", "kernel", "--out", folder]
+    words = [sys.executable, "-m", "contactlab", "kernel", "--out", str(folder)]
     subprocess.run(words, check=True, capture_output=True)
     (folder / "springs.c").write_text(EXPORTED)
     made = folder / "libspringskernel.so"
-    words = ["cc", "-std=c99", "-O3", "-fPIC", "-shared", folder / "springs.c", "-o", made, "-lm"]
-    subprocess.run(words, check=True)
+    files = [str(folder / "springs.c"), "-o", str(made)]
+    subprocess.run(["cc", "-std=c99", "-O3", "-fPIC", "-shared", *files, "-lm"], check=True)
     return made
 
 
-def pairs(angles, damped):
+def pairs(angles: int, damped: bool) -> list[tuple[float, float, dict[str, float]]]:
     """Return psi1, kappa, and what YADE is told of each pair."""
-    random, table = np.random.default_rng(1), []
+    random = np.random.default_rng(1)
+    table: list[tuple[float, float, dict[str, float]]] = []
     for poisson in (0.3,) if damped else POISSON:
         kappa = 2.0 * (1.0 - poisson) / (2.0 - poisson)
         for size in SIZES:
@@ -73,17 +74,18 @@ def pairs(angles, damped):
     return table
 
 
-def main():
+def main() -> None:
     """Print a table of errors of psi2."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--yade", default="yade", help="the command that runs YADE")
     parser.add_argument("--steps", type=int, default=50, help="steps a contact")
     parser.add_argument("--springs", type=int, nargs="+", default=[0, 4, 8, 12])
     parser.add_argument("--angles", type=int, default=40)
     parser.add_argument("--damped", action="store_true", help="impacts at e = 0.7441")
     asked = parser.parse_args()
-    psi1, kappa, told = zip(*pairs(asked.angles, asked.damped), strict=True)
-    psi1, kappa = np.array(psi1), np.array(kappa)
+    table = pairs(asked.angles, asked.damped)
+    psi1, kappa = np.array([each[:2] for each in table]).T
+    told = [each[2] for each in table]
     speed, slip, share, density = (
         np.array([each[name] for each in told]) for name in ("speed", "slip", "share", "density")
     )
@@ -103,8 +105,8 @@ def main():
         with tempfile.TemporaryDirectory() as name:
             file = Path(name) / "pairs.json"
             file.write_text(json.dumps(run))
-            words = [*shlex.split(asked.yade), "-n", "-x", HERE / "impacts.py", file]
-            words += [library(Path(name)), str(springs)]
+            words = [*shlex.split(asked.yade), "-n", "-x", str(HERE / "impacts.py"), str(file)]
+            words += [str(library(Path(name))), str(springs)]
             found = {**os.environ, "PYTHONPATH": str(HERE)}
             done = subprocess.run(
                 words, cwd=name, capture_output=True, text=True, check=False, env=found

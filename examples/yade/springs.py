@@ -10,11 +10,16 @@ Where the normal force is damped (``en`` or ``betan`` of Ip2_FrictMat_FrictMat_M
 shares the loss.
 """
 
+from __future__ import annotations
+
 import ctypes
+from typing import Any
 
 import numpy as np
 import yade
+from numpy.typing import NDArray
 
+Array = NDArray[np.float64]
 Numbers = ctypes.POINTER(ctypes.c_double)
 
 
@@ -24,15 +29,16 @@ class Springs:
     ``shear_loss`` is the relaxation time in shear over that in pressure: 1 the theory, 0 elastic.
     """
 
-    def __init__(self, library, mu, springs=8, shear_loss=1.0):
+    def __init__(self, library: str, mu: float, springs: int = 8, shear_loss: float = 1.0) -> None:
         self._take = ctypes.CDLL(library).springs_step
         self._take.restype = ctypes.c_double
         self._take.argtypes = [Numbers, ctypes.c_int, Numbers, Numbers, *[ctypes.c_double] * 4]
         self._take.argtypes += [Numbers, ctypes.c_double, ctypes.c_double, Numbers, ctypes.c_double]
         self.mu, self.springs, self.shear_loss = mu, springs, shear_loss
-        self.states, self.work = {}, 0.0
+        self.states: dict[tuple[int, int], Any] = {}
+        self.work = 0.0
 
-    def step(self):
+    def step(self) -> None:
         """Add the friction of every contact to the forces of this step."""
         states, self.states = self.states, {}
         for contact in yade.O.interactions:
@@ -43,7 +49,9 @@ class Springs:
             state, before = states.get(both, (np.zeros(2 + 3 * self.springs), None))
             self.states[both] = state, self._one(*both, contact, state, before)
 
-    def _one(self, first, second, contact, state, before):
+    def _one(
+        self, first: int, second: int, contact: Any, state: Array, before: Array | None
+    ) -> Array:
         """Add the friction of one contact, and return its slip velocity.
 
         The body of the smaller number comes first. Velocities are those of half a step ago: the
@@ -65,22 +73,22 @@ class Springs:
         viscous = 2.0 * phys.betan * (_mass(one, other) * phys.kn) ** 0.5
         damping = self.shear_loss * modulus / (2.0 * hard) * viscous
         elastic = (phys.normalForce + phys.normalViscous).norm()
-        slip = np.array(slip)
-        velocity = slip if before is None or state[0] == 0.0 else 1.5 * slip - 0.5 * before
-        moved, normal, force = slip * yade.O.dt, np.array(contact.geom.normal), np.zeros(3)
+        sliding: Array = np.array(slip)
+        velocity = sliding if before is None or state[0] == 0.0 else 1.5 * sliding - 0.5 * before
+        moved, normal, force = sliding * yade.O.dt, np.array(contact.geom.normal), np.zeros(3)
         self.work += self._take(
             _numbers(state), self.springs, _numbers(moved), _numbers(normal), size,
             self.mu * phys.normalForce.norm(), radius, modulus, _numbers(force),
             self.mu * elastic, damping, _numbers(velocity), yade.O.dt,
         )  # fmt: skip
-        force = yade.Vector3(*force.tolist())
+        push = yade.Vector3(*force.tolist())
         for number, sign, arm in ((first, 1.0, arms[0]), (second, -1.0, arms[1])):
-            yade.O.forces.addF(number, sign * force)
-            yade.O.forces.addT(number, arm.cross(sign * force))
-        return slip
+            yade.O.forces.addF(number, sign * push)
+            yade.O.forces.addT(number, arm.cross(sign * push))
+        return sliding
 
 
-def _mass(one, other):
+def _mass(one: Any, other: Any) -> Any:
     """Return the mass of the pair, as YADE's damping takes it."""
     masses = [body.state.mass for body in (one, other) if body.dynamic]
     return (
@@ -90,6 +98,6 @@ def _mass(one, other):
     )
 
 
-def _numbers(array):
+def _numbers(array: Array) -> Any:
     """Return an array as the kernel takes it."""
     return array.ctypes.data_as(Numbers)
