@@ -1,0 +1,179 @@
+"""Laws that fail: what holds for spheres holds for bodies, by the same row."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+import attrs
+import numpy as np
+import pytest
+
+from contactlab import (
+    Simulation,
+)
+from contactlab.contracts import (
+    Ends,
+    SteppedTangentialLaw,
+    TangentialMotion,
+    TangentialResponse,
+)
+from contactlab.contracts.status import Status
+from contactlab.contracts.whole_impact import WholeImpact
+from tests.compose.any_scene import (
+    each_batch,
+    every_scene,
+    many,
+    statuses,
+)
+
+
+@attrs.frozen
+class Liar(SteppedTangentialLaw):
+    """Answers both motions as told: NaN, an error for one impact, or books that do not close."""
+
+    api_version: ClassVar[int] = 2
+    needs_future: ClassVar[bool] = False
+    vectors: ClassVar[bool] = True
+    together: ClassVar[bool] = True
+    how: str = "nan"
+
+    def start(self, scene, normal):
+        return None
+
+    def advance(self, state, increment, before, after):
+        raise NotImplementedError
+
+    def whole_impacts(self, scene, normal):
+        self._raise(scene)
+        change = self._change(scene)
+        where = np.ones(scene.shape, dtype=bool) if scene.shape else True
+        return (
+            WholeImpact(
+                where=where, slip_velocity_change=change, friction_work=0.0 * abs(change),
+                reason="told",
+            ),
+        )  # fmt: skip
+
+    def _raise(self, scene):
+        if self.how == "raise" and np.any(np.asarray(scene.index) == 1):
+            raise RuntimeError("one of them")
+
+    def _change(self, scene):
+        factor = {"nan": math.nan, "books": -1.0, "raise": -1e-9}[self.how]
+        return factor * np.asarray(scene.slip_velocity)
+
+    def impacts_together(self, scene, normal, accuracy, observer=None):
+        self._raise(scene)
+        ones = np.ones(scene.shape)
+        rate = -scene.normal_speed * ones
+        if self.how == "raise":  # a small impulse along n alone keeps the energy
+            W = np.asarray(scene.inverse_mass)
+            push = scene.normal_speed / W[..., 0, 0] * 1e-9
+            rate = (1.0 - 1e-9) * scene.normal_speed * ones
+            slip = -W[..., 0, 1:] * np.asarray(push)[..., None]
+            change = slip[..., 0] if scene.planar else slip
+        else:
+            change = self._change(scene) * np.ones((*scene.shape, *scene.slip_axes))
+        status = np.full(scene.shape, Status.SUCCESS, dtype=object)
+        return TangentialMotion(
+            slip_velocity_change=change, friction_work=0.0 * ones,
+            status=status if scene.shape else Status.SUCCESS,
+            detail=np.full(scene.shape, "", dtype=object) if scene.shape else "", counters={},
+            normal=Ends(duration=ones, final_rate=rate, maximum_radius=ones, maximum_approach=ones,
+                        maximum_force=ones, dissipation=0.0 * ones, compressions=ones),
+        )  # fmt: skip
+
+
+@every_scene
+def test_a_law_that_answers_nan_is_not_finite(scene):
+    result = Simulation(tangential=Liar("nan")).run(scene)
+    assert set(statuses(result)) == {"NON_FINITE"}
+    assert np.isnan(result.psi2).all()
+    assert "Liar" in str(result)
+
+
+@each_batch
+@pytest.mark.parametrize("count", [3, 2001])
+def test_one_impact_that_raises_costs_that_impact_alone(scene, count):
+    """Under a law that answers both motions together, in a batch of three or of thousands."""
+    places = np.resize(np.arange(3), count)
+    laws = Simulation(tangential=Liar("raise"), integrator="symplectic")
+    batch = scene.take(places).numbered(np.arange(count))
+    result = laws.sweep(batch) if count > 3 else laws.run(batch)
+    assert list(result.failures) == [1]
+    assert statuses(result)[1] == "LAW_RAISED"
+    assert "one of them" in result.failures[1]
+
+
+@attrs.frozen
+class FailsAtOne(SteppedTangentialLaw):
+    """No friction, and no answer for the impact of index 1."""
+
+    api_version: ClassVar[int] = 2
+    needs_future: ClassVar[bool] = False
+    vectors: ClassVar[bool] = True
+    how: str = "raises"
+
+    def start(self, scene, normal):
+        return np.asarray(scene.index)
+
+    def advance(self, state, increment, before, after):
+        force, work = 0.0 * np.asarray(increment.displacement), 0.0 * np.asarray(after.force)
+        bad = state == 1
+        if self.how == "raises" and np.any(bad):
+            raise ArithmeticError("that one")
+        if self.how == "nan":
+            force = np.where(bad[..., None] if force.ndim > work.ndim else bad, math.nan, force)
+        return TangentialResponse(force, work, ~bad if self.how == "unsettled" else True), state
+
+    def stiffness(self, scene, normal):
+        return 1.0
+
+
+@each_batch
+@pytest.mark.parametrize("integrator", ["symplectic", "adaptive", "paper"])
+@pytest.mark.parametrize(
+    ("how", "status"),
+    [("nan", "NON_FINITE"), ("raises", "LAW_RAISED"), ("unsettled", "UNSETTLED")],
+)
+def test_an_impact_that_fails_in_a_march_takes_no_other_with_it(scene, integrator, how, status):
+    laws = Simulation(tangential=FailsAtOne(how), integrator=integrator)
+    result = laws.run(scene)
+    assert statuses(result) == ["SUCCESS", status, "SUCCESS"]
+    assert list(result.failures) == [1]
+    assert "FailsAtOne" in result.failures[1]
+    assert statuses(laws.run(scene.take(1))) == [status]
+    assert result.normal_restitution[[0, 2]] == pytest.approx(1.0, abs=1e-6)
+
+
+def test_one_of_two_thousand_that_raises_in_a_march():
+    laws = Simulation(tangential=FailsAtOne(), integrator="symplectic")
+    for name in ("planar", "mixed"):
+        result = laws.sweep(many(name))
+        assert list(result.failures) == [1], name
+
+
+@every_scene
+def test_books_that_nobody_bounds_are_cautioned_of(scene):
+    result = Simulation(tangential=Liar("books")).run(scene)
+    assert set(statuses(result)) == {"SUCCESS"}
+    off = np.max(np.abs(result.energy.relative_imbalance))
+    assert off > 0.05
+    told = [text for text in result.cautions if "Liar declares no bound" in text]
+    assert len(told) == 1
+    assert f"off by {off:.2g} of the energy at the start" in told[0]
+    assert told[0] in str(result)
+
+
+@attrs.frozen
+class Bounded(Liar):
+    def books_bound(self, scene):
+        return 0.01
+
+
+@every_scene
+def test_books_off_a_declared_bound_fail(scene):
+    result = Simulation(tangential=Bounded("books")).run(scene)
+    assert set(statuses(result)) == {"UNBALANCED"}
+    assert "declared: 0.01" in str(result)
