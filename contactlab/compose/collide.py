@@ -13,12 +13,19 @@ from contactlab.compose.restituted import run_by_restitution, run_in_blocks
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.impact.encounter import Encounter
-from contactlab.numeric.arrays import every, some
-from contactlab.numeric.checks import check_place, real, refuse
+from contactlab.numeric.arrays import every, some, taken
+from contactlab.numeric.checks import check_place, of_kind, real, refuse
 from contactlab.numeric.types import Array, Numbers, Real
 from contactlab.numeric.vectors import LEAST
 
 SEPARATING = ("refuse", "pass")
+#: Remedies for what is given in place of an encounter, or of a simulation.
+WITH_ARRAYS = "make a single Encounter with arrays of vectors, shape (..., 3)"
+INSTEAD: dict[type, str] = {
+    list: WITH_ARRAYS,
+    tuple: WITH_ARRAYS,
+    float: "or leave it out; a restitution is given by name: restitution={value}",
+}
 
 
 def collide(
@@ -77,16 +84,11 @@ def collide(
     >>> collide(met).target_velocity.round(4)
     array([ 2.    , -0.1144,  0.    ])
     """
-    if not isinstance(encounter, Encounter):
-        remedy = "make one: Encounter(...)"
-        if isinstance(encounter, list | tuple):
-            remedy = "make a single Encounter with arrays of vectors, shape (..., 3)"
-        raise refuse("encounter", encounter, "must be an Encounter", remedy)
-    if simulation is not None and not isinstance(simulation, Simulation):
+    if type(encounter) is not Encounter:  # a call takes longer than this test
+        of_kind("encounter", encounter, Encounter, remedy="make one: Encounter(...)", meant=INSTEAD)
+    if simulation is not None:
         remedy = "or leave it out"
-        if isinstance(simulation, float):
-            remedy += f"; a restitution is given by name: restitution={simulation}"
-        raise refuse("simulation", simulation, "must be a Simulation", remedy)
+        of_kind("simulation", simulation, Simulation, remedy=remedy, meant=INSTEAD)
     if separating not in SEPARATING:
         raise refuse("separating", separating, "must be 'refuse' or 'pass'")
     if callable(restitution):
@@ -112,7 +114,7 @@ def collide(
     else:  # the index of an impact is its place in the whole batch
         places = np.arange(np.size(met)).reshape(np.shape(met))[met]
         scene = encounter.take(met).scene.numbered(places)
-        e = e if isinstance(e, float) else e[met]
+        e = taken(e, encounter.shape, met)
     if simulation is not None:
         result = run_in_blocks(simulation, scene)
     else:

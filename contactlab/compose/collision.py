@@ -20,8 +20,8 @@ from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.body_contact import in_space, pushed
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.rigid_body import RigidBody
-from contactlab.numeric.arrays import every, filled, of_each, plain
-from contactlab.numeric.checks import refuse
+from contactlab.numeric.arrays import every, filled, of_each, plain, taken
+from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import attributes_told
 from contactlab.numeric.types import Array, Each, Labelled, Mask, Numbers, Real
 from contactlab.numeric.vectors import NOTHING, components, cross, joined
@@ -103,9 +103,10 @@ class Collision(Answer, Generic[Each]):
         """
         met: Any = encounter.approaching
         part = encounter if np.all(met) else encounter.take(met)
-        if not isinstance(result, ImpactResult) or result.scene != part.scene:
-            why = "must be the result of encounter.scene"
-            raise refuse("result", result, why, "run that: simulation.run(encounter.scene)")
+        rule = "must be the result of encounter.scene"
+        remedy = "run that: simulation.run(encounter.scene)"
+        if of_kind("result", result, ImpactResult, rule=rule, remedy=remedy).scene != part.scene:
+            raise refuse("result", result, rule, remedy)
         return cls.by(encounter, result, met)
 
     @classmethod
@@ -210,10 +211,9 @@ class Collision(Answer, Generic[Each]):
     @property
     def _restitutions(self) -> Real:
         """The restitution of each encounter that collided, or a number that all share."""
-        if isinstance(self.restitution, float):
-            return self.restitution
-        each = np.broadcast_to(self.restitution, self.encounter.shape)
-        return np.asarray(each if np.all(self.collided) else each[self.collided])
+        met = ... if np.all(self.collided) else self.collided
+        restitutions: Real = taken(self.restitution, self.encounter.shape, met)
+        return restitutions
 
     @property
     def energy(self) -> EnergyLedger[Each]:

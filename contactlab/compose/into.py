@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,14 +13,14 @@ from numpy.typing import NDArray
 
 from contactlab.compose.composition import Laws
 from contactlab.compose.fingerprints import fingerprint
-from contactlab.compose.kept import TRIED_AGAIN, opened, written_piece
+from contactlab.compose.kept import TRIED_AGAIN, checked_folder, opened, written_piece
 from contactlab.compose.pieces import Part, Piece
 from contactlab.compose.solve import accepted
 from contactlab.compose.sweep import WHOLE_IMPACTS, block_for, cut, one_axis, solved_parts
 from contactlab.contracts.status import Status, succeeded
 from contactlab.impact.grid import GridParts
 from contactlab.impact.scene import IMPACTS_AT_A_TIME, Scene
-from contactlab.numeric.checks import refuse, whole
+from contactlab.numeric.checks import of_kind, refuse, whole
 from contactlab.outcome.chunk_files import (
     chunks_in,
     name_of,
@@ -29,7 +28,7 @@ from contactlab.outcome.chunk_files import (
     refuse_file,
     refuse_place,
 )
-from contactlab.outcome.chunk_forms import COLUMN_OF_STATUS, NPZ, Chunk, form_of
+from contactlab.outcome.chunk_forms import COLUMN_OF_STATUS, Chunk, form_of
 from contactlab.outcome.columns import columns, unit_in
 from contactlab.outcome.files import written
 from contactlab.outcome.result import ImpactResult
@@ -51,7 +50,7 @@ class _Into:
     """A folder that a sweep is written into."""
 
     def __init__(self, folder: str | Path, laws: Laws) -> None:
-        self.form = form_of(Path(folder)) if isinstance(folder, str | os.PathLike) else NPZ
+        self.form = form_of(checked_folder("into", folder))
         more = {"form": KIND, STATUSES: " ".join(NAMES)}
         self.folder, self.sweep = opened("into", folder, laws, more, self.form)
         self.units: dict[str, str] | None = None
@@ -146,8 +145,7 @@ def swept_into(
     ``result_of`` makes the result of a piece.
     """
     size = None if chunk is None else whole("chunk", chunk)
-    if not isinstance(scenes, Scene | Iterable):
-        raise refuse("scenes", scenes, "must be a Scene, or an iterable of them")
+    of_kind("scenes", scenes, Scene, Iterable, rule="must be a Scene, or an iterable of them")
     target = _Into(folder, laws)
     waiting: dict[Chunk, tuple[Scene, str]] = {}
     done = stop = 0

@@ -22,7 +22,7 @@ from contactlab.compose.registry import REGISTRY
 from contactlab.contracts.law import Law
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import refuse
+from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.types import AnyArray
 from contactlab.outcome.chunk_files import (
     DAMAGED,
@@ -88,6 +88,11 @@ class Kept:
         return pieces
 
 
+def checked_folder(argument: str, folder: object) -> Path:
+    """Return the path of a folder, or refuse what is none."""
+    return Path(of_kind(argument, folder, str, os.PathLike, rule="must be the path of a folder"))
+
+
 def opened(
     argument: str, folder: str | Path, laws: Laws, more: Mapping[str, object], form: Form = NPZ
 ) -> tuple[Path, str]:
@@ -96,8 +101,7 @@ def opened(
     The fingerprint is of the laws, their code and ``more``. It is written into every piece, so
     that a piece of another sweep is refused. A folder of another sweep is refused here.
     """
-    if not isinstance(folder, str | os.PathLike):
-        raise refuse(argument, folder, "must be the path of a folder")
+    checked_folder(argument, folder)
     if os.path.lexists(folder) and not os.path.isdir(folder):
         what = "is a link to nothing" if os.path.islink(folder) else "is a file"
         raise refuse(argument, str(folder), what, "name a folder")

@@ -19,7 +19,7 @@ from contactlab.impact.cautions import of_ellipse, path_cautions
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
-from contactlab.numeric.checks import Rule, real, refuse
+from contactlab.numeric.checks import Rule, of_kind, real, refuse
 from contactlab.numeric.types import Array, Numbers
 from contactlab.outcome.answer import Answer
 
@@ -176,8 +176,7 @@ def load_path(
     >>> (path.friction_force / (0.3 * path.normal_force))[[20, 100]].round(3)
     array([0.697, 1.   ])
     """
-    if not isinstance(scene, Scene):
-        raise refuse("scene", scene, "must be a Scene", "make one: Scene(...)")
+    of_kind("scene", scene, Scene, remedy="make one: Scene(...)")
     laws = _laws(scene, normal, tangential)
     points, origin, scene = _path(scene, approach, displacement, time)
     columns, states, status, detail = _followed(laws, scene, points)

@@ -26,7 +26,7 @@ from contactlab.compose.names import (
     same_distribution,
 )
 from contactlab.contracts.law import Law
-from contactlab.numeric.checks import refuse
+from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import nearest
 
 __all__ = [
@@ -156,8 +156,7 @@ class Registry:
         PluginError
             If the plug-in cannot be imported or breaks the contract, with its traceback.
         """
-        if not isinstance(name, str):
-            raise refuse("name", name, "must be a text such as 'tangential.springs'")
+        of_kind("name", name, str, rule="must be a text such as 'tangential.springs'")
         law = self.law_class(name)
         for option, value in options.items():
             if option not in (parameters := _parameters(law)):

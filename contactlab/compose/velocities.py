@@ -9,7 +9,7 @@ import numpy as np
 from contactlab.compose.namespaces import known, library_named
 from contactlab.compose.rebound import rebound, traceable
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
-from contactlab.numeric.checks import NON_NEGATIVE, refuse
+from contactlab.numeric.checks import NON_NEGATIVE, of_kind, refuse
 from contactlab.numeric.vectors import LEAST, RANGE
 
 #: psi1 in place of 0, where psi2 over psi1 has a limit and 0/0 has none.
@@ -37,10 +37,9 @@ def velocities(
     if not library:
         shapes = {name: (*np.shape(value),) for name, value in vectors.items()}
         raise refuse("arrays", shapes, "must hold one of JAX or PyTorch", "collide takes NumPy's")
-    if not isinstance(body, Sphere) or not isinstance(target, Sphere | HalfSpace):
-        kinds = f"{type(body).__name__}, {type(target).__name__}"
-        rule = f"must be spheres, or a sphere and a half-space, with arrays of {library}"
-        raise refuse("body, target", kinds, rule, "collide takes other bodies, of NumPy arrays")
+    remedy = f"arrays of {library} are for spheres and half-spaces: collide takes other bodies"
+    of_kind("body", body, Sphere, remedy=remedy)
+    of_kind("target", target, Sphere, HalfSpace, remedy=remedy)
     _check(library, target, friction, vectors)
     pair, e = Pair.of(body, target), 1.0 if callable(restitution) else restitution
     masses = pair.normal_mass, pair.tangential_mass

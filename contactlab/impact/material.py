@@ -12,7 +12,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.numeric.checks import POISSON, POSITIVE, quantity, real, refuse
+from contactlab.numeric.checks import POISSON, POSITIVE, of_kind, quantity, real, refuse
 from contactlab.numeric.names import arguments_told, nearest
 from contactlab.numeric.types import Either, Numbers
 
@@ -171,8 +171,7 @@ def entry(name: str) -> Entry:
         If there is no such material; the message suggests the nearest names.
     """
     collection = _collection()[0]
-    if not isinstance(name, str):
-        raise refuse("name", name, "must be the name of a material", "such as 'steel'")
+    of_kind("name", name, str, rule="must be the name of a material", remedy="such as 'steel'")
     names_by_key = {_key(listed): listed for listed in collection}
     key = _key(name)
     if key in names_by_key:

@@ -6,7 +6,7 @@ A refusal is a ValueError that names the argument, the value, the rule and the r
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple, TypeVar
 
 import attrs
@@ -61,6 +61,33 @@ def shown(value: object, *, most: int = 80) -> str:
 def refuse(argument: str, value: object, rule: str, remedy: str = "") -> ValueError:
     """Return the ValueError for a bad argument: name, value, rule and remedy in one sentence."""
     return ValueError(f"{argument} = {shown(value)}: {rule}" + (f"; {remedy}" if remedy else ""))
+
+
+def of_kind(
+    argument: str,
+    value: object,
+    *kinds: type,
+    rule: str = "",
+    remedy: str = "",
+    meant: Mapping[type, str] | None = None,
+) -> Any:
+    """Return an object of one of the classes ``kinds``, or refuse it.
+
+    ``rule`` names the classes unless it is given. ``meant`` has the remedies for objects of other
+    classes that users give, with ``{value}`` where the object belongs.
+    """
+    if isinstance(value, kinds):
+        return value
+    for kind, told in (meant or {}).items():
+        if isinstance(value, kind):
+            remedy = told.format(value=value)
+    raise refuse(argument, value, rule or f"must be {_named(kinds)}", remedy)
+
+
+def _named(kinds: tuple[type, ...]) -> str:
+    """Return "a HalfSpace or a Sphere"."""
+    names = (kind.__name__ for kind in kinds)
+    return " or ".join(f"{'an' if name[0] in 'AEIOU' else 'a'} {name}" for name in names)
 
 
 def real(
@@ -226,7 +253,7 @@ def quantity(
 
 def instance(*kinds: type, remedy: str = "", optional: bool = False, **field: Any) -> Any:
     """Return an attrs field that accepts objects of the classes ``kinds``; None too if optional."""
-    rule = f"must be a {' or a '.join(kind.__name__ for kind in kinds)}"
+    rule = f"must be {_named(kinds)}"
 
     def validate(_: object, field: attrs.Attribute[object], value: object) -> None:
         if not (isinstance(value, kinds) or (optional and value is None)):

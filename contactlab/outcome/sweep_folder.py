@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts.status import Status
-from contactlab.numeric.checks import refuse
+from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import attributes_told, nearest
 from contactlab.outcome.answer import Checked
 from contactlab.outcome.chunk_files import DAMAGED, abouts_in, columns_of, refuse_damaged
@@ -96,9 +96,8 @@ class SweepFolder(Checked):
     """
 
     def __init__(self, path: str | Path) -> None:
-        if not isinstance(path, str | os.PathLike):
-            raise refuse("path", path, "must be the path of a folder")
-        self.path = Path(path)
+        rule = "must be the path of a folder"
+        self.path = Path(of_kind("path", path, str, os.PathLike, rule=rule))
         there = (form for form in FORMS if (self.path / form.about).exists())
         self._form = next(there, NPZ)
         try:
@@ -190,8 +189,7 @@ class SweepFolder(Checked):
             rule = f"impacts {first} to {stop} are missing"
             remedy = "run the same sweep into the folder again, or read chunks()"
             raise refuse("path", str(self.path), rule, remedy)
-        if not isinstance(name, str):
-            raise refuse("column", name, "must be the name of a column", "such as 'psi2'")
+        of_kind("column", name, str, rule="must be the name of a column", remedy="such as 'psi2'")
         column = np.empty(0)
         for place, columns in self.chunks(name):
             if not column.size:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 
 from contactlab.impact import material as materials
 from contactlab.impact.scene import UNITS as SCENE_UNITS
-from contactlab.numeric.checks import refuse
+from contactlab.numeric.checks import of_kind
 from contactlab.numeric.names import nearest
 from contactlab.scene_file.table import MATERIAL_KEYS
 
@@ -99,9 +99,9 @@ def replaced(
     key, _, rest = path.partition(".")
     if not rest:
         return {**document, key: value}
-    inner, place = document.get(key, {}), within + key
-    if not isinstance(inner, Mapping):
-        raise refuse(place, inner, "must be a table", f"write it under [{place}]")
+    place = within + key
+    rule, remedy = "must be a table", f"write it under [{place}]"
+    inner = of_kind(place, document.get(key, {}), Mapping, rule=rule, remedy=remedy)
     return {**document, key: replaced(inner, rest, value, within=f"{place}.")}
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.numeric.checks import refuse
+from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.columns import quantity_named
 from contactlab.scene_file.entries import entry_path
@@ -62,9 +62,9 @@ class Measured:
 
 def read_measured(content: object) -> tuple[Measured, ...]:
     """Return the series of a file's ``[[measured]]`` tables, in order."""
-    if not isinstance(content, list):
-        raise refuse("measured", content, "must be a list of tables", "write [[measured]]")
-    return tuple(_series(item, f"measured[{number}]") for number, item in enumerate(content))
+    rule = "must be a list of tables"
+    tables = of_kind("measured", content, list, rule=rule, remedy="write [[measured]]")
+    return tuple(_series(item, f"measured[{number}]") for number, item in enumerate(tables))
 
 
 def _series(content: object, path: str) -> Measured:

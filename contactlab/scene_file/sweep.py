@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contactlab.impact.grid import product
-from contactlab.numeric.checks import refuse, whole
+from contactlab.numeric.checks import of_kind, whole
 from contactlab.numeric.types import Real
 from contactlab.scene_file.entries import entry_path
 from contactlab.scene_file.table import Table, flattened, number_list
@@ -40,21 +40,20 @@ class Sweep(NamedTuple):
 
 def read_sweep(content: object) -> Sweep:
     """Return the entries that vary and their values."""
-    if not isinstance(content, Mapping):
-        raise refuse("sweep", content, "must be a table", "write it under [sweep]")
-    combined = content.get(PRODUCT, False)
-    if not isinstance(combined, bool):
-        raise refuse(f"sweep.{PRODUCT}", combined, "must be true or false")
+    remedy = "write it under [sweep]"
+    table = of_kind("sweep", content, Mapping, rule="must be a table", remedy=remedy)
+    combined = table.get(PRODUCT, False)
+    of_kind(f"sweep.{PRODUCT}", combined, bool, rule="must be true or false")
     varied: dict[str, Real] = {}
     paths: dict[str, str] = {}
-    entries = {key: content[key] for key in content if key != PRODUCT}
+    entries = {key: table[key] for key in table if key != PRODUCT}
     for name, value in flattened(entries, leaf=_is_range).items():
         path = entry_path(name, where="sweep.")
         if path in paths:
             raise ValueError(f"sweep: {paths[path]} and {name} are the same entry; leave out one")
         paths[path] = name
         varied[name] = _values(f"sweep.{name}", value)
-    if content and not varied:
+    if table and not varied:
         raise ValueError(f"sweep: varies nothing; {REMEDY}")
     if combined:
         return Sweep(dict(product(varied)), varied)

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from contactlab.numeric.checks import real, refuse
+from contactlab.numeric.checks import of_kind, real, refuse
 from contactlab.numeric.names import nearest
 from contactlab.numeric.types import Real
 
@@ -39,10 +39,10 @@ class Table:
     def __init__(self, content: object, path: str, *, known: Iterable[str]) -> None:
         self.path = path
         self.known = tuple(known)
-        if not isinstance(content, Mapping):
-            raise refuse(path, content, "must be a table", f"write it under [{path}]")
-        self.content: Mapping[str, Any] = content
-        for key in content:
+        rule, remedy = "must be a table", f"write it under [{path}]"
+        table = of_kind(path, content, Mapping, rule=rule, remedy=remedy)
+        self.content: Mapping[str, Any] = table
+        for key in table:
             if key not in self.known:
                 raise self._unknown(key)
 
@@ -80,9 +80,8 @@ class Table:
         if key not in self.content and default is not None:
             return default
         value = self.require(key, remedy)
-        if not isinstance(value, str):
-            raise refuse(self.at(key), value, "must be text", "put it in quotes")
-        return value
+        place, remedy = self.at(key), "put it in quotes"
+        return str(of_kind(place, value, str, rule="must be text", remedy=remedy))
 
     def numbers(self, key: str, *, default: object = None, remedy: str) -> Real:
         """Return the list of numbers at ``key`` as an array, shape (n,)."""

@@ -155,7 +155,7 @@ def test_known_numbers_are_refused(jax):
         ({"friction_coefficient": -0.1}, "friction_coefficient = -0.1"),
         ({"restitution": 1.5}, "restitution = 1.5"),
         ({"velocity": jax.numpy.ones((4, 3)), "normal": np.ones((2, 3))}, "shapes = .*must fit"),
-        ({"body": ROD}, "body, target = .*RigidBody.*must be spheres"),
+        ({"body": ROD}, "body = RigidBody.*must be a Sphere; arrays of .* are for spheres"),
         ({"body": Sphere(0.01, STEEL, gyration_ratio=0.2)}, "chi = .* with arrays of jax"),
     ):
         arguments = {"body": BALL, "target": FLOOR, "friction_coefficient": 0.3} | good | changed
