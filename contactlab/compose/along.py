@@ -21,13 +21,15 @@ from contactlab.contracts.tangential_motion import Observer, TangentialMotion
 from contactlab.impact.inverse_mass import unit_slip
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import are_zeros, every, plain, some, spread, zeros
-from contactlab.numeric.types import Array, Index, Mask
+from contactlab.numeric.types import Array, Index, Mask, Real
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import ENDLESS, MARCHED, PlanColumns, Reason
 
 #: Error of what is known in closed form, over max(1, |psi1|).
 CLOSED_FORM = 1e-12
+#: Errors that differ by less, over themselves, are equal.
+ROUNDING = 1e-12
 
 
 class Along(Way):
@@ -56,22 +58,27 @@ class Along(Way):
             self.refuse_history(history, common_instants=laws.integrator.common_instants)
         normal = normal_or_failed(laws.normal, scene)
         with faults.blaming(laws.tangential):
-            accuracy = laws.integrator.accuracy
-            answered = answers(normal, laws.tangential, history=history, accuracy=accuracy)
+            size, accuracy = psi_magnitude(scene), laws.integrator.accuracy
+            most = math.inf if accuracy is None else accuracy * (1.0 + ROUNDING) * size
+            answered = answers(normal, laws.tangential, history=history, largest_error=most)
             bound = laws.tangential.books_bound(scene)
-            return Prepared(normal, answered, self._columns(normal, answered), bound)
+            return Prepared(normal, answered, self._columns(normal, answered, size), bound)
 
     def moved(self, prepared: Prepared, recorder: Recorder | None) -> Motion:
         """Return the motion by whole-impact answers where there are any, else marched."""
         normal, answered, columns, _ = prepared
-        return Motion.along(normal, self._tangential(normal, answered, columns.marched, recorder))
+        marched: Any = columns.code == MARCHED
+        return Motion.along(normal, self._tangential(normal, answered, marched, recorder))
 
     def line(self, scene: Scene) -> Array:
         """Return the direction of slip at first touch, which slip keeps."""
         return unit_slip(scene.slip_velocity)
 
-    def _columns(self, normal: NormalMotion, answered: list[Answered]) -> PlanColumns:
-        """Return the columns of the plan: why impacts are not marched, and the declared error."""
+    def _columns(self, normal: NormalMotion, answered: list[Answered], size: Real) -> PlanColumns:
+        """Return the columns of the plan: why impacts are not marched, and the declared error.
+
+        ``size`` is that of psi, over which errors are relative.
+        """
         shape = normal.scene.shape
         if not shape:
             code: Any = MARCHED if separated(normal) else ENDLESS
@@ -92,12 +99,14 @@ class Along(Way):
                 restitution = math.nan  # the law changed it, and declares no error of it
         if shape:
             restitution = np.full(shape, restitution)
-        return PlanColumns(code, self._error(normal, answered, marched), reasons, restitution)
+        return PlanColumns(code, self._error(normal, answered, marched, size), reasons, restitution)
 
-    def _error(self, normal: NormalMotion, answered: list[Answered], marched: Mask) -> Any:
+    def _error(
+        self, normal: NormalMotion, answered: list[Answered], marched: Mask, size: Real
+    ) -> Any:
         """Return the declared error of psi2: of one impact a float, of a batch an array."""
         scene, laws = normal.scene, self.laws
-        rounding = CLOSED_FORM * psi_magnitude(scene) + normal.accuracy * 4.0 * scene.chi
+        rounding = CLOSED_FORM * size + normal.accuracy * 4.0 * scene.chi
         if not (scene.shape or marched):
             return float(rounding + sum(one.answer.psi2_error for one in answered))
         error: Any = spread(rounding, scene.shape)

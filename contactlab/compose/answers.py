@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any, NamedTuple
@@ -11,13 +12,11 @@ from numpy.typing import NDArray
 
 from contactlab.contracts import faults
 from contactlab.contracts.contact import NormalContact
-from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import TangentialLaw, WholeImpactTangentialLaw
 from contactlab.contracts.tangential_motion import Observer, Sample
 from contactlab.contracts.whole_impact import WholeImpact
-from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import shown
 from contactlab.numeric.types import Real
@@ -26,9 +25,6 @@ Mask = NDArray[np.bool_]
 
 #: The mask of a single impact: NumPy takes longer to make one than to say what it says.
 ONE: Mask = locked(np.array(True))
-#: Errors that differ by less, over themselves, are equal.
-ROUNDING = 1e-12
-
 #: Instants in the history of an impact that is not marched.
 INSTANTS = 201
 
@@ -45,14 +41,14 @@ def answers(
     tangential: TangentialLaw,
     *,
     history: bool | str,
-    accuracy: float | None = None,
+    largest_error: Real = math.inf,
 ) -> list[Answered]:
     """Return the answers of ``tangential`` to whole impacts, each impact in one of them at most.
 
     The list is empty if fields are requested, or the history of a batch: tractions and stick/slip
     fields come of a march only, and the impacts of a batch share the time axis of its history. If
     the law can be marched, an answer without a course is not used for a history, and no answer
-    with a larger error than ``accuracy`` is used, which is of psi2 over max(1, abs(psi1)).
+    with an error of psi2 above ``largest_error`` is used.
     """
     scene = normal.scene
     shape = scene.shape
@@ -63,7 +59,7 @@ def answers(
         if normal.status is not Status.SUCCESS:
             return []
         for answer in tangential.whole_impacts(scene, normal):
-            if answer.where and (always or _serves(answer, scene, history, accuracy)):
+            if answer.where and (always or _serves(answer, history, largest_error)):
                 return [Answered(ONE, _checked(answer, tangential, shape))]
         if always:
             raise _unanswered(tangential)
@@ -73,7 +69,7 @@ def answers(
     for answer in tangential.whole_impacts(scene, normal):
         where = left & np.broadcast_to(answer.where, shape)
         if not always:
-            where &= _serves(answer, scene, history, accuracy)
+            where &= _serves(answer, history, largest_error)
         if where.any():
             given.append(Answered(where, _checked(answer, tangential, shape)))
             left &= ~where
@@ -149,15 +145,12 @@ def _fields(
     return fields
 
 
-def _serves(answer: WholeImpact, scene: Scene, history: bool | str, accuracy: float | None) -> Any:
+def _serves(answer: WholeImpact, history: bool | str, largest_error: Real) -> Any:
     """Return where an answer is as accurate as a march, and has a course if one is asked for."""
     if history and answer.course is None:
         return False
-    error = answer.psi2_error
-    if accuracy is None or (isinstance(error, float) and not error > accuracy):
-        return True
-    excessive: Any = error > accuracy * (1.0 + ROUNDING) * psi_magnitude(scene)
-    return ~excessive if scene.shape else not excessive
+    excessive: Any = answer.psi2_error > largest_error
+    return ~excessive if isinstance(excessive, np.ndarray) else not excessive
 
 
 def _checked(answer: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) -> WholeImpact:

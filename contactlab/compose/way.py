@@ -172,7 +172,7 @@ class Way(Entries, ABC):
 
     def in_axes(self, motion: Motion, scene: Scene) -> Motion:
         """Return a motion of this way with its slip in the axes of the scene."""
-        if scene.slip_axes == self.scene.slip_axes:
+        if scene is self.scene or scene.slip_axes == self.scene.slip_axes:
             return motion
         return motion.turned(self.line(scene))
 
