@@ -218,14 +218,14 @@ def rebound(
     >>> round(rebound(1.2, 49 / 34), 6)
     -0.180519
     """
-    if type(restitution) is int:
+    if restitution is not ELASTIC and type(restitution) is int:
         restitution = float(restitution)  # 1 is as fast as 1.0
     usual = tolerance is USUAL or (isinstance(tolerance, float) and TABULATED < tolerance < 1.0)
     if usual and not derivatives:
         if restitution is ELASTIC or (type(restitution) is float and restitution == 1.0):
-            if _within(psi1, chi, *ELASTIC_CHI):
+            if _within(psi1, chi, ELASTIC_CHI):
                 return _table("tangential")(psi1, chi)
-        elif _below_one(restitution, psi1) and _within(psi1, chi, *RESTITUTED_CHI):
+        elif _below_one(restitution, psi1) and _within(psi1, chi, RESTITUTED_CHI):
             return _by_table(psi1, chi, restitution)
     if library_of(psi1) or library_of(chi) or library_of(restitution):
         return _labelled(psi1, chi, tolerance, derivatives, restitution)
@@ -376,11 +376,12 @@ def _below_one(restitution: Any, psi1: Any) -> TypeGuard[Real]:
     return bool(restitution.min() >= 0.0 and restitution.max() < 1.0)
 
 
-def _within(psi1: Any, chi: Any, low: float, high: float) -> bool:
+def _within(psi1: Any, chi: Any, span: tuple[float, float]) -> bool:
     """Return whether arguments are two floats or two equal arrays of floats, chi in a range.
 
     A quick look: arguments of other kinds, and bad ones, are False.
     """
+    low, high = span
     if isinstance(psi1, float):
         return isinstance(chi, float) and -math.inf < psi1 < math.inf and low <= chi <= high
     if not type(psi1) is type(chi) is np.ndarray or psi1.shape != chi.shape or not psi1.ndim:

@@ -136,7 +136,9 @@ def rebound(psi1: Any, chi: Any, *, derivatives: bool = False) -> Any:
         Whether to return (psi2, d psi2/d psi1, d psi2/d chi); arrays only.
     """
     if isinstance(psi1, float) and not derivatives:
-        return _single()(float(psi1), float(chi))  # NumPy's floats are floats, and slow
+        if type(psi1) is not float or type(chi) is not float:
+            psi1, chi = float(psi1), float(chi)  # NumPy's floats are floats, and slow
+        return _single()(psi1, chi)
     flat, ratios, shape = psi1.ravel(), chi.ravel(), psi1.shape
     if flat.size < FEW:
         psi2 = np.array(list(map(_single(), flat.tolist(), ratios.tolist())))

@@ -167,7 +167,7 @@ def _horner_text(terms: Sequence[object], argument: str) -> str:
     """Return Horner's rule in Python, of numbers or texts from the highest power down."""
     text = f"{terms[0]}"
     for term in terms[1:]:
-        text = f"({text}) * {argument} + ({term})"
+        text = f"({text}) * {argument}" + (f" + ({term})" if term else "")
     return text
 
 
