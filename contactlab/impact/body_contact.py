@@ -24,6 +24,7 @@ from contactlab.numeric.arrays import chosen, every, some
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import AnyArray, Array, Mask, Real, Vector
 from contactlab.numeric.vectors import (
+    LEAST,
     components,
     cross,
     difference,
@@ -70,6 +71,7 @@ class _Meeting(Protocol):
     def contact(self) -> Array: ...
     @property
     def target_contact(self) -> Array: ...
+    def separate(self) -> ValueError: ...
 
 
 class Contact(NamedTuple):
@@ -264,7 +266,7 @@ def _tangents(normal: Vector) -> tuple[Vector, Vector]:
 
 
 def frame(encounter: _Meeting, normal: Vector) -> Frame:
-    """Return the frame with t1 along W_nt, or along the slip without coupling.
+    """Return the frame with t1 along W_nt, or along the slip without coupling; bodies approach.
 
     For an ellipse t1 is the axis that holds both, or else the major one.
     """
@@ -272,6 +274,8 @@ def frame(encounter: _Meeting, normal: Vector) -> Frame:
     W = inverse_mass_of(encounter, normal, (normal, one, other))
     velocity = relative_velocity(encounter, normal)
     approach = dot(velocity, normal)
+    if not every(approach >= LEAST):
+        raise encounter.separate()
     # vectors of the tangent plane are complex numbers
     coupling = W[0][1] + 1j * W[0][2]
     slip = dot(velocity, one) + 1j * dot(velocity, other)

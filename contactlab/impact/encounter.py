@@ -238,11 +238,9 @@ class Encounter:
         to the target and along the slip, as three components of the batch shape. ``approach`` and
         ``slip`` are speeds in m/s, of the batch shape.
         """
-        n1, n2, n3 = components(self.normal)
-        length = square_root(n1 * n1 + n2 * n2 + n3 * n3)
-        n1, n2, n3 = n1 / length, n2 / length, n3 / length
+        n1, n2, n3 = normal = self._direction()
         if not self.of_spheres:
-            return meeting_of_bodies(self, (n1, n2, n3))
+            return meeting_of_bodies(self, normal)
         u1, u2, u3 = difference(self.velocity, self.target_velocity)
         approach = u1 * n1 + u2 * n2 + u3 * n3
         w1, w2, w3 = self._rim()
@@ -252,7 +250,13 @@ class Encounter:
         slip = square_root(u1 * u1 + u2 * u2 + u3 * u3)
         inverse = 1.0 / (slip + (slip == 0.0))
         along = (u1 * inverse, u2 * inverse, u3 * inverse)
-        return Contact((n1, n2, n3), along, approach, slip)
+        return Contact(normal, along, approach, slip)
+
+    def _direction(self) -> tuple[Any, Any, Any]:
+        """Return the unit normal."""
+        n1, n2, n3 = components(self.normal)
+        length = square_root(n1 * n1 + n2 * n2 + n3 * n3)
+        return n1 / length, n2 / length, n3 / length
 
     def _rim(self) -> tuple[Any, Any, Any]:
         """Return R1 omega1 + R2 omega2 in m/s, whose cross product with the normal is slip."""
@@ -282,11 +286,11 @@ class Encounter:
         ValueError
             If bodies separate.
         """
+        if not self.of_spheres:
+            return scene_of_bodies(self, self._direction())
         contact = self.meeting()
         if not every(contact.approach >= LEAST):
             raise self.separate()
-        if not self.of_spheres:
-            return scene_of_bodies(self, contact.normal)
         u = difference(self.velocity, self.target_velocity)
         along = dot(u, contact.along)
         if self.shape:
