@@ -117,16 +117,17 @@ def _rho(
     squared = None
     if rho is not None:
         squared = real("rho", rho, rule=POSITIVE)
-        if known is not None and not np.allclose(squared, known, rtol=ALIKE, atol=0.0):
-            rule = f"contradicts mu²/kappa = {known} of friction_coefficient and poisson_ratio"
-            raise refuse("rho", rho, rule, "leave out rho, or one of the two")
     elif eta is not None:
-        squared = _by_eta(drag, real("eta", eta))
+        squared = _by_eta(drag, real("eta", eta), 1.0 if known is None else known)
     elif np.any(drag):
         squared = known
         if known is None:
             rule = "lam needs one of them: eta in the plane, rho in the plane or in space"
             raise refuse("eta, rho", (eta, rho), rule, "rho = lam/eta = mu²/kappa")
+    if not (squared is None or known is None or np.allclose(squared, known, rtol=ALIKE, atol=0.0)):
+        name, told = ("rho", rho) if eta is None else ("lam / eta", np.ravel(squared).tolist())
+        rule = f"contradicts mu²/kappa = {known} of friction_coefficient and poisson_ratio"
+        raise refuse(name, told, rule, f"leave out {name[-3:]}, or one of the two")
     if squared is None or in_space:
         return squared
     jams = np.max(np.square(drag) / (2.0 * np.asarray(squared) * inertia))
@@ -135,8 +136,8 @@ def _rho(
     return squared
 
 
-def _by_eta(drag: Real, eta: Real) -> Any:
-    """Return lam/eta; 1 where both are zero."""
+def _by_eta(drag: Real, eta: Real, where_zero: Real) -> Any:
+    """Return lam/eta; ``where_zero`` where both are zero."""
     if not np.any(drag):
         if not np.any(eta):
             return None
@@ -144,7 +145,7 @@ def _by_eta(drag: Real, eta: Real) -> Any:
     alone = (np.asarray(drag) == 0.0) & (np.asarray(eta) == 0.0)
     rule = "must be positive: both have the sign of W_nt, and both are zero without coupling"
     with np.errstate(all="ignore"):
-        squared = np.where(alone, 1.0, np.divide(drag, eta))
+        squared = np.where(alone, where_zero, np.divide(drag, eta))
     if not np.all((squared > 0.0) & np.isfinite(squared)):
         raise refuse("lam / eta", np.ravel(squared).tolist(), rule, "rho = lam/eta = mu²/kappa")
     return _number(squared)

@@ -396,8 +396,8 @@ class Scene(Batches):
         Raises
         ------
         ValueError
-            If a number is not finite or out of range, lam eta >= 2 chi, rho contradicts the
-            friction coefficient and the Poisson ratio, or ``spin`` has no ``spin_inertia`` or
+            If a number is not finite or out of range, lam eta >= 2 chi, rho or lam/eta contradicts
+            the friction coefficient and the Poisson ratio, or ``spin`` has no ``spin_inertia`` or
             stands beside ``lam``.
         """
         entries = groups.entries(

@@ -682,6 +682,8 @@ REFUSED = [
     (lambda: planar(psi1=1.0, chi=1.0, lam=1.0, rho=1.0, eta=1.0), "eta, rho"),
     (lambda: planar(psi1=1.0, chi=1.0, lam=0.1, rho=1.0, poisson_ratio=0.3,
                     friction_coefficient=0.2), "contradicts"),
+    (lambda: planar(psi1=1.0, chi=1.0, lam=0.1, eta=0.2, poisson_ratio=0.3,
+                    friction_coefficient=0.3), r"lam / eta = \[0.5\]: contradicts"),
     (lambda: planar(psi1=[1.0, 0.0], chi=np.eye(2), lam=[0.1, 0.0, 0.0], rho=1.0), "lam.shape"),
     (lambda: Scene(Sphere(0.01, STEEL), FLOOR, 0.1, 1.0, inverse_mass=np.eye(3)),
      "inverse_mass"),
