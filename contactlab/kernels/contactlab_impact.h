@@ -44,7 +44,8 @@ enum {
  * often the approach grew; and steps. */
 typedef struct { double rate, change, work, time, radius; int compressions, steps; } contactlab_impact;
 
-/* Last coefficient of a series, the number of its coefficients, and pieces of memory. */
+/* Last coefficient of a series, the number of its coefficients, and pieces of memory: an impact of many steps in which
+ * bodies that hardly move jam leaves more, at most one a step. */
 enum { CONTACTLAB_IMPACT_ORDER = 16, CONTACTLAB_IMPACT_TERMS = 17, CONTACTLAB_IMPACT_PIECES = 256 };
 
 typedef double contactlab_impact_series[CONTACTLAB_IMPACT_TERMS];
@@ -78,7 +79,8 @@ typedef struct {
   double radius, rate, margin, lack; /* u, V, k, J */
   contactlab_impact_laws laws;
   contactlab_impact out;
-  contactlab_impact_piece memory[CONTACTLAB_IMPACT_PIECES];
+  contactlab_impact_piece *memory;
+  int room;
 } contactlab_impact_course;
 
 /* Phases, by what the contact does: all sticks; the edge slips into a piece of either kind; all slips. */
@@ -536,7 +538,7 @@ static inline int contactlab_impact_run(contactlab_impact_course *I, int phase, 
 
 static inline int contactlab_impact_remember(contactlab_impact_course *I, contactlab_impact_piece piece)
 {
-  if (I->pieces == CONTACTLAB_IMPACT_PIECES) return CONTACTLAB_IMPACT_MEMORY;
+  if (I->pieces == I->room) return CONTACTLAB_IMPACT_MEMORY;
   I->memory[I->pieces++] = piece;
   return CONTACTLAB_IMPACT_DONE;
 }
@@ -704,9 +706,10 @@ static inline int contactlab_impact_slide(contactlab_impact_course *I, int *next
   return stops ? contactlab_impact_stopped(I, 0, next) : CONTACTLAB_IMPACT_DONE;
 }
 
-/* As contactlab_impact_follow, and calls `watch` with each step unless it is null. */
-static inline int contactlab_impact_watched(double psi1, double chi, double lam, double eta, double tolerance, int most,
-                                            contactlab_impact_watch *watch, void *context, contactlab_impact *out)
+/* As contactlab_impact_watched, with a memory of `room` pieces; as many as `most` hold any impact. */
+static inline int contactlab_impact_within(double psi1, double chi, double lam, double eta, double tolerance, int most,
+                                           contactlab_impact_watch *watch, void *context,
+                                           contactlab_impact_piece *memory, int room, contactlab_impact *out)
 {
   contactlab_impact_course course, *I = &course;
   const contactlab_impact none = {1, 0, 0, 0, 0, 1, 0};
@@ -718,6 +721,8 @@ static inline int contactlab_impact_watched(double psi1, double chi, double lam,
   I->most = most;
   I->watch = watch;
   I->context = context;
+  I->memory = memory;
+  I->room = room;
   I->sign = psi1 >= 0 ? 1 : -1;
   I->pieces = I->part = 0;
   I->radius = I->lack = 0;
@@ -734,6 +739,15 @@ static inline int contactlab_impact_watched(double psi1, double chi, double lam,
   I->out.rate = I->rate;
   *out = I->out;
   return status;
+}
+
+/* As contactlab_impact_follow, and calls `watch` with each step unless it is null. */
+static inline int contactlab_impact_watched(double psi1, double chi, double lam, double eta, double tolerance, int most,
+                                            contactlab_impact_watch *watch, void *context, contactlab_impact *out)
+{
+  contactlab_impact_piece memory[CONTACTLAB_IMPACT_PIECES];
+  return contactlab_impact_within(psi1, chi, lam, eta, tolerance, most, watch, context, memory,
+                                  CONTACTLAB_IMPACT_PIECES, out);
 }
 
 /* Follows one impact to separation. Returns a status, and what it leaves in `out`.

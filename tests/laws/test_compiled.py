@@ -102,9 +102,43 @@ def test_the_books_of_a_solved_sphere_are_checked():
     assert not result.plan.marched.any()
 
 
+#: psi1, chi, lam and what friction leaves of W, of impacts that jam hundreds of times.
+JAMS = [
+    (-0.01857175502130575, 0.969553265605366, -2.1667788333025677, 1.468863941850762e-05),
+    (1.12968e-07, 1.20233, 740.409, 7.58e-08),
+    (3.64852, 0.236367, -236.291, 2.61e-07),
+]
+
+
+def jams(rows):
+    psi1, chi, lam, free = np.transpose(rows)
+    return np.array([psi1, chi, lam, (1.0 - free) * 2.0 * chi / lam])
+
+
+@needs_library
+def test_the_longest_jams_stay_in_the_library():
+    """Python's solver took seconds to give them up after as many steps."""
+    found, status = compiled.follow(jams(JAMS), 5e-13)
+    assert status.tolist() == [0, compiled.UNSETTLED, compiled.UNSETTLED]
+    assert found[6, 1:].tolist() == [compiled.MOST_STEPS] * 2
+    out, ended, rows = compiled.kept(jams(JAMS)[:, 0].tolist(), 5e-13)
+    assert (ended, len(rows)) == (0, found[6, 0])
+    assert out.tolist() == found[:, 0].tolist()
+
+
+@needs_library
+@pytest.mark.slow
+def test_a_long_jam_is_that_of_python(both):
+    psi1, chi, lam, eta = jams(JAMS[:1])[:, 0].tolist()
+    scene = Scene.nondimensional(psi1=psi1, chi=chi, lam=lam, eta=eta)
+    one, other = both(lambda: Simulation().run(scene).check())
+    for name in ("duration", "normal_velocity", "slip_velocity_change", "maximum_radius"):
+        assert getattr(one.motion, name) == pytest.approx(getattr(other.motion, name), rel=1e-6)
+
+
 @needs_library
 def test_an_impact_that_it_gives_up_is_followed_by_python(monkeypatch):
-    """A memory too long for the library, and a sphere that it does not settle."""
+    """A memory that finds no room, and a sphere that the library does not settle."""
     follow = compiled.follow
 
     def forgetful(numbers, *rest):

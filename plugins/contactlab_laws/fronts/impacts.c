@@ -1,6 +1,8 @@
 /* Many impacts by contactlab_impact.h, and the sources this library was built of. */
 #include "contactlab_impact.h"
 
+#include <stdlib.h>
+
 #ifndef CONTACTLAB_SOURCES
 #define CONTACTLAB_SOURCES ""
 #endif
@@ -23,6 +25,19 @@ static void contactlab_impact_write(const contactlab_impact *one, long stride, d
   out[6 * stride] = one->steps;
 }
 
+/* Follows one impact again with a memory that holds all its steps. */
+static int contactlab_impact_again(const double *numbers, long stride, double tolerance, int most,
+                                   contactlab_impact_watch *watch, void *context, contactlab_impact *one)
+{
+  contactlab_impact_piece *memory = (contactlab_impact_piece *)malloc((size_t)most * sizeof *memory);
+  int status = CONTACTLAB_IMPACT_MEMORY;
+  if (memory)
+    status = contactlab_impact_within(numbers[0], numbers[stride], numbers[2 * stride], numbers[3 * stride], tolerance,
+                                      most, watch, context, memory, most, one);
+  free(memory);
+  return status;
+}
+
 /* psi1, chi, lam and eta in the rows of `numbers`, shape (4, count); what each leaves in the rows of `out`, shape
  * (7, count). */
 void contactlab_impact_follow_all(long count, const double *numbers, double tolerance, int most, double *out, int *status)
@@ -32,6 +47,8 @@ void contactlab_impact_follow_all(long count, const double *numbers, double tole
     contactlab_impact one;
     status[i] = contactlab_impact_follow(numbers[i], numbers[count + i], numbers[2 * count + i], numbers[3 * count + i],
                                          tolerance, most, &one);
+    if (status[i] == CONTACTLAB_IMPACT_MEMORY)
+      status[i] = contactlab_impact_again(numbers + i, count, tolerance, most, NULL, NULL, &one);
     contactlab_impact_write(&one, count, out + i);
   }
 }
@@ -73,6 +90,10 @@ long contactlab_impact_follow_kept(const double *numbers, double tolerance, int 
   contactlab_impact one;
   *status = contactlab_impact_watched(numbers[0], numbers[1], numbers[2], numbers[3], tolerance, most,
                                       contactlab_impact_keep, &steps, &one);
+  if (*status == CONTACTLAB_IMPACT_MEMORY) {
+    steps.count = 0;
+    *status = contactlab_impact_again(numbers, 1, tolerance, most, contactlab_impact_keep, &steps, &one);
+  }
   contactlab_impact_write(&one, 1, out);
   return steps.count;
 }
