@@ -26,8 +26,8 @@ LEAST_ERROR = 5e-13
 MOST_STEPS = 20_000
 #: psi2 is proportional to psi1 below it; smaller ones would be lost in rounding.
 LINEAR_BELOW = 1e-8
-#: Statuses of impacts without an answer; the last is that of all without a library, and of one whose
-#: memory finds no room: Python's solver follows them.
+#: Statuses of impacts without an answer; the last is that of all without a library, and of one
+#: whose memory finds no room: Python's solver follows them.
 UNSETTLED, OUTGROWN, MEMORY = 1, 2, 3
 #: Steps for which there is room at first.
 ROOM = 64

@@ -36,6 +36,10 @@ from contactlab_laws.march.division import resolving
 
 #: A contact that lasts longer than so many times the approach without friction is given up.
 LONGEST = 100
+#: Turns from parting to approach, made by tension, after which a contact is given up: adhesion
+#: holds the bodies together. An approach alone is given up after as many. Of 400 random rods under
+#: JKR and DMT that parted none had been pulled back once.
+MOST_PULLS = 10
 #: Turns in which a step solves for rates at which its forces act, where forces depend on rates;
 #: share of the steps that grow evenly at first touch, where such forces go as the root of time.
 TURNS, LEADING = 3, 0.4
@@ -140,6 +144,7 @@ class _March:
         self.shares = law.shares_loss(normal.law)
         self.work, self.loss, self.duration, self.shear = zero, zero, zero, zero
         self.greatest: list[Any] = [zero, zero, zero]
+        self.pulls: Any = zero
         self.compressions: Any = 1 if plain else np.ones(scene.shape, dtype=int)
         self.alive: Any = True if plain else np.ones(scene.shape, dtype=bool)
         self.steps = 0
@@ -233,6 +238,8 @@ class _March:
             self.compressions = self.compressions + again
             self.duration = self.duration + step * going
             self.alive = going
+            if not self.elastic and np.any(again):
+                self._pulled(again & (contact.force < 0.0))
             if not (self.alive.any() if self.shape else self.alive):
                 return None
             if not np.isfinite(sum(velocity)).all():
@@ -244,6 +251,15 @@ class _March:
                     f"{np.max(self.compressions)} compressions."
                 )
                 return self.fail(Status.NOT_SEPARATED, sentence, self.alive)
+
+    def _pulled(self, back: Mask) -> None:
+        """Count turns that tension made, and give up impacts that had too many."""
+        self.pulls = self.pulls + back
+        held = self.pulls >= MOST_PULLS
+        if np.any(held):
+            sentence = f"Adhesion holds the bodies: it pulled them back {MOST_PULLS} times."
+            self.fail(Status.NOT_SEPARATED, sentence, held & self.alive)
+            self.alive = np.logical_and(self.alive, np.logical_not(held))
 
     def _unsettled(self, settled: Mask, force: list[Real]) -> list[Real]:
         """Mark impacts to which the law has no answer, and return the forces of the others."""
