@@ -150,7 +150,7 @@ def _in_place(laws: Laws, used: Laws) -> str:
         for old, new in zip(laws, used, strict=True)
         if type(new) is not type(old)
     ]
-    return f"laws: {', '.join(pairs)}, which has no answer where friction changes the approach"
+    return f"laws: {', '.join(pairs)}, as friction changes the approach, or slip turns"
 
 
 class _Asked(NamedTuple):
