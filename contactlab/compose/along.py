@@ -14,7 +14,6 @@ from contactlab.compose.way import ONE_BY_ONE, Prepared, Way, halves
 from contactlab.contracts import faults
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.motion import NormalMotion
-from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.status import Status, succeeded
 from contactlab.contracts.tangential_motion import Observer, TangentialMotion
@@ -47,7 +46,7 @@ class Along(Way):
 
     def how(self) -> str:
         """Return words on how the normal motion is found."""
-        if isinstance(self.laws.normal, ClosedFormNormalLaw):
+        if self.laws.normal.closed_form:
             return "in closed form"
         return "integrated from first touch to separation"
 

@@ -14,7 +14,7 @@ from contactlab.contracts import faults
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status
-from contactlab.contracts.tangential import TangentialLaw, WholeImpactTangentialLaw
+from contactlab.contracts.tangential import TangentialLaw
 from contactlab.contracts.tangential_motion import Observer, Sample
 from contactlab.contracts.whole_impact import WholeImpact
 from contactlab.numeric.arrays import locked
@@ -52,7 +52,7 @@ def answers(
     """
     scene = normal.scene
     shape = scene.shape
-    always = isinstance(tangential, WholeImpactTangentialLaw)
+    always = tangential.whole
     if history == "fields" and not always:
         return []
     if not shape:

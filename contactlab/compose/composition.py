@@ -192,7 +192,7 @@ def misfit(normal: Law, tangential: Any, integrator: Any = None) -> str | None:
         )
     if (complaint := _refused(normal, tangential)) is not None:
         return complaint
-    if integrator is None or isinstance(tangential, WholeImpactTangentialLaw):
+    if integrator is None or tangential.whole:
         return None
     if not isinstance(tangential, integrator.tangential_contract):
         return (

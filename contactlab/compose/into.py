@@ -197,8 +197,7 @@ def _batches(scenes: Scene | Iterable[Scene], size: int) -> Iterator[Scene]:
         return
     singles: list[Scene] = []
     for position, scene in enumerate(scenes):
-        if not isinstance(scene, Scene):
-            raise refuse(f"scenes[{position}]", scene, "must be a Scene")
+        of_kind(f"scenes[{position}]", scene, Scene)
         if not scene.shape:
             singles.append(scene)
         if singles and (scene.shape or len(singles) == size):

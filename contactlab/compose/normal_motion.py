@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import attrs
 import numpy as np
 
@@ -10,7 +12,7 @@ from contactlab.compose.motion_solver_alone import Alone
 from contactlab.compose.solved_motion import FailedMotion, MotionTable, SolvedMotion, Units
 from contactlab.contracts import faults
 from contactlab.contracts.motion import NormalMotion
-from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
+from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.batches import NoIndexError
 from contactlab.impact.scene import Scene
@@ -19,9 +21,10 @@ from contactlab.numeric.checks import shown
 
 def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
     """Return the motion from first touch to separation, or raise LawFaultError for a bad law."""
-    if isinstance(law, ClosedFormNormalLaw):
+    if law.closed_form:
+        closed: Any = law
         with faults.blaming(law):
-            motion = law.motion(scene)
+            motion = closed.motion(scene)
             if not isinstance(motion, NormalMotion):
                 raise TypeError(f"motion returned {shown(motion)}, which is no NormalMotion")
             if motion.scene is not scene:

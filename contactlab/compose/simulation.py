@@ -27,7 +27,7 @@ from contactlab.impact.encounter import Encounter
 from contactlab.impact.grid import GridParts
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import taken
-from contactlab.numeric.checks import refuse
+from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import arguments_told
 from contactlab.numeric.types import Array
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory, Recorder
@@ -39,6 +39,13 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from contactlab.outcome.sweep_folder import SweepFolder
+
+
+#: What to do with what users give in place of a scene.
+INSTEAD: dict[type, str] = {
+    **dict.fromkeys((str, Path), "for a file use read_scene(path), whose run() runs it"),
+    Encounter: "for bodies in space use collide(encounter, simulation), or encounter.scene",
+}
 
 
 @arguments_told
@@ -318,14 +325,10 @@ def _result(
 
 def _scene(scene: object) -> Scene:
     """Return ``scene``, or refuse an object of another class."""
-    if not isinstance(scene, Scene):
-        remedy = "make one: Scene(...)"
-        if isinstance(scene, str | Path):
-            remedy = "for a file use read_scene(path), whose run() runs it"
-        elif isinstance(scene, Encounter):
-            remedy = "for bodies in space use collide(encounter, simulation), or encounter.scene"
-        raise refuse("scene", scene, "must be a Scene", remedy)
-    return scene
+    if type(scene) is Scene:
+        return scene
+    found: Scene = of_kind("scene", scene, Scene, remedy="make one: Scene(...)", meant=INSTEAD)
+    return found
 
 
 def _history(history: bool | str) -> bool | str:

@@ -11,9 +11,7 @@ from typing import TYPE_CHECKING
 from contactlab.compose.composition import Laws
 from contactlab.compose.pieces import Part, Piece, unsolved
 from contactlab.compose.solve import solved
-from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.status import Status
-from contactlab.contracts.tangential import WholeImpactTangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse, whole
 from contactlab.outcome.chunk_forms import Chunk
@@ -32,8 +30,7 @@ def block_of(laws: Laws) -> int:
     # The last bits of an answer may depend on the impacts beside it: on the iterations of an array
     # solver, and on whether the processor uses scalar or vector arithmetic. So the size of a block
     # depends on the laws alone.
-    whole_impacts = isinstance(laws.tangential, WholeImpactTangentialLaw)
-    if whole_impacts and isinstance(laws.normal, ClosedFormNormalLaw):
+    if laws.tangential.whole and laws.normal.closed_form:
         return WHOLE_IMPACTS
     return laws.integrator.chunk(laws.tangential)
 

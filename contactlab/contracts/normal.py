@@ -31,7 +31,7 @@ class NormalLaw(Law):
     4. If an argument is NaN, the answer is NaN, never "no contact".
     5. The normal motion is integrated from ``respond``, before any friction, to the tolerance
        ``contactlab.compose.motion_solver.TOLERANCE``. A ``ClosedFormNormalLaw`` returns its
-       motion itself.
+       motion itself, and has the word ``closed_form``.
     6. ``cautions`` returns doubts about the model when a plan is read, as those of a
        ``TangentialLaw``. ``plastic`` is True for a law whose bodies
        yield; such a law has no caution about yield.
@@ -54,6 +54,7 @@ class NormalLaw(Law):
 
     kind: ClassVar[str] = "normal"
     plastic: ClassVar[bool] = False
+    closed_form: ClassVar[bool] = False
 
     @abstractmethod
     def start(self, scene: Scene) -> Any:
@@ -100,6 +101,8 @@ class NormalLaw(Law):
 
 class ClosedFormNormalLaw(NormalLaw):
     """Base of normal laws that return their motion in closed form, without integration."""
+
+    closed_form: ClassVar[bool] = True
 
     @abstractmethod
     def motion(self, scene: Scene) -> ClosedFormMotion:

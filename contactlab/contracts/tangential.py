@@ -144,6 +144,7 @@ class TangentialLaw(Law):
     kind: ClassVar[str] = "tangential"
     together: ClassVar[bool] = False
     vectors: ClassVar[bool] = False
+    whole: ClassVar[bool] = False
 
     @property
     def normal_spin(self) -> bool:
@@ -302,8 +303,11 @@ class WholeImpactTangentialLaw(TangentialLaw):
 
     Contract
     --------
-    1. The answers of ``whole_impacts`` together hold for all impacts. No integrator is used.
+    1. The answers of ``whole_impacts`` together hold for all impacts, which the word ``whole``
+       says. No integrator is used.
     """
+
+    whole: ClassVar[bool] = True
 
     @abstractmethod
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
