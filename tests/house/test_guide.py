@@ -3,7 +3,9 @@
 import contextlib
 import io
 import re
+import subprocess
 import sys
+import textwrap
 import types
 from pathlib import Path
 
@@ -156,6 +158,22 @@ def test_a_law_of_the_guide_passes_the_kit(extending, name):
     assert Verdict.PASSED in {item.verdict for item in found}
     failing = {item.check for item in found if item.verdict is Verdict.EXPECTED_FAILURE}
     assert failing == set(law.expected_failures)
+
+
+@pytest.mark.slow
+def test_the_files_of_a_law_and_of_its_tests_run_in_a_folder_of_their_own(tmp_path):
+    page = text("extending-kit")
+    (tmp_path / "my_law.py").write_text(BLOCKS.findall(page)[0][0], "utf-8")
+    (tests,) = re.findall(r"`test_my_law\.py`[^\n]*\n\n((?: {4}.*\n|\n)+)", page)
+    (tmp_path / "test_my_law.py").write_text(textwrap.dedent(tests), "utf-8")
+    ran = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"], cwd=tmp_path,
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert ran.returncode == 0, ran.stdout
+    checks = check_law(run("extending-kit")[0].OneSpring())
+    passed = sum(item.verdict is Verdict.PASSED for item in checks)
+    assert f"{passed} passed" in ran.stdout
 
 
 def test_the_theory_has_the_sections_that_are_numbered():
