@@ -26,6 +26,7 @@ from contactlab.impact.cautions import (
     three_numbers,
     unit_slips,
     unlikely,
+    yield_unknown,
 )
 from contactlab.impact.hertz import elongation_of
 from contactlab.impact.scene import Scene
@@ -128,6 +129,9 @@ def _words(
         name = type(used.tangential).__name__
         left_out.append(Clause(f"loss in shear: {name} has none beside this law", masks.known))
     left_out += way.left_out(masks)
+    words, unknown, pressure = yield_unknown(scene)
+    if words and not used.normal.plastic:
+        left_out.append(Clause(words, masks.known & unknown, (pressure,)))
     if reason := _no_history(asked_for.history, columns, masks.marched):
         left_out.append(Clause(reason, masks.known))
     with np.errstate(under="ignore"):

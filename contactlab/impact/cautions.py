@@ -187,6 +187,28 @@ def yielding(scene: Scene, peak: Real | None = None) -> tuple[str, ...]:
     )
 
 
+def yield_unknown(scene: Scene) -> tuple[str, Any, Real]:
+    """Return words on bodies without yield stress, where there are any, and pressures in GPa.
+
+    The words are empty if all bodies have one.
+    """
+    where: dict[str, Any] = {}
+    for name, body in named(scene).items():
+        stress = body.material.yield_stress
+        missing = np.asarray(True if stress is None else np.isnan(stress))
+        if missing.any():
+            where[f"the {name}"] = np.broadcast_to(missing, scene.shape)
+    if not where:
+        return "", False, 0.0
+    words = (
+        f"yield: not checked, {' and '.join(where)} have no yield_stress; the peak pressure of "
+        "Hertz's contact is {:.2g} GPa"
+    )
+    if len(where) == 1:
+        words = words.replace("have no", "has no")
+    return words, np.logical_or.reduce([*where.values()]), peak_pressure(scene) / GPA
+
+
 def tabor_caution(
     scene: Scene,
     work_of_adhesion: float,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
+from contactlab import Encounter, HalfSpace, Material, Scene, Simulation, Sphere
 from contactlab.impact import material as materials
 from contactlab.impact.hertz import hertz_scales, peak_pressure
 
@@ -56,6 +56,38 @@ def test_named_materials_of_one_condition_have_the_caution(name, yields):
 def test_without_a_yield_stress_there_is_no_caution():
     assert said("hertz", scene(None)) == []
     assert said("hertz", Scene.nondimensional(psi1=1.0, chi=1.44)) == []
+
+
+ROD = {"length": 0.1, "radius": 0.01, "normal": (0, 0, -1), "axis": (0.6, 0.0, 0.8)}
+
+
+@pytest.mark.parametrize(
+    ("ball", "plane", "who"),
+    [(YIELD, None, "the target has"), (None, YIELD, "the {} has"),
+     (None, None, "the {} and the target have"), (YIELD, YIELD, "")],
+)  # fmt: skip
+def test_a_plan_says_whose_yield_it_does_not_check(ball, plane, who):
+    """Of spheres and of bodies; a law that yields needs no stress."""
+    rod, contact = contactlab.shapes.rod(material=steel(ball), **ROD)
+    met = Encounter(
+        rod, HalfSpace(steel(plane)), 0.2, normal=(0, 0, -1), velocity=(0, 0, -1), contact=contact
+    )
+    for name, given in (("sphere", scene(ball, plane=plane)), ("body", met.scene)):
+        left_out = list(map(str, Simulation().plan(given).left_out))
+        told = [text for text in left_out if text.startswith("yield")]
+        pressure = f"the peak pressure of Hertz's contact is {peak_pressure(given) / 1e9:.2g} GPa"
+        words = f"yield: not checked, {who.format(name)} no yield_stress; {pressure}"
+        assert told == ([words] if who else [])
+    yields = Simulation(normal="thornton", tangential="coulomb").plan(scene(ball, plane=plane))
+    assert not any(str(text).startswith("yield") for text in yields.left_out)
+
+
+def test_yield_is_not_checked_for_some_impacts_of_a_batch():
+    stress = np.array([YIELD, np.nan, YIELD])
+    given = scene(stress, plane=YIELD, speed=np.array([1.0, 2.0, 3.0]))
+    (told,) = [str(each) for each in Simulation().plan(given).left_out if "yield" in str(each)]
+    assert told.startswith("yield (1 of 3 impacts): not checked, the sphere has no yield_stress")
+    assert told.endswith(f"is {peak_pressure(given)[1] / 1e9:.2g} GPa")
 
 
 @pytest.mark.parametrize("normal", ["hertz", "tsuji", "hunt_crossley", "kuwabara_kono", "linear"])
@@ -125,12 +157,20 @@ def test_a_scene_file_takes_it(tmp_path):
 
 def test_yield_stresses_of_the_collection_have_sources():
     known = [one for one in materials.entries() if one.yield_stress is not None]
-    metals = {"mild steel", "hardened steel", "aluminium alloy", "titanium", "tungsten", "lead"}
-    assert {one.name for one in known} == metals | {"nylon", "pmma", "polycarbonate"}
+    metals = {
+        "mild steel", "hardened steel", "annealed stainless steel", "aluminium alloy",
+        "soft brass", "soft copper", "titanium", "tungsten", "lead",
+    }  # fmt: skip
+    plastics = {"nylon", "pmma", "polycarbonate", "cellulose acetate"}
+    assert {one.name for one in known} == metals | plastics
+    without = {one.name for one in materials.entries() if "no yield stress:" in one.note}
+    alloys = {"steel", "stainless steel", "brass", "copper", "magnesium alloy"}
+    assert without == alloys | {"phenolic resin", "polyethylene"}
     for one in materials.entries():
         assert (one.yield_stress is None) == (one.yield_source == "")
     for one in known:
         assert 1e6 < one.yield_stress < 1e10
         assert one.yield_source.partition(",")[0] in materials.references()
-        assert re.search(r"table B\.[45]", one.yield_source)
+        for low, high in re.findall(r"range ([\d.]+) to ([\d.]+) MPa", one.yield_source):
+            assert one.yield_stress == pytest.approx(0.5e6 * (float(low) + float(high)), rel=0.01)
         assert one.material().yield_stress == one.yield_stress
