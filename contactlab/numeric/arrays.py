@@ -172,7 +172,7 @@ def spread(value: Real, shape: tuple[int, ...]) -> Any:
 
 def of_each(value: Real, shape: tuple[int, ...]) -> Any:
     """Return a number that all impacts of a batch share as one of each, an array as it is."""
-    return value if np.ndim(value) >= len(shape) else spread(value, shape)
+    return value if not shape or np.ndim(value) >= len(shape) else spread(value, shape)
 
 
 def zeros(shape: tuple[int, ...]) -> Any:
