@@ -55,7 +55,7 @@ def ranking(ranked: list[Ranked]) -> str:
     names = list(dict.fromkeys(name for one in fits for name in one.parameters))
     quantities = list(dict.fromkeys(name for one in fits for name in one.rms))
     headings = ["law", "AIC - best", *names, *(f"rms {name}" for name in quantities)]
-    best = min(law.aic for law in fits)
+    best = min(one.aic for one in fits)
     rows = [
         [law.name, law.fit.aic - best, *_numbers(law.fit, names, quantities)]
         if law.fit
@@ -66,13 +66,13 @@ def ranking(ranked: list[Ranked]) -> str:
 
 
 def _numbers(fit: Fit, names: list[str], quantities: list[str]) -> list[float | None]:
-    """Return parameters and rms residuals of a law; None for those that it has not."""
+    """Return parameters and rms residuals of a law; None for those that it lacks."""
     values = [fit[name] if name in fit.parameters else None for name in names]
     return [*values, *(fit.rms.get(name) for name in quantities)]
 
 
 def further_cautions(first: Fit, ranked: list[Ranked]) -> list[str]:
-    """Return the cautions that the first law has not, each once with the laws that have it."""
+    """Return cautions that the first law lacks, each once with the laws that have it."""
     laws: dict[str, list[str]] = {}
     for law in ranked:
         for text in law.fit.cautions if law.fit else ():
@@ -85,7 +85,7 @@ def further_cautions(first: Fit, ranked: list[Ranked]) -> list[str]:
 
 
 def write_residuals(path: Path, shown: list[Ranked]) -> None:
-    """Write the residuals as CSV, law row for each measured number and law."""
+    """Write the residuals as CSV, a row for each measured number under each law."""
     rows: list[list[Any]] = []
     entries: list[str] = []
     for law in shown:

@@ -219,7 +219,7 @@ class Collision(Answer, Generic[Each]):
     def energy(self) -> EnergyLedger[Each]:
         """The energy books of the relative motion, in J; its loss is the loss of both bodies.
 
-        Of bodies that are no spheres and passed through all entries are 0.
+        All entries are 0 of bodies that are no spheres and passed through.
         """
         if not self.encounter.of_spheres:
             return self._energy_of_bodies()
@@ -247,15 +247,15 @@ class Collision(Answer, Generic[Each]):
         """Return the books of the impacts, spread over the encounters."""
         if self.known is not None and np.all(self.collided):
             return self.known.energy
-        zeros = np.zeros(self.encounter.shape)
-        entries: dict[str, Any] = {
-            name: zeros.copy() if self.encounter.shape else 0.0
-            for name in ("start", "end", "normal_loss", "friction_work", "shear_loss", "imbalance")
-        }
+        names = ("start", "end", "normal_loss", "friction_work", "shear_loss", "imbalance")
+        told: dict[str, Any] = dict.fromkeys(names, 0.0)
+        unchecked: Any = False
         if self.known is not None:
-            for name, entry in entries.items():
-                entry[self.collided] = getattr(self.known.energy, name)
-        return EnergyLedger(**entries)
+            books = self.known.energy
+            told = {name: getattr(books, name) for name in names}
+            unchecked = np.logical_not(books.checked)
+        *entries, unchecked = self._spread(*told.values(), unchecked)
+        return EnergyLedger(**dict(zip(names, entries, strict=True)), checked=unchecked == 0.0)
 
     @property
     def impulse(self) -> Array:

@@ -46,6 +46,7 @@ def rebounding(
     with np.errstate(all="ignore"):
         # m/s for each unit of psi, eq. (29)
         unit: Any = part.friction_coefficient * contact.approach / pair.stiffness_ratio
+        # without slip and friction 0/0 is NaN, in place of which fmin takes the other number
         psi1: Any = np.fmin(np.divide(contact.slip, unit), end)
         psi1 = chosen(contact.approach >= LEAST, psi1, 0.0)
         psi2: Any = rebound(psi1, chi, restitution=restitution)
@@ -79,8 +80,10 @@ def moved(
     restitution: Real = 1.0,
     strict: bool = False,
 ) -> Moved:
-    """Return both bodies after an encounter; ``strict`` refuses bodies that separate."""
-    # ``answers``, shape (3, encounters), are the columns of ``rebounding``; its own by default.
+    """Return both bodies after an encounter; ``strict`` refuses bodies that separate.
+
+    ``answers``, shape (3, encounters), are columns as of ``rebounding``, which answers by default.
+    """
     shape = encounter.shape
     if not shape and answers is None:
         return _alone(encounter, restitution, strict)

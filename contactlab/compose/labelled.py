@@ -22,7 +22,7 @@ MODULES = {"xarray": "xarray", "pandas": "pandas", "dask": "dask.array"}
 def by_labels(
     function: Callable[..., object], answers: int, arguments: Mapping[str, object]
 ) -> Any:
-    """Return a function of arrays, applied to labelled or lazy arrays.
+    """Return what a function of arrays answers to labelled or lazy arrays, labelled or lazy too.
 
     Parameters
     ----------
@@ -61,11 +61,10 @@ def _library(arguments: Mapping[str, object]) -> tuple[str, str]:
         library = library_of(value)
         if not library:
             continue
-        if not isinstance(
-            value, getattr(importlib.import_module(MODULES[library]), KINDS[library])
-        ):
-            kind = f"must be a {library} {KINDS[library]}, or numbers"
-            raise refuse(name, value, kind, "give one column or variable of it")
+        kind = getattr(importlib.import_module(MODULES[library]), KINDS[library])
+        if not isinstance(value, kind):
+            rule = f"must be a {library} {KINDS[library]}, or numbers"
+            raise refuse(name, value, rule, "give one column or variable of it")
         owners.setdefault(library, name)
     if len(owners) > 1:
         given = ", ".join(f"{name} of {library}" for library, name in owners.items())

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from typing import Any
 
 import attrs
 import numpy as np
@@ -70,8 +69,6 @@ class Material:
                 "exactly one of the two must be given",
                 "leave one out; the other follows from E = 2 G (1 + nu)",
             )
-        mass: Any  # what the converters of attrs take
-        strength: Any
         ratio = real("poisson_ratio", poisson_ratio, rule=POISSON, remedy="it has no unit")
         if shear_modulus is None:
             young = real("young_modulus", young_modulus, rule=POSITIVE, remedy="give it in Pa")
@@ -84,9 +81,8 @@ class Material:
                 )
             shear_modulus = young / (2.0 * (1.0 + ratio))
         shear = real("shear_modulus", shear_modulus, rule=POSITIVE, remedy="give it in Pa")
-        mass, strength = density, yield_stress
         self.__attrs_init__(
-            shear_modulus=shear, poisson_ratio=ratio, density=mass, yield_stress=strength
+            shear_modulus=shear, poisson_ratio=ratio, density=density, yield_stress=yield_stress
         )
 
     @classmethod

@@ -13,7 +13,7 @@ import attrs
 import numpy as np
 
 from contactlab.numeric.labels import misplaced
-from contactlab.numeric.types import Numbers, Places, Real
+from contactlab.numeric.types import Array, Numbers, Places, Real
 
 T = TypeVar("T")
 
@@ -33,7 +33,7 @@ class Rule(NamedTuple):
     sentence: str
 
 
-#: Classes without labels, told apart faster than the others are looked at.
+#: Classes whose objects have no labels: ``real`` does not look for any.
 UNLABELLED = frozenset({np.ndarray, list, tuple, int})
 
 FINITE = Rule(lambda value: value == value, "must be a finite real number")
@@ -188,14 +188,26 @@ def _checked(value: Numbers | None, owner: object, field: attrs.Attribute[object
     if type(value) is float and math.isfinite(value) and meta["rule"].holds(value):
         return value  # the remedy of a refusal takes longer to write than a number to check
     remedy = unit_remedy(meta["unit"])
-    if "unknown" in meta and isinstance(value, np.ndarray) and np.isnan(value).any():
-        real(field.name, value[~np.isnan(value)], rule=meta["rule"], remedy=remedy, empty=True)
-        return np.array(value, dtype=np.float64)
+    if "unknown" in meta and (numbers := _partly_known(value)) is not None:
+        real(field.name, numbers[~np.isnan(numbers)], rule=meta["rule"], remedy=remedy, empty=True)
+        return np.array(numbers, dtype=np.float64)
     number = real(field.name, value, rule=meta["rule"], remedy=remedy, empty=meta["empty"])
     if isinstance(number, np.ndarray) and getattr(type(owner), "plain_options", False):
         rule = "must be one number: an option of a law holds for every impact"
         raise refuse(field.name, value, rule, "make a law for each value")
     return number
+
+
+def _partly_known(value: object) -> Array | None:
+    """Return an array, or a list, of numbers with NaN among them as an array; else None."""
+    if not isinstance(value, np.ndarray | list | tuple):
+        return None
+    try:
+        numbers = np.asanyarray(value)  # a mask stays, to be refused
+    except ValueError:  # lists of several lengths, refused as all that are no numbers
+        return None
+    some = numbers.ndim > 0 and numbers.dtype.kind == "f" and bool(np.isnan(numbers).any())
+    return numbers if some else None
 
 
 def key(value: Real | None) -> object:

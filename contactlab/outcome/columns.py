@@ -65,7 +65,7 @@ class Column(NamedTuple):
     def of(self, result: WithScene) -> NDArray[np.float64]:
         """Return the values as an array of the scene's shape, NaN if the scene defines no value.
 
-        Of vectors the length is returned; of spins the part that makes slip along ``scene.along``.
+        A vector is told by its length, a spin by the part that makes slip along ``scene.along``.
         """
         value, scene = self.read(result), result.scene
         number = np.nan if value is None else value

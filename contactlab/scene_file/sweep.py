@@ -13,7 +13,7 @@ import numpy as np
 
 from contactlab.impact.grid import product
 from contactlab.numeric.checks import of_kind, whole
-from contactlab.numeric.types import Real
+from contactlab.numeric.types import Array
 from contactlab.scene_file.entries import entry_path
 from contactlab.scene_file.table import Table, flattened, number_list
 
@@ -34,8 +34,8 @@ class Sweep(NamedTuple):
         Values of each entry of a product, shape (n_i,); empty for lists of equal length.
     """
 
-    varied: dict[str, Real]
-    axes: dict[str, Real]
+    varied: Mapping[str, Array]
+    axes: Mapping[str, Array]
 
 
 def read_sweep(content: object) -> Sweep:
@@ -44,7 +44,7 @@ def read_sweep(content: object) -> Sweep:
     table = of_kind("sweep", content, Mapping, rule="must be a table", remedy=remedy)
     combined = table.get(PRODUCT, False)
     of_kind(f"sweep.{PRODUCT}", combined, bool, rule="must be true or false")
-    varied: dict[str, Real] = {}
+    varied: dict[str, Array] = {}
     paths: dict[str, str] = {}
     entries = {key: table[key] for key in table if key != PRODUCT}
     for name, value in flattened(entries, leaf=_is_range).items():
@@ -72,7 +72,7 @@ def _is_range(value: Mapping[str, object]) -> bool:
     return bool(set(value) & set(RANGE_KEYS))
 
 
-def _values(path: str, value: object) -> Real:
+def _values(path: str, value: object) -> Array:
     """Return a list or a range as an array, shape (n,)."""
     if not isinstance(value, Mapping):
         return number_list(path, value, remedy=REMEDY)

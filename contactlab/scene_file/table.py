@@ -9,7 +9,7 @@ import numpy as np
 
 from contactlab.numeric.checks import of_kind, real, refuse
 from contactlab.numeric.names import nearest
-from contactlab.numeric.types import Real
+from contactlab.numeric.types import Array
 
 Made = TypeVar("Made")
 
@@ -83,7 +83,7 @@ class Table:
         place, remedy = self.at(key), "put it in quotes"
         return str(of_kind(place, value, str, rule="must be text", remedy=remedy))
 
-    def numbers(self, key: str, *, default: object = None, remedy: str) -> Real:
+    def numbers(self, key: str, *, default: object = None, remedy: str) -> Array:
         """Return the list of numbers at ``key`` as an array, shape (n,)."""
         missing = key not in self.content and default is not None
         value = default if missing else self.require(key, remedy)
@@ -115,13 +115,13 @@ def nearest_of(name: str, known: Iterable[str]) -> str:
     return f"{nearest(name, names)}known: {', '.join(names)}"
 
 
-def number_list(path: str, value: object, *, remedy: str) -> Real:
+def number_list(path: str, value: object, *, remedy: str) -> Array:
     """Return ``value`` as an array of shape (n,), or refuse it."""
     listed = isinstance(value, list) or (isinstance(value, np.ndarray) and value.ndim > 0)
     if not listed or any(isinstance(item, bool) for item in value):  # type: ignore[attr-defined]
         raise refuse(path, value, "must be a list of numbers", remedy)
-    array = real(path, value, remedy=remedy)
-    if np.ndim(array) != 1:
+    array = np.asarray(real(path, value, remedy=remedy))
+    if array.ndim != 1:
         raise refuse(path, value, "must be a plain list of numbers", "not a list of lists")
     return array
 

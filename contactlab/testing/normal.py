@@ -22,6 +22,8 @@ from contactlab.testing.units import ODD_UNITS, Units, in_units
 STEPS = 60
 #: Rounding of force, radius and overlap, over the largest of each.
 ROUNDING = 1e-9
+#: A divisor in place of a largest value of 0, as of a law without force.
+TINY = 1e-300
 ENTRIES = NormalContact._fields
 #: Quantities in which the contacts of a batch differ, and the stride over approaches there.
 DIFFERENT, SPARSE = ("normal_speed", "radius", "effective_modulus", "normal_mass"), 4
@@ -67,6 +69,7 @@ def _rows(column: Array) -> list[Real]:
 
 
 def _complete(contact: object) -> NormalContact:
+    """Return a contact with its friction load, or fail a law that returns anything else."""
     if isinstance(contact, NormalContact):
         return contact.complete
     raise CheckFailedError(f"respond returned {contact!r}, no NormalContact.")
@@ -109,7 +112,7 @@ def _alike(law: NormalLaw, impacts: Scene, approach: Array, rate: Array, words: 
     for place in np.ndindex(impacts.shape):
         at = (slice(None), *place)
         alone = respond(law, impacts.take(place), approach[at], rate[at])
-        scale = np.maximum(np.abs(alone).max(axis=1, keepdims=True), 1e-300)
+        scale = np.maximum(np.abs(alone).max(axis=1, keepdims=True), TINY)
         gap = float(np.max(np.abs(together[(slice(None), *at)] - alone) / scale))
         name = place[0] if len(place) == 1 else place
         within(gap, ROUNDING, f"Contact {name} {words} is off by {gap:.1e}.")
@@ -149,7 +152,7 @@ def contacts_units(law: NormalLaw) -> None:
         ENTRIES, in_si, in_odd_units, (newton, length, length, newton), strict=True
     ):
         gap = float(np.max(np.abs(value / unit - expected))) / max(
-            float(np.max(np.abs(expected))), 1e-300
+            float(np.max(np.abs(expected))), TINY
         )
         within(gap, ROUNDING, f"In other units the {name} differs by {gap:.1e}.")
 

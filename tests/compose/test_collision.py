@@ -12,6 +12,7 @@ from contactlab import (
     HalfSpace,
     ImpactError,
     Material,
+    RigidBody,
     Scene,
     Simulation,
     Sphere,
@@ -28,6 +29,14 @@ GLASS = Material(young_modulus=70e9, poisson_ratio=0.2, density=2500.0)
 
 
 BALL, PLATE = Sphere(0.01, STEEL), HalfSpace(GLASS)
+#: The ball as a body by its numbers.
+CENTRAL = {
+    "body": RigidBody(
+        mass=BALL.mass, inertia=0.4 * BALL.mass * 1e-4 * np.eye(3), material=STEEL,
+        curvature_radius=0.01,
+    ),
+    "contact": (0.0, 0.0, -0.01),
+}  # fmt: skip
 
 
 DOWN = (0.0, 0.0, -1.0)
@@ -290,18 +299,23 @@ def test_the_plan_says_what_passes_through():
     assert "spin about the normal: its friction is left out" in str(spinning.plan)
     assert "the energy books: closed by construction" in str(spinning.plan)
     assert not spinning.energy.checked
-    away = meeting(normal=[DOWN, (0, 0, 1)])
+
+
+@pytest.mark.parametrize("body", [{}, CENTRAL])
+def test_the_books_are_checked_where_the_impact_is_followed(body):
+    apart = meeting(velocity=[(0.5, 0.0, -1.0), (0.5, 0.0, 1.0)], **body)
     for laws, followed in (({}, False), ({"tangential": "springs"}, True)):
-        checked = collide(away, Simulation(**laws), separating="pass").energy.checked
+        checked = collide(apart, Simulation(**laws), separating="pass").energy.checked
         assert checked.tolist() == [followed, True]
 
 
+@pytest.mark.parametrize("body", [{}, CENTRAL])
 @pytest.mark.parametrize("laws", [None, Simulation()])
-def test_the_books_have_the_shape_of_the_encounters(laws):
-    books = collide(meeting(friction_coefficient=[0.1, 0.2]), laws).energy
+def test_the_books_have_the_shape_of_the_encounters(laws, body):
+    books = collide(meeting(friction_coefficient=[0.1, 0.2], **body), laws).energy
     entries = (books.start, books.end, books.friction_work, books.shear_loss, books.imbalance)
     assert [np.shape(each) for each in (*entries, books.checked)] == 6 * [(2,)]
-    books = collide(meeting(), laws).energy
+    books = collide(meeting(**body), laws).energy
     assert {*map(type, (books.start, books.end, books.shear_loss))} == {float}
 
 

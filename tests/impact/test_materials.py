@@ -1,7 +1,9 @@
 """Materials by name: every number has a source, and is a material's."""
 
+import math
 import re
 
+import numpy as np
 import pytest
 
 from contactlab import HalfSpace, Material, Sphere, read_scene
@@ -53,6 +55,28 @@ def test_sound_in_a_thin_rod_has_its_speed(name, speed):
     """sqrt(E/rho) within 10 %, by speeds of sound in rods that are no source of the table."""
     one = materials.entry(name)
     assert (one.young_modulus / one.density) ** 0.5 == pytest.approx(speed, rel=0.1)
+
+
+@pytest.mark.parametrize("kind", [list, tuple, np.array])
+def test_what_is_not_known_of_some_is_nan_in_any_array(kind):
+    several = Material(shear_modulus=8e10, poisson_ratio=0.3, density=kind([7850.0, math.nan]))
+    assert np.isnan(several.density).tolist() == [False, True]
+
+
+@pytest.mark.parametrize(
+    "density",
+    [
+        math.nan,
+        [math.nan, -1.0],
+        np.array(["7850", "nan"]),
+        np.array([None, 1.0]),
+        ["a"],
+        [[1.0], 2],
+    ],
+)
+def test_what_is_no_density_is_refused(density):
+    with pytest.raises(ValueError, match="density = "):
+        Material(shear_modulus=8e10, poisson_ratio=0.3, density=density)
 
 
 @pytest.mark.parametrize("name", ["Steel", "SODA lime_glass", " soda-lime  glass"])

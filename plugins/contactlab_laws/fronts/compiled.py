@@ -149,7 +149,7 @@ def central(psi1: Array, chi: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
     Parameters
     ----------
     psi1, chi : array, shape (impacts,)
-        Of impacts that do not slip throughout.
+        Impacts that do not slip throughout.
     """
     numbers = np.zeros((4, psi1.size))
     least = np.copysign(np.maximum(np.abs(psi1), LINEAR_BELOW), psi1)

@@ -129,7 +129,7 @@ def _usable(rows: Rows, tolerance: float) -> float | None:
 def first_fall(events: Sequence[tuple[Series, bool]], end: float) -> tuple[float, int]:
     """Return where the first of some series falls below zero in (0, end], and which; (end, -1).
 
-    Of a series marked True, which begins at zero, the fall over the variable is looked for.
+    A series marked True begins at zero, and is divided by its variable first.
     """
     where, which = end, -1
     for index, (series, begins) in enumerate(events):

@@ -12,9 +12,10 @@ from contactlab_laws.fronts import compiled
 from contactlab_laws.fronts.path import Impact
 from contactlab_laws.fronts.series import ORDER
 
-#: Error of a step over the accuracy asked for, and the most: forces within a coarse series err by
-#: more than what it leads to.
-STEP_PART, MOST_ERROR = 1e-3, 1e-8
+#: Error of a step over the accuracy that is asked for, as an impact has some tens of steps.
+STEP_PART = 1e-3
+#: Most error of a step: forces between its ends, which a history shows, err more than its ends do.
+MOST_ERROR = 1e-8
 
 
 def error_of_step(accuracy: float) -> float:
@@ -67,4 +68,5 @@ def kept(numbers: Sequence[float], tolerance: float, most: int) -> tuple[Any, in
     shown: list[list[float]] = []
     impact = Impact(*numbers, tolerance=tolerance, most=most, shown=shown)
     status = impact.follow()
+    # a row has six numbers, and six series of ORDER + 1 coefficients
     return impact.ends(), status, Steps.of(np.reshape(shown, (len(shown), 6 * (ORDER + 2))))

@@ -51,7 +51,10 @@ def follow_all(
         If no division of the contact into stick and slip is found.
     """
     # In every step the share of Coulomb's limit that acts is linear in the impulse of the friction
-    # load, so that gross slip is exact. The first step has one share throughout.
+    # load, so that gross slip is exact. The first step has one share throughout. The share is that
+    # at the step's start, ``after`` that at its end, first guessed by the line through the shares
+    # before; a quantity that the share drives twice, as displacement, has a third of the one and a
+    # sixth of the other.
     table, moments, edges = table_of(count), basis(count, 1).work[0], basis(count, 1).edges
     cubes, hemispheres = edges**3, np.sqrt(np.maximum(edges[:, None] ** 2 - edges[:-1] ** 2, 0.0))
     impacts = len(psi1)
@@ -74,6 +77,7 @@ def follow_all(
         if number and some[k]:
             ours, chosen = smaller[number], slice(None) if whole[k] else live
             part = chosen, slice(number)
+            # The edge lies between two rings, and the limit between the hemispheres of both.
             outer, inner = float(course.share[k]), 1.0 - float(course.share[k])
             limit = outer * hemispheres[number, :number] + inner * hemispheres[number - 1, :number]
             load = float(outer * cubes[number] + inner * cubes[number - 1])

@@ -240,7 +240,7 @@ def part_of_step(places: Array, before: Array, after: Array) -> Array | float:
 def fields(state: State) -> dict[str, Any]:
     """Return radius, displacement and limit (m), stuck and slipping, shape (*shape, springs).
 
-    Of vectors on an ellipse the displacement is the force over the stiffness along t1.
+    On an ellipse the displacement of a vector is the force over the stiffness along t1.
     """
     size, _, deflection, limit, _ = state.memory
     springs = len(deflection)

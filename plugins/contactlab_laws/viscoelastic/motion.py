@@ -8,8 +8,8 @@ import numpy as np
 
 from contactlab.numeric.types import Array
 
-#: x is followed to the end of each phase by Newton's method, in so many turns of so many steps,
-#: from powers of 1 + a that hit it to 3 %.
+#: Newton's method finds the x at the end of each phase, in so many turns, each a march of so many
+#: steps. It begins at FIRST times a power of 1 + a, which is right to 3 %.
 TURNS, STEPS = 4, 192
 FIRST, LOADING, UNLOADING = 1.2537, -0.085, 0.78
 #: Least steps of Runge and Kutta in a phase: each of ``course`` is divided for as many.
@@ -22,7 +22,7 @@ class Course(NamedTuple):
     Attributes
     ----------
     duration : array, shape (steps, motions)
-        Of each step.
+        Duration of each step.
     rate, radius, top : array, shape (steps + 1, motions)
         V, b and b² + a V; in unloading b².
     turn : int
