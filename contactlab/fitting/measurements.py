@@ -178,6 +178,12 @@ def _from_columns(
     notes = foreign(unknown, parts["given"].keys() | parts["measured"].keys(), refused)
     given, measured, errors = parts.values()
     _leave_out_duplicates(given, measured, unused)
+    if "psi2" in unused and not measured:
+        raise ValueError(
+            "nothing was measured: psi2 beside a speed is formed with friction, which was not "
+            "measured; give tangential_restitution, or what was seen, such as "
+            "rebound_tangential_velocity; or psi1 in place of the speed"
+        )
     _check_columns(given, measured, errors, notes)
     struck = tuple(given.keys() & set(VELOCITY))
     if struck:

@@ -197,6 +197,7 @@ def test_bad_arguments(arguments, words):
         ({"tangential_restitution (%)": [50.0]}, "is in %"),
         ({"speed (m/s": [1.0]}, "write a name and its unit"),
         ({"angle_deg": [5.0]}, "nothing was measured"),
+        ({"speed (m/s)": [2.0], "psi2": [0.3]}, "psi2 beside a speed is formed with friction"),
         ({"angle_deg": [5.0, 6.0], "slip_restitution": [0.1]}, "equal length"),
         (
             {"angle_deg": [5.0], "slip_restitution": [0.1], "slip_restitution_error": [0.1, 0.2]},
