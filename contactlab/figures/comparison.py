@@ -220,8 +220,8 @@ def laws_over_sweep(
         axes.errorbar(
             measured.x,
             drawn(measured.values, measured.x),
-            xerr=measured.x_error,
-            yerr=measured.error,
+            xerr=_bars(measured.x_error),
+            yerr=_bars(measured.error),
             label=verbatim(measured.label),
             **POINTS,
         )
@@ -232,6 +232,11 @@ def laws_over_sweep(
         axes.set_title(f"a curve for each {' and '.join(map(verbatim, parted))}")
     axes.legend()
     return axes
+
+
+def _bars(errors: Array) -> Array | None:
+    """Return the lengths of error bars; None if nobody gave any, so that the legend has none."""
+    return errors if np.any(errors > 0.0) else None
 
 
 def _marked(number: int) -> dict[str, Any]:
