@@ -150,6 +150,8 @@ def _answering(
             reasons.setdefault(str(error).partition(": ")[2], []).append(name)
     for reason, names in reasons.items() if told else ():
         are = "is" if len(names) == 1 else "are"
+        if are == "are" and reason.startswith("has "):
+            reason = f"each {reason}"
         print(f"contactlab compare: {', '.join(names)} {are} left out: {reason}", file=sys.stderr)
     if not answering and refused is not None:
         raise refused

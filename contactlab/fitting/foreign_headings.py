@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 import numpy as np
 
@@ -85,8 +85,16 @@ def foreign(
         If some of the headings look like other words for quantities.
     """
     guesses = _guesses(unknown, known)
-    rest = [heading.strip() for heading in unknown if heading not in guesses]
-    left_out = f"left out, for nothing here has such names: {', '.join(rest)}" if rest else ""
+    rest = [heading for heading in unknown if heading not in guesses]
+    ground = [text for text in rest if _club(unknown) and _guess(text) in OF_THE_GROUND]
+    left_out = "; ".join(
+        f"left out, {why}: {', '.join(text.strip() for text in texts)}"
+        for why, texts in (
+            ("for they are of the ground, where the club's speed is relative", ground),
+            ("for nothing here has such names", [text for text in rest if text not in ground]),
+        )
+        if texts
+    )
     if guesses:
         parts = [left_out] if rest else []
         parts = [*refused, "headings look like other words for quantities here", *parts]
@@ -101,7 +109,7 @@ def _guesses(unknown: Mapping[str, object], known: Collection[str]) -> dict[str,
     found: dict[str, str] = {}
     taken = {*known}
     headings = sorted(unknown, key=lambda text: "vz" not in text.lower())  # z before y
-    club = any("club" in text.lower() for text in unknown)
+    club = _club(unknown)
     if any("loft" in text.lower() and "spin" in text.lower() for text in unknown):
         headings.sort(key=lambda text: "loft" not in text.lower())
     for text in headings:
@@ -125,6 +133,11 @@ def _guesses(unknown: Mapping[str, object], known: Collection[str]) -> dict[str,
             guess = f"-{name}"
         found[text] = _with_unit(text, guess)
     return {text: found[text] for text in unknown if text in found}
+
+
+def _club(headings: Iterable[str]) -> bool:
+    """Return whether headings are those of a launch monitor, which tells of a club."""
+    return any("club" in text.lower() for text in headings)
 
 
 def _guess(text: str) -> str:

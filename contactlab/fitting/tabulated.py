@@ -63,7 +63,7 @@ def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
         said = (*unit_slips(scene), *laws.normal.cautions(scene, course), *coupling(scene))
         if lossy:
             said += laws.tangential.cautions(scene, course)
-        return (), (), tuple(Clause(text, everywhere) for text in said)
+        return (), (), tuple(Clause(text, everywhere) for text in dict.fromkeys(said))
 
     restitution = laws.normal.restitution if lossy else 1.0
     return _result(scene, restitution, ends, clauses)

@@ -1,6 +1,6 @@
 """contactlab.rebound in PyTorch: it takes tensors, and gradients pass through it.
 
-Run with ``pip install contactlab[recipes]``: ``python rebound_in_torch.py``.
+Run with ``pip install ".[recipes]"`` in the clone: ``python rebound_in_torch.py``.
 """
 
 import torch

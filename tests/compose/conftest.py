@@ -36,9 +36,7 @@ def registry():
 
 @pytest.fixture
 def jax():
-    found = pytest.importorskip(
-        "jax", reason="JAX is not installed: pip install contactlab[recipes]"
-    )
+    found = pytest.importorskip("jax", reason="JAX is not installed: pip install '.[recipes]'")
     before = found.config.jax_enable_x64
     found.config.update("jax_enable_x64", True)
     yield found
@@ -47,6 +45,4 @@ def jax():
 
 @pytest.fixture
 def torch():
-    return pytest.importorskip(
-        "torch", reason="PyTorch is not installed: pip install contactlab[recipes]"
-    )
+    return pytest.importorskip("torch", reason="PyTorch is not installed: pip install '.[recipes]'")

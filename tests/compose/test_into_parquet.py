@@ -19,7 +19,7 @@ def blocks(monkeypatch):
 @pytest.fixture(scope="module")
 def parquet():
     return pytest.importorskip(
-        "pyarrow.parquet", reason="pyarrow is not installed: pip install contactlab[pyarrow]"
+        "pyarrow.parquet", reason="pyarrow is not installed: pip install '.[pyarrow]'"
     )
 
 

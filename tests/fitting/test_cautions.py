@@ -41,6 +41,16 @@ def lossy(restitution, angles=WIDE):
     return laws.sweep(at_angles(STEEL, STEEL, 0.12, angles)).check()
 
 
+def test_a_caution_that_both_laws_have_is_told_once():
+    unlike = at_angles(STEEL, Material.named("soda-lime glass"), 0.12)
+    run = Simulation(normal=create("normal.viscoelastic", restitution=0.9)).sweep(unlike)
+    columns = measured(run, "tangential_restitution", "normal_restitution")
+    names = ["friction_coefficient", "restitution"]
+    found = fit(columns, attrs.evolve(unlike, friction_coefficient=0.2), parameters=names)
+    assert [text[:13] for text in found.cautions].count("unlike bodies") == 1
+    assert len(set(found.cautions)) == len(found.cautions)
+
+
 @pytest.mark.parametrize(
     "laws",
     [None, *longer(

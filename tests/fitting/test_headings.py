@@ -287,4 +287,7 @@ def test_the_headings_of_a_launch_monitor(monitor, spin, tmp_path):
     assert found.given["speed"].tolist() == pytest.approx([0.44704, 0.44704])
     assert found.measured["rebound_spin"] == pytest.approx(-TURN / 60.0)
     (note,) = found.notes
-    assert note.startswith("left out, for nothing here has such names: Date, Player, Club, ")
+    ground, _, unknown = note.partition("; ")
+    assert ground.startswith("left out, for they are of the ground, where the club's speed is rel")
+    assert {"Ball Speed", "Launch Angle"} == set(re.findall(r"(\w+ \w+) \(", ground))
+    assert unknown.startswith("left out, for nothing here has such names: Date, Player, Club, ")
