@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from contactlab.contracts import ClosedFormMotion, LostPathError, ScaledContact, Stretch
 from contactlab.numeric.types import Array
-from contactlab_laws.fronts.phases import GROSS
 from contactlab_laws.fronts.steps import Steps, error_of_step, kept
 from contactlab_laws.hertz.motion import velocity_factor
 
@@ -30,7 +29,7 @@ MOST_STEPS, OFTEN = 3000, 1e3
 class FrontStretch(Stretch):
     """A stretch within whose front all sticks, and outside which all slips one way.
 
-    Its ``steps`` end at the phases ``stops``; ``psi1`` and ``chi`` are those of the impact.
+    Its ``steps`` end at the phases ``stops``; ``psi1`` is that of the impact.
     """
 
     sign: int
@@ -42,7 +41,6 @@ class FrontStretch(Stretch):
     steps: Steps
     stops: Array
     psi1: float
-    chi: float
 
     def fields(
         self, normal: ClosedFormMotion, contact: ScaledContact, factor: float
@@ -52,7 +50,7 @@ class FrontStretch(Stretch):
         ``front`` (m) is the radius within which the contact sticks.
         """
         ring, largest = (np.arange(RINGS) + 0.5) / RINGS, float(normal.maximum_radius)
-        front = 0.0 if self._gross else max(0.0, float(self._at(contact)[2, 0]))
+        front = max(0.0, float(self._at(contact)[2, 0]))
         touching, inside = ring < contact.radius, ring < front
         shown = self.sign if factor > 0.0 else -self.sign
         return {
@@ -62,18 +60,10 @@ class FrontStretch(Stretch):
             "slipping": np.where(touching & ~inside, shown, 0).astype(np.int8),
         }
 
-    @property
-    def _gross(self) -> bool:
-        return bool(self.steps.phase[0] == GROSS)
-
     def states(self, contact: ScaledContact) -> tuple[Array, Array]:
         """Return (change of velocity since first touch, force)."""
-        least = -2.0 * self.psi1  # energy of slip never exceeds that at first touch
-        if self._gross:  # psi falls in proportion to V, under Coulomb's force
-            gone = 2.0 * self.chi * (self.steps.series[0, 1, 0] - contact.rate)
-            before = np.clip(self.steps.change[0], least, 0.0)
-            return before - self.sign * gone, self.sign * contact.force
         change, force, _ = self._at(contact)
+        least = -2.0 * self.psi1  # energy of slip never exceeds that at first touch
         return np.clip(change, least, 0.0), force
 
     def _at(self, contact: ScaledContact) -> Array:
@@ -128,7 +118,7 @@ def stretches(
         yield FrontStretch(
             int(steps.sign[first]), float(bounds[first]), float(bounds[after]),
             float(changes[after]), float(works[after]), after,
-            steps.take(slice(first, after)), bounds[first + 1 : after + 1], velocity, chi,
+            steps.take(slice(first, after)), bounds[first + 1 : after + 1], velocity,
         )  # fmt: skip
         first = after
     if status:

@@ -39,8 +39,6 @@ LOST = (
     "The contact neither ends nor settles in {} steps",
     "The velocities of a jam outgrow the numbers",
 )
-
-
 #: Words on an installation with the library.
 COMPILED = "compiled"
 

@@ -32,8 +32,6 @@ from contactlab_laws.tables.regions import LARGEST_CHI
 
 #: Why an impact is not followed.
 REASON = "psi2 is tabulated; a history, or a tolerance below 1e-9, follows the impact"
-
-
 #: Error of impacts that are followed where none is asked for.
 FOLLOWED = 1e-9
 #: Error over max(1, psi1) of whole impacts by the compiled solver, from so large a chi on times chi
@@ -158,7 +156,7 @@ class Fronts(PathTangentialLaw, Tabulated):
         """Return the motion of planar impacts, each followed from event to event."""
         from contactlab_laws.fronts.together import motion
 
-        return motion(scene, normal, accuracy, observer)
+        return motion(scene, normal, accuracy or FOLLOWED, observer)
 
     def errors_together(self, scene: Scene, accuracy: float | None) -> tuple[Real, Real]:
         """Return the accuracy that is aimed at, over max(1, psi1), for both."""

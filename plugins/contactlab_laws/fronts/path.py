@@ -15,7 +15,7 @@ import numpy as np
 
 from contactlab_laws.fronts.compiled import OUTGROWN, UNSETTLED
 from contactlab_laws.fronts.phases import DRAWN, GROSS, LOCKED, STICK, first_fall, step
-from contactlab_laws.fronts.series import ORDER, Laws, Rows, begun, value
+from contactlab_laws.fronts.series import ORDER, Laws, Rows, value
 from contactlab_laws.hertz.motion import scaled_motion, velocity_factor
 
 #: Where slip or stick ends with a smaller V, it ends with maximum compression.
@@ -89,12 +89,8 @@ class Impact:
         most: int,
         shown: list[list[float]] | None = None,
     ) -> None:
-        self.numbers, self.tolerance, self.most, self.shown = (
-            (chi, lam, eta),
-            tolerance,
-            most,
-            shown,
-        )
+        self.numbers, self.tolerance = (chi, lam, eta), tolerance
+        self.most, self.shown = most, shown
         self.radius, self.rate, self.lack = 0.0, 1.0, 0.0
         self.change = self.time = self.work = self.deepest = 0.0
         self.sign = 1 if psi1 >= 0.0 else -1
@@ -177,11 +173,7 @@ class Impact:
             fall, rise, after = press * share, drive * share, 0.0
             work = 0.8 * share * (-margin - 0.5 * drive * share)
         radius, change = max(after, 0.0) ** 0.2, self.change - self.sign * (fall + rise)
-        if self.shown is not None and not any(self.numbers[1:]):
-            # of spheres the motion is a closed form, and nobody asks for the series
-            self._show(GROSS, begun((self.radius, rate, margin, 0.0, self.time)), 0.0)
-            self.phases, self.steps = self.phases + 1, self.steps + 1
-        elif press > SHALLOW and self.shown is None:
+        if press > SHALLOW and self.shown is None:
             self.time += _hertz_time(press, left, (self.radius, radius), (rate, last))
             if rate > 0.0 >= last:
                 self.deepest = max(self.deepest, (left / press) ** 0.2)

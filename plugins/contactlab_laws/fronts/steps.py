@@ -48,6 +48,11 @@ class Steps(NamedTuple):
         """Return some of the steps."""
         return Steps(*(column[part] for column in self))
 
+    def at(self, places: Array) -> Array:
+        """Return u, V, k, J, c and T at places of each step, shape (6, steps, places)."""
+        powers = places[..., None] ** np.arange(self.series.shape[-1])
+        return np.asarray(np.einsum("smn,sin->ism", powers, self.series))
+
 
 def kept(numbers: Sequence[float], tolerance: float, most: int) -> tuple[Any, int, Steps]:
     """Return what one impact leaves, its status and its steps.

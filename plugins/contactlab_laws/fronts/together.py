@@ -27,8 +27,6 @@ from contactlab_laws.fronts.compiled import MEMORY, MOST_STEPS
 from contactlab_laws.fronts.path import Impact
 from contactlab_laws.fronts.steps import Steps, error_of_step, kept
 
-#: The accuracy if none is asked for.
-USUAL = 1e-9
 #: Parts of a step at which an instant is shown.
 INSTANTS = np.array([0.25, 0.5, 0.75, 1.0])
 #: Statuses of impacts and sentences on them, by the statuses of the solver.
@@ -43,11 +41,11 @@ SMOOTH = (-1.0, 0.0, 0.0, DURATION_CONSTANT, 1.0, 1.0, 0.0)
 def motion(
     scene: Scene,
     normal: NormalMotion,
-    accuracy: float | None,
+    accuracy: float,
     observer: Observer | None,
 ) -> TangentialMotion:
     """Return the motion of planar impacts."""
-    shape, tolerance = scene.shape, error_of_step(accuracy or USUAL)
+    shape, tolerance = scene.shape, error_of_step(accuracy)
     scales = hertz_scales(normal.scene)
     W: Any = scene.inverse_mass
     mu: Any = scene.friction_coefficient
@@ -116,11 +114,7 @@ def _show(scene: Scene, scales: Any, steps: Steps, observer: Observer) -> None:
     """Show four instants of each step to an observer in SI."""
     speed, mu = scene.normal_speed, scene.friction_coefficient
     unit: Any = mu * speed / scene.pair.stiffness_ratio
-    powers = np.multiply.outer(steps.length, INSTANTS)[..., None] ** np.arange(
-        steps.series.shape[-1]
-    )
-    values = np.einsum("smn,sin->ism", powers, steps.series)
-    u, rate, margin, lack, _, time = values
+    u, rate, margin, lack, _, time = steps.at(np.multiply.outer(steps.length, INSTANTS))
     sign = steps.sign[:, None]
     columns = (
         time * scales.approach / speed, u * u * scales.approach, rate * speed, u**3 * scales.force,
