@@ -359,18 +359,22 @@ def add_measured(parser: argparse.ArgumentParser) -> None:
     add_columns(parser)
 
 
-def measured(arguments: argparse.Namespace, file: SceneFile) -> SceneFile:
-    """Return the scene file with the values of ``--measured`` in place of its own."""
+def measured(arguments: argparse.Namespace, read: Callable[..., SceneFile]) -> SceneFile:
+    """Return a scene file with the values of ``--measured`` in place of its own.
+
+    ``read`` returns the file; ``defaults`` are velocities to use where the file has none.
+    """
     if arguments.measured is None:
         if arguments.column or arguments.columns:
             option = "--columns" if arguments.columns else "--column"
             raise ValueError(f"{option}: names headings of --measured DATA.csv, which is missing")
-        return file
+        return read(defaults=None)
     from contactlab.fitting import beside  # only for --measured
 
     table = read_impacts(arguments.measured, arguments)
     for note in table.notes:
         print(f"contactlab: note: {note}", file=sys.stderr)
+    file = read(defaults=beside.first_velocities(table))
     return beside.with_measurements(file, table)
 
 

@@ -21,6 +21,8 @@ import argparse
 import inspect
 import itertools
 import sys
+from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -85,7 +87,7 @@ def execute(arguments: argparse.Namespace) -> int:
         quantity_named(quantity, where="--quantity")
     if arguments.measured and not arguments.scene:
         raise ValueError("--measured: needs a SCENE.toml with the bodies of the experiment")
-    file = shared.measured(arguments, _file(arguments))
+    file = shared.measured(arguments, partial(_file, arguments))
     named = bool(arguments.tangential)
     if arguments.all:
         compared = _all(arguments, file)
@@ -158,13 +160,13 @@ def _answering(
     return answering
 
 
-def _file(arguments: argparse.Namespace) -> SceneFile:
+def _file(arguments: argparse.Namespace, defaults: Mapping[str, float] | None) -> SceneFile:
     """Return the scene file, the default one, or a nameless one from psi1 and chi."""
     parameters = {name: getattr(arguments, name) for name in ("psi1", "chi")}
     varied = {name: value for name, value in parameters.items() if np.ndim(value)}
     missing = [f"--{name}" for name, value in parameters.items() if value is None]
     if len(missing) == len(parameters):
-        return read(arguments) or read_scene(DEFAULT_SCENE)
+        return read(arguments, defaults) or read_scene(DEFAULT_SCENE)
     check_alone(arguments)
     if missing:
         raise ValueError(f"{missing[0]}: must be given too (chi is 1.4412 for a solid sphere)")

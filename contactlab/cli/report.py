@@ -10,6 +10,7 @@ Examples
 from __future__ import annotations
 
 import argparse
+from functools import partial
 from pathlib import Path
 
 from contactlab.cli import arguments as shared
@@ -46,7 +47,8 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the scene under the laws, write the page and print its path."""
-    file = shared.measured(arguments, read_scene(arguments.scene, allow_code=arguments.allow_code))
+    code = arguments.allow_code
+    file = shared.measured(arguments, partial(read_scene, arguments.scene, allow_code=code))
     laws = file.laws.choose(normal=arguments.normal, integrator=arguments.integrator)
     own = laws.suited_to(file.scene).tangential
     simulations = {str(own): laws.simulation()}

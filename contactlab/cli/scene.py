@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -39,11 +40,16 @@ def add_file(
     add_allow_code(parser)
 
 
-def read(arguments: argparse.Namespace) -> SceneFile | None:
-    """Return the scene file of the arguments; None if they name none."""
+def read(
+    arguments: argparse.Namespace, defaults: Mapping[str, float] | None = None
+) -> SceneFile | None:
+    """Return the scene file of the arguments; None if they name none.
+
+    ``defaults`` are those of ``read_scene``.
+    """
     if not arguments.scene:
         return None
-    return read_scene(arguments.scene, allow_code=arguments.allow_code)
+    return read_scene(arguments.scene, defaults=defaults, allow_code=arguments.allow_code)
 
 
 def add_scene(parser: argparse.ArgumentParser) -> None:

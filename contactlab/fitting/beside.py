@@ -10,14 +10,21 @@ import attrs
 import numpy as np
 
 from contactlab.fitting.measurements import Measurements
-from contactlab.fitting.struck import CARTESIAN, SPIN, VELOCITY, to_the_struck_body
+from contactlab.fitting.struck import SPIN, VELOCITY, to_the_struck_body
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.body_contact import seen, sides
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array, Real
 from contactlab.numeric.vectors import components, dot
 from contactlab.scene_file import SceneFile, read_scene
-from contactlab.scene_file.entries import STRUCK_KEYS, entry_path, replaced, without_rivals
+from contactlab.scene_file.entries import (
+    CARTESIAN,
+    POLAR,
+    STRUCK_KEYS,
+    entry_path,
+    replaced,
+    without_rivals,
+)
 from contactlab.scene_file.measured import Measured
 from contactlab.scene_file.plane import check_spin, rim
 
@@ -97,6 +104,12 @@ def _of_file(
         raise ValueError(f"{SPIN}: {path} {rule}; give them, beside along = [x, y, z] of a body")
     target = file.scene.target
     return own, (-np.asarray(target.radius), 0.0) if isinstance(target, Sphere) else None
+
+
+def first_velocities(table: Measurements) -> dict[str, float]:
+    """Return velocities of the first impact of a table, for a file that has none."""
+    names = (*POLAR, *CARTESIAN)
+    return {name: float(table.given[name][0]) for name in names if name in table.given}
 
 
 def with_measurements(file: SceneFile, table: Measurements) -> SceneFile:

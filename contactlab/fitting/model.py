@@ -11,13 +11,13 @@ import numpy as np
 from contactlab.compose.simulation import Simulation
 from contactlab.fitting import tabulated
 from contactlab.fitting.parameters import RESTITUTION, Parameter, Setup
-from contactlab.fitting.struck import CARTESIAN
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array
 from contactlab.outcome.columns import QUANTITIES
 from contactlab.outcome.result import ImpactResult
 from contactlab.scene_file import SceneFile, read_scene
+from contactlab.scene_file.entries import CARTESIAN, POLAR
 from contactlab.study.interrupts import uninterrupted
 
 #: Friction of a scene file without a friction coefficient; searches have their own starts.
@@ -29,7 +29,6 @@ TABULATED = "exact elastic law (tabulated rebound)"
 DIGITS = 7
 #: The quantity that takes the course of the normal motion, not its restitution alone.
 CONTACT_TIME = "contact_time"
-POLAR = ("speed", "angle_deg")
 
 
 @attrs.frozen(kw_only=True, eq=False)

@@ -18,10 +18,12 @@ from contactlab.scene_file import plane
 from contactlab.scene_file.bodies import rigid_body
 from contactlab.scene_file.entries import (
     BODY_SECTIONS,
+    CARTESIAN,
     COUPLING_KEYS,
     GROUP_KEYS,
     IMPACT_KEYS,
     NONDIMENSIONAL_KEYS,
+    POLAR,
     SPHERE_KEYS,
     SPHERE_VECTORS,
     SPIN_KEYS,
@@ -206,8 +208,8 @@ def _impact(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Scene:
         surface = plane.surface(table, target)
         numbers |= {"normal_speed": normal - surface[0], "tangential_velocity": along - surface[1]}
         return table.make(Scene, sphere=sphere, target=target, **numbers)
-    if table.has(*plane.POLAR):
-        numbers |= {key: table.content[key] for key in plane.POLAR}
+    if table.has(*POLAR):
+        numbers |= {key: table.content[key] for key in POLAR}
         return table.make(Scene.at_angle, sphere=sphere, target=target, **numbers)
-    numbers |= _present(table, plane.CARTESIAN)
+    numbers |= _present(table, CARTESIAN)
     return table.make(Scene, sphere=sphere, target=target, **numbers)

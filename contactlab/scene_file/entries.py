@@ -21,6 +21,8 @@ STRUCK_KEYS = ("target_normal_velocity", "target_tangential_velocity", "target_s
 #: Keys of an encounter in space; ``spin`` is a vector if ``velocity`` is given.
 SPHERE_VECTORS = ("velocity", "normal", "spin", "target_velocity", "target_spin")
 VECTOR_KEYS = (*SPHERE_VECTORS, "contact", "target_contact")
+#: Velocities of spheres before the impact: by size and angle, or by components.
+POLAR, CARTESIAN = ("speed", "angle_deg"), ("normal_speed", "tangential_velocity")
 NONDIMENSIONAL_KEYS = ("psi1", "chi")
 #: Parameters where friction changes the approach: eta or rho beside lam.
 COUPLING_KEYS = ("lam", "eta", "rho")
@@ -130,7 +132,7 @@ def named_materials(tables: Mapping[str, object]) -> tuple[str, ...]:
 
 def without_rivals(tables: Mapping[str, object], names: Iterable[str]) -> dict[str, object]:
     """Return the tables without the velocities, polar or by components, that ``names`` replace."""
-    forms = (("speed", "angle_deg"), ("normal_speed", "tangential_velocity"))
+    forms = POLAR, CARTESIAN
     kept = dict(tables)
     impact = kept.get("impact")
     if isinstance(impact, Mapping):

@@ -13,10 +13,8 @@ from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import OBLIQUE, Scene
 from contactlab.numeric.checks import NON_NEGATIVE, real, refuse
 from contactlab.numeric.types import Array, Real
-from contactlab.scene_file.entries import STRUCK_KEYS, UNITS
+from contactlab.scene_file.entries import CARTESIAN, POLAR, STRUCK_KEYS, UNITS
 from contactlab.scene_file.table import Table
-
-POLAR, CARTESIAN = ("speed", "angle_deg"), ("normal_speed", "tangential_velocity")
 
 
 def velocity(table: Table) -> tuple[Real, Real]:

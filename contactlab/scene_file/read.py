@@ -18,6 +18,8 @@ from contactlab.numeric.types import Numbers, Real
 from contactlab.outcome.files import content
 from contactlab.scene_file.build import build_scene
 from contactlab.scene_file.entries import (
+    CARTESIAN,
+    POLAR,
     entry_path,
     named_materials,
     replaced,
@@ -170,11 +172,18 @@ def _scene_with(
 def _with_defaults(
     tables: Mapping[str, object], defaults: Mapping[str, float]
 ) -> dict[str, object]:
-    """Return the tables with defaults for missing entries; ``[nondimensional]`` takes none."""
+    """Return the tables with defaults for missing entries; ``[nondimensional]`` takes none.
+
+    Velocities by size and angle are no defaults beside components, and neither beside vectors.
+    """
     completed = dict(tables)
     if "nondimensional" in completed:
         return completed
+    impact: Any = tables.get("impact", {})
+    vectors = {*POLAR, *CARTESIAN} if "velocity" in impact else set()
     for name, value in defaults.items():
+        if name in vectors or without_rivals(completed, [name]) != completed:
+            continue
         path = entry_path(name)
         section, _, key = path.partition(".")
         table = completed.get(section, {})

@@ -94,6 +94,19 @@ def test_speeds_and_angles_that_vary_together(laboratory, capsys):
     assert told == pytest.approx(speeds)
 
 
+@pytest.mark.parametrize(
+    "impact", ["normal_speed = 1.0", "tangential_velocity = 0.1\nnormal_speed = 1.0", ""]
+)
+def test_a_scene_needs_no_velocity_beside_measured_ones(laboratory, capsys, impact):
+    speeds, arguments = laboratory
+    ball = Path(arguments[0])
+    ball.write_text(BALL.replace("speed = 3.0\nangle_deg = 20.0", impact), "utf-8")
+    assert main(["compare", *arguments, "--json"]) == 0
+    (series,) = json.loads(capsys.readouterr().out)["measured"]
+    assert series["laws"]["fronts"]["rms"] == pytest.approx(1.0, rel=1e-6)
+    assert series["beside"]["speed"] == pytest.approx(speeds)
+
+
 @pytest.mark.slow
 def test_a_report_of_speeds_and_angles_that_vary_together(laboratory, tmp_path):
     page = tmp_path / "page.html"
