@@ -62,10 +62,10 @@ run @foot.toml --figure f.png
 run @thrown_ball.toml --tangential coulomb
 sweep --psi1 0:4:9 --chi 1:2:3 --csv
 sweep --psi1 -3:4:9 --chi 1.44 --json --out o.csv
-sweep @kharaz2001.toml --set tangential.annuli=10 --set integrator.steps=50 --out o.json --resume
+sweep @kharaz2001.toml --out o.json --resume
 compare --psi1 1.2 --chi 1.44 --tangential fronts,coulomb,springs --json --figure f.png
 compare @sweep.toml --tangential fronts,coulomb,stronge --figure f.png --width one
-compare @kharaz2001.toml --set tangential.annuli=10 --figure f.pdf --style slides
+compare @kharaz2001.toml --figure f.pdf --style slides
 compare @foot.toml --tangential fronts,coulomb
 compare --psi1 1.2 --chi 1.44 --loops l.png --tangential springs,mindlin_cap --estimate-error
 fit @kharaz2001.toml --quantity psi2

@@ -15,8 +15,8 @@ from contactlab.figures import laws_over_sweep, save
 from contactlab.study import compare
 
 file = read_scene(Path(str(resources.files("contactlab.study"))) / "measured" / "kharaz2001.toml")
-laws = ("annulus", "coulomb")
-simulations = {law: Simulation(tangential=law, integrator="symplectic") for law in laws}
+laws = ("fronts", "coulomb")
+simulations = {law: Simulation(tangential=law) for law in laws}
 comparison = compare(file, simulations)
 
 print(file.title)

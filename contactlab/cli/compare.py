@@ -51,8 +51,8 @@ from contactlab.study.scores import (
     write_csv,
 )
 
-#: Default laws: the paper's elastic law and Coulomb's law for rigid bodies.
-DEFAULT_LAWS = ["annulus", "coulomb"]
+#: Default laws: the exact elastic law and Coulomb's law for rigid bodies.
+DEFAULT_LAWS = ["fronts", "coulomb"]
 
 
 @hookimpl
