@@ -6,6 +6,8 @@ is not a plain float.
 
 from __future__ import annotations
 
+from math import prod
+
 import numpy as np
 
 from contactlab.contracts.law import Law
@@ -54,11 +56,14 @@ class blaming:  # noqa: N801 a context manager with a lower-case name, as in con
 
 
 def malformed(value: object, shape: tuple[int, ...]) -> bool:
-    """Return True unless ``value`` is real numbers that broadcast to the batch ``shape``."""
+    """Return True unless ``value`` is real numbers that broadcast to the batch ``shape``.
+
+    An array of one impact does not hold for many: a plain number, or one without axes, does.
+    """
     if type(value) is float:
         return False
     if isinstance(value, np.ndarray):
-        if value.dtype.kind not in "fiu":
+        if value.dtype.kind not in "fiu" or (value.size == 1 and value.ndim and prod(shape) > 1):
             return True
         return value.shape != shape and not _broadcasts(value.shape, shape)
     return isinstance(value, bool) or not isinstance(value, float | int | np.floating | np.integer)

@@ -172,8 +172,10 @@ def _with_unbalanced(motion: Motion, scene: Scene, bound: Real, alone: Mask) -> 
         (alone & (after > LARGEST_SLIP * before),
          "The contact slips {:.4g} times as fast as it met.",
          lambda: (np.divide(after, before),)),
-        (coupled & (books.end > LARGEST_RESTITUTION**2 * books.start),
-         "The bodies gain {:.2g} of their energy.", lambda: (books.end / books.start - 1.0,)),
+        # a gain beyond the largest number is none
+        (coupled & np.logical_not(books.end <= LARGEST_RESTITUTION**2 * books.start),
+         "The bodies gain {:.2g} of their energy.",
+         lambda: (np.nan_to_num(books.end / books.start - 1.0, nan=math.inf),)),
         ((bound == math.inf) & (imbalance > LARGEST_UNDECLARED * start),
          "Off by {:.3g} times the energy at the start.", lambda: (imbalance / start,)),
     ):  # fmt: skip

@@ -177,3 +177,66 @@ def test_books_off_a_declared_bound_fail(scene):
     result = Simulation(tangential=Bounded("books")).run(scene)
     assert set(statuses(result)) == {"UNBALANCED"}
     assert "declared: 0.01" in str(result)
+
+
+@attrs.frozen
+class Mistaken(SteppedTangentialLaw):
+    """Viscous friction, but for a mistake that the step does not show by itself."""
+
+    api_version: ClassVar[int] = 2
+    needs_future: ClassVar[bool] = False
+    vectors: ClassVar[bool] = True
+    how: str = "moves"
+
+    def start(self, scene, normal):
+        return 0.1 * np.max(scene.pair.tangential_mass / normal.duration)
+
+    def advance(self, state, increment, before, after):
+        if self.how == "moves" and isinstance(increment.displacement, np.ndarray):
+            increment.displacement[...] *= 0.5
+        if self.how == "slows" and isinstance(increment.velocity, np.ndarray):
+            increment.velocity[...] *= 0.5
+        if self.how == "loads" and isinstance(after.friction_load, np.ndarray):
+            after.friction_load[...] *= 0.5
+        force = np.asarray(increment.velocity) * state
+        work = (force * increment.displacement).reshape(*np.shape(after.force), -1).sum(axis=-1)
+        if self.how == "cuts":
+            force, work = force.reshape(-1)[:1], work.reshape(-1)[:1]
+        return TangentialResponse(force, np.abs(work)), state
+
+
+@every_scene
+@pytest.mark.parametrize("how", ["moves", "slows", "loads", "cuts"])
+def test_no_mistake_of_a_step_looks_like_an_answer(scene, how):
+    """What a law is given it may not change, and the force of one impact is not that of all."""
+    sound = Simulation(tangential=Mistaken("none")).run(scene).check()
+    found = Simulation(tangential=Mistaken(how)).run(scene)
+    for one, other, status in zip(
+        np.reshape(sound.psi2, (len(statuses(sound)), -1)),
+        np.reshape(found.psi2, (len(statuses(sound)), -1)),
+        statuses(found),
+        strict=True,
+    ):
+        told = status == ("MALFORMED" if how == "cuts" else "LAW_RAISED")
+        assert told or other == pytest.approx(one, rel=1e-9)
+
+
+@attrs.frozen
+class Pushing(Mistaken):
+    """Forces along an axis whose energy is beyond the numbers."""
+
+    sense: float = 1.0
+
+    def advance(self, state, increment, before, after):
+        load = self.sense * 1e200 * np.asarray(after.friction_load)
+        many = np.ndim(increment.velocity) > np.ndim(load)
+        force = np.stack([load, load], axis=-1) if many else load
+        return TangentialResponse(force, 0.0), state
+
+
+@every_scene
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.filterwarnings("ignore:(overflow|invalid)")
+def test_energy_beyond_the_numbers_is_no_answer(scene, sense):
+    result = Simulation(tangential=Pushing(sense=sense)).run(scene)
+    assert set(statuses(result)) <= {"UNBALANCED", "UNRESOLVED"}

@@ -34,7 +34,9 @@ LAW = contactlab.create("tangential.coulomb")
         (np.array([True, False]), (2,), True),
         (np.array([1j, 2.0]), (2,), True),
         (np.array([1.0, None]), (2,), True),
-        (np.array([1.0]), (2,), False),
+        (np.array([1.0]), (2,), True),  # of one impact
+        (np.array([1.0]), (1,), False),
+        (np.array([[1.0]]), (3, 2), True),
         (np.array([1.0, 2.0]), (3, 2), False),
         (np.array([[1.0], [2.0], [3.0]]), (3, 2), False),
         (np.array([1.0, 2.0]), (3,), True),

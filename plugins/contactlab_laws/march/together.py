@@ -29,7 +29,7 @@ from contactlab.contracts import (
     faults,
 )
 from contactlab.contracts.status import Status
-from contactlab.numeric.arrays import filled
+from contactlab.numeric.arrays import filled, locked
 from contactlab.numeric.checks import shown
 from contactlab.numeric.types import Mask, Real
 from contactlab_laws.march.division import resolving
@@ -181,6 +181,7 @@ class _March:
         time, approach = zero, zero
         pressure, force = zero, [zero] * self.axes
         step = zero  # of the step before
+        many = bool(self.shape)  # a law may not change an array of many impacts
         while True:
             half, step = 0.5 * step, self._width()
             drift = half + 0.5 * step
@@ -190,6 +191,8 @@ class _March:
             before = contact
             moved = self._joined([each * drift for each in velocity[1:]])
             start = self._joined(velocity[1:])
+            if self.axes == 2 or many:
+                locked(moved), locked(start)
             # forces that depend on rates act on those in the middle of their kick
             tried: list[tuple[Any, Any]] = []
             for _ in range(1 if self.elastic else TURNS):
@@ -198,10 +201,14 @@ class _March:
                     kick = self._kick(pressure, force, step)
                     at = [v - 0.5 * k for v, k in zip(velocity, kick, strict=True)]
                     at[0] = _nearer(tried, at[0])
+                if many:
+                    locked(approach), locked(at[0])
                 with faults.blaming(alone) as blamed:
                     blamed.step = self.steps
                     contact, new = alone.respond(memory, approach, at[0])
                     contact = contact.complete
+                    for entry in contact if many else ():
+                        locked(entry)
                 load, sampled = contact.friction_load, None
                 if self.shares:
                     sampled = self._sampled(approach, at, force, step)
@@ -298,6 +305,9 @@ class _March:
                 raise faults.LawFaultError(Status.MALFORMED, sentence)
         if self.axes == 1:
             return [force]
+        if np.ndim(force) == 0 and force != 0.0:  # no force is a number
+            sentence = faults.sentence(self.law, f"no vector: {shown(force)}", self.steps)
+            raise faults.LawFaultError(Status.MALFORMED, sentence)
         both = np.broadcast_to(force, shape)
         return [both[..., 0], both[..., 1]] if self.shape else both.tolist()
 
