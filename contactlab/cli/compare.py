@@ -53,6 +53,8 @@ from contactlab.study.scores import (
 
 #: Default laws: the exact elastic law and Coulomb's law for rigid bodies.
 DEFAULT_LAWS = ["fronts", "coulomb"]
+#: Kinds of laws that a friction law runs with.
+OTHERS = ("normal", "integrator")
 
 
 @hookimpl
@@ -94,7 +96,8 @@ def execute(arguments: argparse.Namespace) -> int:
     else:
         if not named:
             own = own_law(arguments, file.laws, file.scene)
-            arguments.tangential = list(dict.fromkeys([own, *DEFAULT_LAWS]))
+            others = (name for name in DEFAULT_LAWS if _fits(arguments, file.laws, name))
+            arguments.tangential = list(dict.fromkeys([own, *others]))
         compared = simulations(arguments, file.laws)
     compared = _answering(file.scene, compared, told=named or arguments.all)
     with shared.progress(arguments.progress, "runs") as progress:
@@ -219,10 +222,22 @@ def _all(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation
 
 def own_law(arguments: argparse.Namespace, laws: LawChoice, scene: Scene | None) -> str:
     """Return the friction law of a file, beside the first of the other laws requested."""
-    others = {kind: getattr(arguments, kind) for kind in ("normal", "integrator")}
+    others = {kind: getattr(arguments, kind) for kind in OTHERS}
     first = {kind: names[0] for kind, names in others.items() if names}
     choice = laws.choose(**first)
     return str((choice.resolved() if scene is None else choice.suited_to(scene)).tangential)
+
+
+def _fits(arguments: argparse.Namespace, laws: LawChoice, tangential: str) -> bool:
+    """Return whether a friction law runs with all other laws requested."""
+    others = itertools.product(*(getattr(arguments, kind) or [None] for kind in OTHERS))
+    for chosen in others:
+        choice = laws.choose(tangential=tangential, **dict(zip(OTHERS, chosen, strict=True)))
+        try:
+            (choice if arguments.integrator else choice.suited()).simulation()
+        except ValueError:
+            return False
+    return True
 
 
 def simulations(arguments: argparse.Namespace, laws: LawChoice) -> dict[str, Simulation]:

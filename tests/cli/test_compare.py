@@ -84,6 +84,9 @@ def test_elastic_and_rigid_are_the_default(run):
     content = json.loads(run("compare", "--psi1", "1.2", "--chi", "1.44", "--json").out)
     assert list(content["laws"]) == ["fronts", "coulomb"]
     assert content["laws"]["fronts"]["values"]["psi2"] < -0.1
+    plastic = run("compare", "--psi1", "1.2", "--chi", "1.44", "--json", "--normal", "walton_braun",
+                  "--set", "normal.restitution=0.8")  # fmt: skip
+    assert list(json.loads(plastic.out)["laws"]) == ["annulus", "coulomb"]
     assert content["laws"]["coulomb"]["values"]["psi2"] == pytest.approx(0.0, abs=1e-12)
 
 
