@@ -145,8 +145,9 @@ def with_measurements(file: SceneFile, table: Measurements) -> SceneFile:
     )
     if file.varied and len(moving) > 1:
         raise ValueError(
-            f"{table.source}: {', '.join(moving)} vary together, by more than {SAME:.0%}, and the "
-            f"[sweep] of {file.path} cannot; leave it out, and each impact runs as it was measured"
+            f"{table.source}: {', '.join(moving)} vary together, by more than {SAME:.0%}, and "
+            f"[sweep] of {file.path} varies {', '.join(file.varied)}; leave it out, and each "
+            "impact runs as it was measured"
         )
     if file.varied:
         _check_speed(file, table)

@@ -253,9 +253,10 @@ class _March:
                 sentence = faults.sentence(law, "velocity is not finite", self.steps)
                 return self.fail(Status.NON_FINITE, sentence, self.alive)
             if self.steps >= self.most:
+                count = int(np.max(self.compressions))
                 sentence = (
-                    f"After {LONGEST} durations of the approach without friction and "
-                    f"{np.max(self.compressions)} compressions."
+                    f"After {LONGEST} durations of the approach without friction and {count} "
+                    f"compression{'s' * (count > 1)}."
                 )
                 return self.fail(Status.NOT_SEPARATED, sentence, self.alive)
 
