@@ -30,6 +30,9 @@ MOST_STEPS = 20_000
 #: Sign changes of the rate without separation after which a contact is abandoned: adhesion holds
 #: the bodies together.
 MOST_TURNS = 20
+#: Least scaled friction load: what is negative beyond rounding is a mistake of the law.
+LEAST_LOAD = -1e-9
+NEGATIVE_LOAD = "a friction load below zero, of which Coulomb's limit would be negative"
 #: Also abandoned: a contact deeper than this times R, or stationary. It is stationary if the rate,
 #: and its change by the present force over the time since first touch, are below this times v1.
 DEEPEST, AT_REST = 1e6, 1e-9
@@ -134,6 +137,10 @@ class Solver:
             contacts = self._contacts(course)
         if not np.isfinite(contacts[:, (0, 1, 3)][..., taken]).all():
             raise law.fault(Status.NON_FINITE, f"the answer {shown(contacts[:, 0].max())}")
+        if not np.isfinite(contacts[0, [0, 3]][:, law.active]).all():
+            raise law.fault(Status.NON_FINITE, f"the answer {shown(contacts[0, 3].max())}")
+        if (contacts[:, 3] * law.response)[..., taken].min(initial=0.0) < LEAST_LOAD:
+            raise law.fault(Status.MALFORMED, NEGATIVE_LOAD)
         columns = self._columns(course, contacts)
         self.time = self.time + widths
         self.begun |= taken & (contacts[:, 2] > 0.0).any(axis=0)

@@ -15,10 +15,12 @@ from contactlab.compose.motion_solver import (
     FIRST_STEP,
     GROWTH,
     HALVINGS,
+    LEAST_LOAD,
     MOST_DOUBT,
     MOST_STEPS,
     MOST_TURNS,
     NEAR,
+    NEGATIVE_LOAD,
     SAFETY,
     SHORTEST,
     SHRINKAGE,
@@ -121,6 +123,8 @@ class Alone:
         taken = taken or ended
         self._plan(step.error, width, until * (1.0 - doubt) if until < 1.0 else 1.0, taken)
         if not taken:
+            if not math.isfinite(begin.force + begin.load):  # a shorter step begins there too
+                raise law.fault(Status.NON_FINITE, f"the answer {shown(begin.load)}")
             self.seen = begin
             self._abandon(self.place[1], begin.force, taken=False)
             return 0.0, None
@@ -131,6 +135,8 @@ class Alone:
             contacts += [*(self._contact(step.at(point)) for point in asked), end]
         if not all(math.isfinite(each.force + each.radius + each.load) for each in contacts):
             raise law.fault(Status.NON_FINITE, f"the answer {shown(contacts[-1].force)}")
+        if min(each.load for each in contacts) * self.response < LEAST_LOAD:
+            raise law.fault(Status.MALFORMED, NEGATIVE_LOAD)
         columns, impulse = self._columns(contacts)
         self.time += width * until if ended else width
         self.begun = self.begun or any(each.overlap > 0.0 for each in contacts)

@@ -20,7 +20,9 @@ class Status(Enum):
     UNRESOLVED = "The motion could not be followed to the tolerance asked for."
     UNBALANCED = "The energy books do not balance: energy came from nothing, or went nowhere."
     NOT_SEPARATED = "The bodies did not part: the contact was given up."
-    MALFORMED = "A law's answer is not made of real numbers, or not of the batch's shape."
+    MALFORMED = (
+        "A law's answer is not made of real numbers of the batch's shape, or of a wrong sign."
+    )
     LAW_RAISED = "A law raised an error in the middle of the run."
     WORKER_DIED = "The process that was to compute this impact ended before it answered."
     INTERRUPTED = "The run was interrupted; this impact was not computed."

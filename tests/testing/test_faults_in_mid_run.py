@@ -106,6 +106,16 @@ NORMAL = {
     "half": (lambda _, state: (None, state), Status.LAW_RAISED, "TypeError"),
     "nan": (lambda c, s: (NormalContact(*[c.force * np.nan] * 3), s), Status.NON_FINITE, "nan"),
     "nan force": (lambda c, s: (c._replace(force=c.force * np.nan), s), Status.NON_FINITE, "nan"),
+    "nan load": (
+        lambda c, s: (c._replace(friction_load=c.force * np.nan), s),
+        Status.NON_FINITE,
+        "nan",
+    ),
+    "negative load": (
+        lambda c, s: (c._replace(friction_load=-c.force), s),
+        Status.MALFORMED,
+        "load below zero",
+    ),
     "infinite": (lambda c, s: (c._replace(force=c.force + np.inf), s), Status.NON_FINITE, "inf"),
     "wide": (
         lambda c, s: (c._replace(force=np.stack([c.force] * 2)), s),
