@@ -11,7 +11,7 @@ from contactlab.impact.bodies import Pair, Sphere, inverse_turning_mass
 from contactlab.impact.body_contact import Contact
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import LEAST_IMPULSE
-from contactlab.numeric.arrays import chosen, every, locked, plain
+from contactlab.numeric.arrays import chosen, every, locked, plain, spread
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array, Real
 from contactlab.numeric.vectors import LEAST, components, three
@@ -26,7 +26,7 @@ def unmoved(encounter: Encounter) -> Moved:
     """Return two bodies that passed through, of every encounter of a batch."""
     shape = encounter.shape
     vectors = {name: np.broadcast_to(getattr(encounter, name), (*shape, 3)) for name in VELOCITIES}
-    zero: Any = np.zeros(shape) if shape else 0.0
+    zero = spread(0.0, shape)
     return vectors | {
         "normal_velocity": np.broadcast_to(encounter.meeting().approach, shape) + zero,
         "slip_velocity_change": zero,

@@ -16,6 +16,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
+from contactlab.numeric.arrays import shaped
 from contactlab.numeric.lobatto import lobatto, rows
 from contactlab.numeric.types import Array, Index, Real
 
@@ -105,7 +106,7 @@ class MotionTable:
 
     def shaped(self, values: Array) -> Any:
         """Return values of shape (items,) in the shape of the batch, or as a plain number."""
-        return values.reshape(self.shape) if self.shape else values.item()
+        return shaped(values, self.shape)
 
 
 def _rising(fraction: Array, width: Array, steps: Array) -> Array:

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import chosen, greater
 
 #: An answer is coarse if its numerical error is more than this share of the range.
 COARSE = 0.25
@@ -42,6 +43,4 @@ def range_of(scene: Scene) -> Range:
 def psi_magnitude(scene: Scene) -> Any:
     """Return max(1, |psi1|), the scale of relative errors of psi2; 1 where psi1 is infinite."""
     magnitude: Any = scene.size_of(scene.psi1)
-    if not scene.shape:
-        return max(1.0, magnitude) if math.isfinite(magnitude) else 1.0
-    return np.maximum(1.0, np.where(np.isfinite(magnitude), magnitude, 1.0))
+    return greater(chosen(magnitude < math.inf, magnitude, 1.0), 1.0)

@@ -8,6 +8,7 @@ import numpy as np
 
 from contactlab.impact.bodies import Pair
 from contactlab.numeric import arrays as batch
+from contactlab.numeric.arrays import plain
 from contactlab.numeric.checks import NON_NEGATIVE, POISSON, POSITIVE, Rule, real, refuse
 from contactlab.numeric.types import Array, Numbers, Real
 
@@ -148,7 +149,7 @@ def _by_eta(drag: Real, eta: Real, where_zero: Real) -> Any:
         squared = np.where(alone, where_zero, np.divide(drag, eta))
     if not np.all((squared > 0.0) & np.isfinite(squared)):
         raise refuse("lam / eta", np.ravel(squared).tolist(), rule, "rho = lam/eta = mu²/kappa")
-    return _number(squared)
+    return plain(squared)
 
 
 def _friction_and_stiffness(
@@ -160,7 +161,7 @@ def _friction_and_stiffness(
     if mu is not None:
         return mu, (mu * mu / squared if kappa is None else kappa)
     kappa = 1.0 if kappa is None else kappa
-    return _number(np.sqrt(squared * kappa)), kappa
+    return plain(np.sqrt(squared * kappa)), kappa
 
 
 def _scaled(
@@ -197,9 +198,4 @@ def _scaled(
         return np.broadcast_to(slip, (*shape, 2)), W
     W[..., 1, 1] = W[..., 2, 2] = 2.0 * chi / kappa
     W[..., 0, 1] = W[..., 1, 0] = lam / mu
-    return _number(np.broadcast_to(psi1 * mu / kappa, shape)), W
-
-
-def _number(value: Real) -> Any:
-    """Return a float for a single number, else the array."""
-    return float(value) if np.ndim(value) == 0 else value
+    return plain(np.broadcast_to(psi1 * mu / kappa, shape)), W

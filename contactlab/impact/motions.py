@@ -47,7 +47,7 @@ class Motions:
         return self.tangential_velocity + self.spin * self.sphere.radius
 
     @property
-    def psi_scale(self) -> Real:
+    def psi_scale(self) -> Any:
         """kappa/(mu v1) of eq. (29), psi per m/s of slip velocity; infinite without friction."""
         if not self.shape:  # plain numbers are ten times as fast
             unit = float(self.friction_coefficient * self.normal_speed)
@@ -56,7 +56,7 @@ class Motions:
             scale = np.divide(
                 self.pair.stiffness_ratio, self.friction_coefficient * self.normal_speed
             )
-        return float(scale) if np.ndim(scale) == 0 else scale
+        return batch.plain(scale)
 
     def psi(self, velocity: Real) -> Any:
         """Return psi of a slip velocity, eq. (29), without unit: (...), or (..., 2) in space.
@@ -73,7 +73,7 @@ class Motions:
             scale = np.asarray(scale)[..., None] * self._sides
         with np.errstate(invalid="ignore", over="ignore"):
             value = np.where(np.asarray(velocity) == 0.0, 0.0, velocity * scale)
-        return float(value) if value.ndim == 0 else value
+        return batch.plain(value)
 
     @property
     def psi1(self) -> Any:

@@ -17,7 +17,7 @@ import attrs
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contactlab.numeric.types import Array, Index, Mask, Real, Tree
+from contactlab.numeric.types import AnyArray, Array, Index, Mask, Real, Tree
 
 #: Numbers in the array that ``keep_freed_memory`` releases: 8 MB, the tables of most batches.
 RELEASED = 1_000_000
@@ -197,6 +197,21 @@ def flat(value: Real, shape: tuple[int, ...]) -> Array:
 def plain(value: Real) -> Any:
     """Return a number without axes as a float, and an array as it is."""
     return value if getattr(value, "ndim", 0) else float(value)
+
+
+def shaped(values: AnyArray, shape: tuple[int, ...]) -> Any:
+    """Return numbers of shape (items,) in the shape of the batch, or that of one impact."""
+    return values.reshape(shape) if shape else values.item()
+
+
+def part_of(value: Real, part: Index) -> Any:
+    """Return the numbers of some impacts; a plain number is that of each."""
+    return value[part] if isinstance(value, np.ndarray) else value
+
+
+def greater(one: Real, other: float) -> Any:
+    """Return the greater of two numbers, NaN if the first is NaN; ``max`` is faster for floats."""
+    return max(one, other) if isinstance(one, float) else np.maximum(one, other)
 
 
 def filled(value: object, shape: tuple[int, ...]) -> Any:

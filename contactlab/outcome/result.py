@@ -449,10 +449,9 @@ def _ratio(after: Real, before: Real) -> Any:
     """Return ``after / before``, NaN where ``before`` is zero."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         ratio = np.where(np.asarray(before) == 0.0, np.nan, np.divide(after, before))
-    return float(ratio) if ratio.ndim == 0 else ratio
+    return plain(ratio)
 
 
 def _angle(tangential: Real, normal: Real) -> Any:
     """Return the angle from the normal in rad, a float for a single impact."""
-    angle = np.arctan2(tangential, normal)
-    return float(angle) if np.ndim(angle) == 0 else angle
+    return plain(np.arctan2(tangential, normal))

@@ -23,6 +23,7 @@ from contactlab.contracts import (
 )
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import spread
 from contactlab.numeric.types import Array, Real
 
 
@@ -51,7 +52,7 @@ class PressedSpring(SteppedTangentialLaw):
 
     def start(self, scene: Scene, normal: NormalMotion) -> Stretched:
         """Return the spring without displacement."""
-        nothing: Real = np.zeros(scene.shape) if scene.shape else 0.0
+        nothing = spread(0.0, scene.shape)
         return Stretched(self.stiffness(scene, normal) / normal.maximum_force, nothing)
 
     def advance(
@@ -140,7 +141,7 @@ class Yielding(SteppedTangentialLaw):
 
     def start(self, scene: Scene, normal: NormalMotion) -> Yield:
         """Return the spring without force."""
-        nothing: Real = np.zeros(scene.shape) if scene.shape else 0.0
+        nothing = spread(0.0, scene.shape)
         return Yield(self.stiffness(scene, normal), scene.friction_coefficient, nothing)
 
     def advance(

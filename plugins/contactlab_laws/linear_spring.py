@@ -16,6 +16,7 @@ from contactlab.contracts import (
     TangentialResponse,
 )
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import spread
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, quantity
 from contactlab.numeric.types import Real
 from contactlab_laws.mindlin import (
@@ -107,7 +108,7 @@ class LinearSpring(SteppedTangentialLaw):
 
     def start(self, scene: Scene, normal: NormalMotion) -> State:
         """Return the spring at rest."""
-        zero: Real = np.zeros(scene.shape) if scene.shape else 0.0
+        zero = spread(0.0, scene.shape)
         stiffness = self.stiffness(scene, normal)
         return State(
             stiffness,

@@ -19,6 +19,7 @@ from contactlab.contracts import (
     sliding,
 )
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import shaped, spread
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, choice, quantity
 from contactlab.numeric.types import Mask, Real
 
@@ -138,9 +139,7 @@ def moved_in_plane(
     response, own = law.advance(state.own, step, before, after)
     force = np.stack((response.force.real, response.force.imag), axis=-1).reshape(*shape, 2)
     work = np.asarray(response.friction_work)
-    return TangentialResponse(force, work.reshape(shape) if shape else work.item()), InPlane(
-        own, shape
-    )
+    return TangentialResponse(force, shaped(work, shape)), InPlane(own, shape)
 
 
 def along(force: Along, slip: Along) -> Any:
@@ -269,7 +268,7 @@ class MindlinCap(SteppedTangentialLaw):
 
     def start(self, scene: Scene, normal: NormalMotion) -> State:
         """Return a spring at rest."""
-        zero: Real = np.zeros(scene.shape) if scene.shape else 0.0
+        zero = spread(0.0, scene.shape)
         pair = scene.pair
         masses = (pair.normal_mass, pair.tangential_mass)
         modulus = self._modulus(scene)

@@ -23,7 +23,7 @@ from contactlab.contracts import (
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.impact.hertz import slips_throughout
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import spread
+from contactlab.numeric.arrays import greater, spread
 from contactlab.numeric.types import Array, Mask, Real
 from contactlab_laws.fronts import compiled
 from contactlab_laws.jaeger.gross_slip import gross_slip
@@ -197,12 +197,11 @@ def _solved(scene: Scene, where: Mask) -> tuple[WholeImpact, ...]:
 
 
 def _from_table(scene: Scene, psi1: Any, chi: Real, *, where: Mask) -> WholeImpact:
-    magnitude: Any = np.maximum(1.0, abs(psi1)) if scene.shape else max(1.0, abs(psi1))
     return from_change(
         scene,
         where=where,
         psi_change=rebound(psi1, chi) - psi1,
-        psi2_error=ERROR * magnitude,
+        psi2_error=ERROR * greater(abs(psi1), 1.0),
         reason=REASON,
         counter="tabulated",
     )

@@ -21,7 +21,7 @@ import numpy as np
 from contactlab.contracts import Increment, NormalContact, TangentialResponse
 from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import flat
+from contactlab.numeric.arrays import flat, shaped
 from contactlab.numeric.types import Array, Real
 from contactlab_laws.jaeger.bundle import spring_fields
 from contactlab_laws.jaeger.partial_slip import Scales
@@ -200,17 +200,12 @@ def advance(
         state.cross,
     )
     force, work, loss, memory = moved(memory, contact, drive, state.grows, state.splits)
-    work, loss = (_shaped(each * scales.metres, shape) for each in (work, loss))
+    work, loss = (shaped(each * scales.metres, shape) for each in (work, loss))
     if vectors:
         acts = np.stack((force.real, force.imag), axis=-1).reshape(*shape, 2)
     else:
-        acts = _shaped(force, shape)
+        acts = shaped(force, shape)
     return TangentialResponse(acts, work, True, loss), state._replace(memory=memory)
-
-
-def _shaped(values: Vectors, shape: tuple[int, ...]) -> Any:
-    """Return values of shape (items,) in the shape of the batch, or as a plain number."""
-    return values.reshape(shape) if shape else values.item()
 
 
 def told(

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.compose.rebound import TABULATED_CHI
+from contactlab.numeric.arrays import part_of
 from contactlab.numeric.types import Array, Real
 from contactlab_laws.tables import elastic
 from contactlab_laws.tables.file import read
@@ -86,8 +87,7 @@ def _by_blocks(speed: Array, chi: Array, restitution: Real) -> Array:
     psi2 = np.empty_like(speed)
     for first in range(0, speed.size, BLOCK):
         part = slice(first, first + BLOCK)
-        e = restitution if isinstance(restitution, float) else restitution[part]
-        psi2[part] = _together(speed[part], chi[part], e)
+        psi2[part] = _together(speed[part], chi[part], part_of(restitution, part))
     return psi2
 
 
@@ -97,13 +97,12 @@ def _together(speed: Array, chi: Array, e: Real) -> Array:
     who = np.flatnonzero(sticks(speed, chi, e))
     if not who.size:
         return psi2
-    p, x, own = speed[who], chi[who], e if isinstance(e, float) else e[who]
+    p, x, own = speed[who], chi[who], part_of(e, who)
     found = _partial(p, x, own)
     near = np.asarray(own > JOINED)
     if near.any():
         rows = np.flatnonzero(np.broadcast_to(near, p.shape) & (x <= TABULATED_CHI))
-        here = own if isinstance(own, float) else own[rows]
-        found[rows] += _share(here) * _step(p[rows], x[rows])
+        found[rows] += _share(part_of(own, rows)) * _step(p[rows], x[rows])
     if np.any(own == 0.0):
         found = np.where(own == 0.0, without_rebound(p, x), found)
     # no impact gains energy, nor more impulse than full slip gives: not even by an error
@@ -126,8 +125,7 @@ def _partial(speed: Array, chi: Array, e: Any) -> Array:
     """Return psi2 from the table; of complex numbers too."""
     slips = speed.real > 1.0
     u, rows = speed.copy(), np.flatnonzero(slips)
-    own = e if np.ndim(e) == 0 else e[rows]
-    end = border(chi[rows], own)
+    end = border(chi[rows], part_of(e, rows))
     u[rows] = 1.0 - np.sqrt((end - speed[rows]) / (end - 1.0))
     if isinstance(e, float):
         psi2 = section(e).values(slips, u, chi)

@@ -11,6 +11,7 @@ import numpy as np
 from contactlab.contracts import NormalContact, Tabulated, without_tension
 from contactlab.contracts.restitution import LEAST_RESTITUTION
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import plain
 from contactlab.numeric.checks import Rule, quantity, refuse
 from contactlab.numeric.types import Real
 from contactlab_laws.relaxing import Parts, Relaxing
@@ -134,7 +135,8 @@ class Viscoelastic(Relaxing, Tabulated):
                 rule += f"{speed[wrong].flat[0]:.4g} m/s"
                 raise refuse("restitutions", [*self.restitutions], rule, "add its e to the table")
             e = np.interp(speed, known, values)
-        return float(e) if e.ndim == 0 else e
+        found: Real = plain(e)
+        return found
 
     def respond(self, state: Parts, approach: Real, rate: Real) -> tuple[NormalContact, Parts]:
         """Return force and radius; where the contact was left behind, it is Hertz's (2) anew."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial.chebyshev import chebval
 
+from contactlab.numeric.arrays import plain
 from contactlab.numeric.types import Array, Real
 
 #: g by Chebyshev polynomials of (e^(1/3) - 0.6)/0.4, from ``LEAST`` up: e to 2e-10.
@@ -33,7 +34,8 @@ def number_of(restitution: Real) -> Real:
         e, in (0, 1].
     """
     e = np.asarray(restitution)
-    return _float(np.expm1(-0.6 * np.log(e)) / _ratio(e) + 0.0)  # no -0
+    found: Real = plain(np.expm1(-0.6 * np.log(e)) / _ratio(e) + 0.0)  # no -0
+    return found
 
 
 def restitution_of(number: Real) -> Real:
@@ -47,7 +49,8 @@ def restitution_of(number: Real) -> Real:
     e = np.full(a.shape, 0.5)
     for _ in range(TURNS):
         e = (1.0 + _ratio(e) * a) ** (-5.0 / 3.0)
-    return _float(e)
+    found: Real = plain(e)
+    return found
 
 
 def _ratio(e: Real) -> Array:
@@ -55,7 +58,3 @@ def _ratio(e: Real) -> Array:
     series = chebval((np.cbrt(np.maximum(e, LEAST)) - 0.6) / 0.4, TERMS)
     asymptote = FIRST * (1.0 - e**0.6) * (1.0 + SECOND * np.cbrt(e) ** 2)
     return np.where(e >= LEAST, series, asymptote)
-
-
-def _float(value: Real) -> Real:
-    return float(value) if np.ndim(value) == 0 else value
