@@ -7,7 +7,6 @@ import contextlib
 import json
 import math
 import re
-import shlex
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
@@ -27,9 +26,7 @@ from contactlab.outcome.files import distinct, unwritable, write_table
 if TYPE_CHECKING:
     from contactlab.compose.simulation import Simulation
     from contactlab.figures.style import Look, Width
-    from contactlab.fitting.measurements import Measurements
     from contactlab.impact.scene import Scene
-    from contactlab.scene_file import SceneFile
     from contactlab.study.benchmark import Benchmark
     from contactlab.study.stability import Stability
 
@@ -296,86 +293,6 @@ def add_laws(
 def _number_or_words(text: str) -> Any:
     """Return a number; or the text as it is, if v or a colon shows a formula or a table."""
     return text if re.search("[v:]", text) else finite(text)
-
-
-def add_columns(parser: argparse.ArgumentParser) -> None:
-    """Add ``--column`` and ``--columns``, names for headings of a CSV of measured impacts."""
-    parser.add_argument(
-        "--column",
-        type=_column,
-        action="append",
-        default=[],
-        metavar="HEADING=NAME",
-        help="name a column of the CSV: 'impact angle [deg]=incidence_angle'; a name with - before "
-        "turns the sign, 'remark=#' leaves the column unread; may be repeated",
-    )
-    parser.add_argument(
-        "--columns",
-        type=_columns,
-        metavar="A,B,...",
-        help="names of all columns of the CSV in their order, with headings or without: "
-        "'angle_deg,speed (mph),#'; # for a column that is not read",
-    )
-
-
-def _columns(text: str) -> list[str]:
-    return [name.strip() for name in text.split(",")]
-
-
-def read_impacts(data: str | Path | SceneFile, arguments: argparse.Namespace) -> Measurements:
-    """Return measured impacts, with the names of columns; a refusal has the command to paste."""
-    from contactlab.fitting import measurements  # only for measured impacts
-    from contactlab.fitting.foreign_headings import ForeignHeadingsError
-
-    if arguments.columns and arguments.column:
-        raise ValueError("--column: cannot stand beside --columns, which names all columns")
-    names = arguments.columns or dict(arguments.column)
-    headings = [heading for heading, _ in arguments.column]
-    if twice := sorted(name for name in set(headings) if headings.count(name) > 1):
-        raise ValueError(f"--column: {twice[0]!r} is named twice; leave one of them out")
-    try:
-        return measurements.read_measurements(data, columns=names)
-    except ForeignHeadingsError as error:
-        command = f"paste: contactlab {shlex.join(arguments.words)}"
-        raise ForeignHeadingsError(error.said, error.columns, command) from None
-
-
-def _column(text: str) -> tuple[str, str]:
-    """Return the heading and the name in ``"impact angle [deg]=incidence_angle"``."""
-    heading, _, name = text.rpartition("=")
-    if not heading.strip() or not name.strip():
-        raise argparse.ArgumentTypeError(f"{text!r}: write HEADING=NAME")
-    return heading.strip(), name.strip()
-
-
-def add_measured(parser: argparse.ArgumentParser) -> None:
-    """Add ``--measured``, ``--column`` and ``--columns``."""
-    parser.add_argument(
-        "--measured",
-        type=Path,
-        metavar="DATA.csv",
-        help="measured impacts to set beside the laws, with the headings of contactlab fit",
-    )
-    add_columns(parser)
-
-
-def measured(arguments: argparse.Namespace, read: Callable[..., SceneFile]) -> SceneFile:
-    """Return a scene file with the values of ``--measured`` in place of its own.
-
-    ``read`` returns the file; ``defaults`` are velocities to use where the file has none.
-    """
-    if arguments.measured is None:
-        if arguments.column or arguments.columns:
-            option = "--columns" if arguments.columns else "--column"
-            raise ValueError(f"{option}: names headings of --measured DATA.csv, which is missing")
-        return read(defaults=None)
-    from contactlab.fitting import beside  # only for --measured
-
-    table = read_impacts(arguments.measured, arguments)
-    for note in table.notes:
-        print(f"contactlab: note: {note}", file=sys.stderr)
-    file = read(defaults=beside.first_velocities(table))
-    return beside.with_measurements(file, table)
 
 
 def add_progress(parser: argparse.ArgumentParser) -> None:

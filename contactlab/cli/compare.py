@@ -28,6 +28,7 @@ from pathlib import Path
 import numpy as np
 
 from contactlab.cli import arguments as shared
+from contactlab.cli.measured import add_measured, beside_measured
 from contactlab.cli.scene import add_file, add_ranges, check_alone, read
 from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.compose.names import KINDS, full_name, kind_of
@@ -62,7 +63,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the scene, the laws, the quantities and the outputs."""
     add_file(parser, "a scene or a sweep (default: psi2 over psi1 of a solid sphere, chi = 49/34)")
     add_ranges(parser)
-    shared.add_measured(parser)
+    add_measured(parser)
     words = "every installed tangential law that fits, one row a law"
     parser.add_argument("--all", action="store_true", help=words)
     shared.add_laws(parser, many=True)
@@ -89,7 +90,7 @@ def execute(arguments: argparse.Namespace) -> int:
         quantity_named(quantity, where="--quantity")
     if arguments.measured and not arguments.scene:
         raise ValueError("--measured: needs a SCENE.toml with the bodies of the experiment")
-    file = shared.measured(arguments, partial(_file, arguments))
+    file = beside_measured(arguments, partial(_file, arguments))
     named = bool(arguments.tangential)
     if arguments.all:
         compared = _all(arguments, file)

@@ -20,6 +20,7 @@ from typing import Any, Unpack
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.fit_report import describe, further_cautions, ranking, write_residuals
+from contactlab.cli.measured import add_columns, read_impacts
 from contactlab.cli.scene import add_allow_code
 from contactlab.compose.composition import DEFAULT_NORMAL
 from contactlab.compose.hooks import Execute, hookimpl
@@ -76,7 +77,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         metavar="FILM.csv",
         help="in place of DATA.csv: positions t, x, y (optional z, angle) of a ball that bounces",
     )
-    shared.add_columns(parser)
+    add_columns(parser)
     shared.add_figure(parser, "draw measured values, laws and residuals")
     shared.add_file(parser, "--csv", ".csv", words="write the residuals")
     shared.add_json(parser, "tables")
@@ -91,7 +92,7 @@ def execute(arguments: argparse.Namespace) -> int:
         distinct({f"FILE {number}": name, "--csv": arguments.csv, "--figure": arguments.figure})
     data, path = _files(arguments.files, arguments.flight)
     if arguments.flight is None:
-        impacts = shared.read_impacts(data, arguments)
+        impacts = read_impacts(data, arguments)
     elif arguments.columns:
         raise ValueError("--columns: names those of DATA.csv; of a film --column 'HEADING=x' does")
     else:

@@ -14,6 +14,7 @@ from functools import partial
 from pathlib import Path
 
 from contactlab.cli import arguments as shared
+from contactlab.cli.measured import add_measured, beside_measured
 from contactlab.cli.scene import add_file
 from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.compose.names import full_name, short_name
@@ -39,7 +40,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     parser.add_argument(
         "--integrator", metavar="NAME", help="integrator in place of the file's own"
     )
-    shared.add_measured(parser)
+    add_measured(parser)
     shared.add_file(parser, "--out", ".html", required=True)
     shared.add_progress(parser)
     return shared.checked(execute)
@@ -48,7 +49,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
 def execute(arguments: argparse.Namespace) -> int:
     """Run the scene under the laws, write the page and print its path."""
     code = arguments.allow_code
-    file = shared.measured(arguments, partial(read_scene, arguments.scene, allow_code=code))
+    file = beside_measured(arguments, partial(read_scene, arguments.scene, allow_code=code))
     laws = file.laws.choose(normal=arguments.normal, integrator=arguments.integrator)
     own = laws.suited_to(file.scene).tangential
     simulations = {str(own): laws.simulation()}
