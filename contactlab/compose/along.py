@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.compose.answers import Answered, answers, separated, show
+from contactlab.compose.answers import Answered, answers, followed, separated, show
 from contactlab.compose.normal_motion import normal_or_failed
 from contactlab.compose.way import ONE_BY_ONE, Prepared, Way, halves
 from contactlab.contracts import faults
@@ -163,8 +163,8 @@ class Along(Way):
             return TangentialMotion.joined([part(0)], shape)
         try:
             with np.errstate(under="ignore"):  # harmless, even where a user has numpy raise
-                motion = laws.integrator.integrate(normal, laws.tangential, normal.scene, observer)
-            raised = False
+                given = laws.integrator.integrate(normal, laws.tangential, normal.scene, observer)
+            motion, raised = followed(given, shape), False
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # a plug-in may not end the process

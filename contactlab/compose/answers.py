@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from contactlab.contracts import faults
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.motion import NormalMotion
-from contactlab.contracts.status import Status
+from contactlab.contracts.status import Status, succeeded
 from contactlab.contracts.tangential import TangentialLaw
-from contactlab.contracts.tangential_motion import Observer, Sample
+from contactlab.contracts.tangential_motion import Observer, Sample, TangentialMotion
 from contactlab.contracts.whole_impact import WholeImpact
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import shown
@@ -175,3 +175,25 @@ def _unanswered(law: TangentialLaw) -> faults.LawFaultError:
     """Return the error of a whole-impact law that leaves impacts without an answer."""
     sentence = faults.sentence(law, "no answer to some impacts, and no other way to run them", 1)
     return faults.LawFaultError(Status.MALFORMED, sentence)
+
+
+def followed(motion: object, shape: tuple[int, ...]) -> TangentialMotion:
+    """Return the motion that an integrator gave, or raise what is wrong with it."""
+    if not isinstance(motion, TangentialMotion):
+        raise TypeError(f"integrate gave {shown(motion)}, not a TangentialMotion")
+    for name in ("slip_velocity_change", "friction_work", "shear_loss"):
+        value = getattr(motion, name)
+        if not (type(value) is float and not shape) and faults.malformed(value, shape):
+            raise TypeError(f"{name} = {shown(value)}: must be real, of shape {shape}")
+    if not _of_each(motion.status, shape):
+        raise TypeError(f"status = {shown(motion.status)}: must be a Status for each impact")
+    return motion
+
+
+def _of_each(status: Any, shape: tuple[int, ...]) -> bool:
+    """Return whether there is a status for each impact of a batch, or one for a single impact."""
+    if not shape:
+        return isinstance(status, Status)
+    if not (isinstance(status, np.ndarray) and status.shape == shape):
+        return False
+    return succeeded(status) or all(isinstance(each, Status) for each in status.flat)

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import ClassVar
 
 import attrs
 import numpy as np
 import pytest
 
-from contactlab import (
-    Simulation,
-)
+from contactlab import Simulation, create
 from contactlab.contracts import (
     Ends,
+    Integrator,
     SteppedTangentialLaw,
     TangentialMotion,
     TangentialResponse,
@@ -21,6 +21,8 @@ from contactlab.contracts import (
 from contactlab.contracts.status import Status
 from contactlab.contracts.whole_impact import WholeImpact
 from tests.compose.any_scene import (
+    BATCHES,
+    ONES,
     each_batch,
     every_scene,
     many,
@@ -240,3 +242,45 @@ class Pushing(Mistaken):
 def test_energy_beyond_the_numbers_is_no_answer(scene, sense):
     result = Simulation(tangential=Pushing(sense=sense)).run(scene)
     assert set(statuses(result)) <= {"UNBALANCED", "UNRESOLVED"}
+
+
+@attrs.frozen(kw_only=True)
+class Spoiling(Integrator):
+    """Symplectic steps, whose motion is spoilt."""
+
+    api_version: ClassVar[int] = 2
+    tangential_contract: ClassVar[type] = SteppedTangentialLaw
+    how: str
+
+    def integrate(self, normal, tangential, scene, observer=None):
+        motion = create("integrator.symplectic").integrate(normal, tangential, scene, observer)
+        change = motion.slip_velocity_change
+        return {
+            "none": lambda: None,
+            "tuple": lambda: (change, motion.friction_work),
+            "complex": lambda: attrs.evolve(motion, slip_velocity_change=change + 0j),
+            "column": lambda: attrs.evolve(motion, friction_work=np.full((1, 1), 0.1)),
+            "first": lambda: attrs.evolve(motion, slip_velocity_change=np.ravel(change)[:1]),
+            "word": lambda: attrs.evolve(motion, status="SUCCESS"),
+            "no status": lambda: attrs.evolve(motion, status=None),
+        }[self.how]()
+
+
+@pytest.mark.parametrize("scene", [ONES["central"], BATCHES["central"]], ids=["one", "batch"])
+@pytest.mark.parametrize(
+    ("how", "words"),
+    [
+        ("none", "integrate gave None, not a TangentialMotion"),
+        ("tuple", "not a TangentialMotion"),
+        ("complex", "slip_velocity_change = .*must be real"),
+        ("column", "friction_work = .*must be real"),
+        ("first", "slip_velocity_change = .*of shape"),
+        ("word", "status = 'SUCCESS': must be a Status"),
+        ("no status", "status = None: must be a Status"),
+    ],
+)
+def test_what_is_no_motion_of_an_integrator_is_told(scene, how, words):
+    result = Simulation(tangential="springs", integrator=Spoiling(how=how)).run(scene)
+    assert set(statuses(result)) == {"LAW_RAISED"}
+    assert re.search(words, result.failures[0])
+    assert "Spoiling" in result.failures[0]
