@@ -379,10 +379,8 @@ def ellipsoid(
         principal=mass / 5.0 * (squares.sum() - squares),
         axes=turn,
         material=material,
-        curvature_radius=float(radii[2]),
-        cross_radius=float(radii[1]),
-        curvature_axis=turn @ directions[:, 2],
         bending_period=_bending(longest, gyration, material, mass / volume, number=NEEDLE),
+        **_two(float(radii[2]), float(radii[1]), turn @ directions[:, 2]),
     )
     return body, turn @ contact
 
