@@ -11,7 +11,7 @@ from contactlab.impact.bodies import Pair, Sphere, inverse_turning_mass
 from contactlab.impact.body_contact import Contact
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import LEAST_IMPULSE
-from contactlab.numeric.arrays import chosen, every, locked, plain, spread
+from contactlab.numeric.arrays import chosen, every, finite, locked, plain, spread
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array, Real
 from contactlab.numeric.vectors import LEAST, components, three
@@ -64,7 +64,7 @@ def _check(part: Encounter, impulse: Real, change: Real) -> None:
             f"mass times speed of approach must be at least {LEAST_IMPULSE:g} N s",
             "give larger masses and speeds, or other units",
         )
-    if not np.isfinite(change if isinstance(change, float) else np.sum(change)):
+    if not finite(change):
         raise refuse(
             "friction_coefficient",
             part.friction_coefficient,

@@ -76,7 +76,7 @@ def _by_dimensions(
     xarray: Any, function: Callable[..., object], answers: int, arguments: Mapping[str, object]
 ) -> Any:
     """Return ``DataArray``s over every dimension of the arguments; lazy ones of lazy ones."""
-    labelled = [value for value in arguments.values() if isinstance(value, xarray.DataArray)]
+    labelled = [value for value in arguments.values() if library_of(value)]
     try:
         xarray.align(*labelled, join="exact", copy=False)
     except ValueError as error:
@@ -101,7 +101,7 @@ def _by_index(
     index: Any = None
     columns = []
     for value in arguments.values():
-        if not isinstance(value, pandas.Series):
+        if not library_of(value):
             columns.append(value)
             continue
         index = value.index if index is None else index

@@ -17,7 +17,6 @@ from queue import SimpleQueue
 from typing import Any, NamedTuple
 
 import attrs
-import numpy as np
 
 from contactlab.compose.composition import Laws, versions
 from contactlab.compose.hooks import short
@@ -192,4 +191,4 @@ def _locked(tree: Any) -> Any:
     if attrs.has(type(tree)):
         for field in attrs.fields(type(tree)):
             _locked(getattr(tree, field.name))
-    return locked(tree) if isinstance(tree, np.ndarray) else tree
+    return locked(tree)
