@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.contracts.status import Status
 from contactlab.numeric.types import Array
@@ -70,10 +72,29 @@ class Agreement:
         return self.predicted[law] - self.measured.values
 
     @property
+    def defined(self) -> NDArray[np.bool_]:
+        """True where the quantity has a number, shape (n,), even if a law failed to find it.
+
+        The tangential restitution has none without tangential velocity.
+        """
+        known = np.zeros(len(self.measured.values), dtype=bool)
+        failed = np.ones_like(known)
+        for law, values in self.predicted.items():
+            known |= ~np.isnan(values)
+            failed &= np.asarray(self.results[law].status, dtype=object) != Status.SUCCESS
+        return known | failed
+
+    def _off(self, law: str) -> Array:
+        """Return the absolute differences where the quantity has a number."""
+        return np.abs(self.difference(law))[self.defined]
+
+    @property
     def opposite(self) -> str:
         """Sentence on measured values that are opposite in sign to every law's; else empty."""
-        measured = self.measured.values
-        for values in self.predicted.values():
+        defined = self.defined
+        measured = self.measured.values[defined]
+        for predicted in self.predicted.values():
+            values = predicted[defined]
             wrong, right = values + measured, values - measured
             if not np.mean(wrong**2) * MUCH_NEARER < np.mean(right**2):
                 return ""
@@ -84,19 +105,20 @@ class Agreement:
         )
 
     def rms(self, law: str) -> float:
-        """Return the root mean square difference."""
-        return float(np.sqrt(np.mean(self.difference(law) ** 2)))
+        """Return the root mean square difference; NaN if no point has a number."""
+        off = self._off(law)
+        return float(np.sqrt(np.mean(off**2))) if off.size else math.nan
 
     def largest(self, law: str) -> float:
-        """Return the largest absolute difference."""
-        return float(np.max(np.abs(self.difference(law))))
+        """Return the largest absolute difference; NaN if no point has a number."""
+        return float(np.max(self._off(law))) if self.defined.any() else math.nan
 
     def where_largest(self, law: str) -> float:
         """Return the x of the largest absolute difference; NaN if a value is missing."""
-        difference = np.abs(self.difference(law))
-        if np.isnan(difference).any():
-            return float("nan")
-        return float(self.measured.x[np.argmax(difference)])
+        off = self._off(law)
+        if np.isnan(off).any() or not off.size:
+            return math.nan
+        return float(self.measured.x[self.defined][np.argmax(off)])
 
 
 def values_of(quantity: str, result: ImpactResult) -> Array:

@@ -99,6 +99,32 @@ def test_where_an_impact_failed_is_not_a_number(both):
     assert told[1].startswith("smooth, at the measured values of psi2 (1 of 3): The tan")
 
 
+def test_a_point_without_a_number_takes_none_of_the_others_with_it():
+    """Without tangential velocity e_t is 0/0; a failed impact has an e_t that is not known."""
+    steel = Material.named("steel")
+    angles = np.array([0.0, 40.0, 60.0])
+    scene = Scene.at_angle(Sphere(0.01, steel), HalfSpace(steel), 0.1, speed=1.0, angle_deg=angles)
+    result = Simulation(tangential="coulomb").run(scene)
+    measured = SimpleNamespace(
+        quantity="tangential_restitution", x=angles,
+        values=np.nan_to_num(result.tangential_restitution) + np.array([0.8, 0.01, -0.03]),
+    )  # fmt: skip
+    found = Agreement(measured=measured, results={"rigid": result})
+    assert found.defined.tolist() == [False, True, True]
+    assert found.rms("rigid") == pytest.approx(np.sqrt(5e-4))
+    assert (found.largest("rigid"), found.where_largest("rigid")) == (pytest.approx(0.03), 60.0)
+    assert not found.opposite
+    first = Agreement(
+        measured=SimpleNamespace(
+            **vars(measured) | {"values": measured.values[:1], "x": angles[:1]}
+        ),
+        results={"rigid": Simulation(tangential="coulomb").run(scene.take(slice(0, 1)))},
+    )
+    assert np.isnan(
+        [first.rms("rigid"), first.largest("rigid"), first.where_largest("rigid")]
+    ).all()
+
+
 def test_the_numerical_error_is_estimated_or_else_declared(both):
     run = both.runs[1]
     plan = run.result.plan.changed(psi2_error=np.array([0.1, 0.2, 0.3]))
