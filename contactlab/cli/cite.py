@@ -11,7 +11,7 @@ from __future__ import annotations
 import argparse
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.compare import own_law, simulations
+from contactlab.cli.compare import own_laws, simulations
 from contactlab.cli.scene import add_file, read
 from contactlab.compose.citations import bibtex, references, software
 from contactlab.compose.hooks import Execute, hookimpl
@@ -31,15 +31,13 @@ def execute(arguments: argparse.Namespace) -> int:
     """Print the entries: data and materials first, then laws, contactlab last."""
     file = read(arguments)
     laws = file.laws if file else LawChoice()
-    arguments.tangential = arguments.tangential or [
-        own_law(arguments, laws, file.scene if file else None)
-    ]
+    own = [] if arguments.tangential else own_laws(arguments, laws, file.scene if file else None)
     texts = []
     if file is not None:
         texts += [file.citation] if file.citation else []
         texts += [measured.source for measured in file.measured]
         texts += [work for name in file.materials for work in works(name).values()]
-    for simulation in simulations(arguments, laws).values():
+    for simulation in simulations(arguments, laws, own).values():
         for law in simulation.laws:
             texts += references(law)
     print(bibtex(dict.fromkeys(" ".join(text.split()) for text in texts)), end="\n\n")

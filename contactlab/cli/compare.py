@@ -21,7 +21,7 @@ import argparse
 import inspect
 import itertools
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -54,8 +54,6 @@ from contactlab.study.scores import (
 
 #: Default laws: the exact elastic law and Coulomb's law for rigid bodies.
 DEFAULT_LAWS = ["fronts", "coulomb"]
-#: Kinds of laws that a friction law runs with.
-OTHERS = ("normal", "integrator")
 
 
 @hookimpl
@@ -94,12 +92,12 @@ def execute(arguments: argparse.Namespace) -> int:
     named = bool(arguments.tangential)
     if arguments.all:
         compared = _all(arguments, file)
-    else:
-        if not named:
-            own = own_law(arguments, file.laws, file.scene)
-            others = (name for name in DEFAULT_LAWS if _fits(arguments, file.laws, name))
-            arguments.tangential = list(dict.fromkeys([own, *others]))
+    elif named:
         compared = simulations(arguments, file.laws)
+    else:
+        own = own_laws(arguments, file.laws, file.scene)
+        defaults = list(dict.fromkeys([*own, *DEFAULT_LAWS]))
+        compared = simulations(arguments, file.laws, defaults)
     compared = _answering(file.scene, compared, told=named or arguments.all)
     with shared.progress(arguments.progress, "runs") as progress:
         comparison = compare(
@@ -221,33 +219,29 @@ def _all(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation
     return fitting.simulations
 
 
-def own_law(arguments: argparse.Namespace, laws: LawChoice, scene: Scene | None) -> str:
-    """Return the friction law of a file, beside the first of the other laws requested."""
-    others = {kind: getattr(arguments, kind) for kind in OTHERS}
-    first = {kind: names[0] for kind, names in others.items() if names}
-    choice = laws.choose(**first)
-    return str((choice.resolved() if scene is None else choice.suited_to(scene)).tangential)
+def own_laws(arguments: argparse.Namespace, laws: LawChoice, scene: Scene | None) -> list[str]:
+    """Return the friction law of a file beside each normal law requested."""
+    integrator = arguments.integrator[0] if arguments.integrator else None
+    found = []
+    for normal in arguments.normal or [None]:
+        choice = laws.choose(normal=normal, integrator=integrator)
+        suited = choice.resolved() if scene is None else choice.suited_to(scene)
+        found.append(str(suited.tangential))
+    return list(dict.fromkeys(found))
 
 
-def _fits(arguments: argparse.Namespace, laws: LawChoice, tangential: str) -> bool:
-    """Return whether a friction law runs with all other laws requested."""
-    others = itertools.product(*(getattr(arguments, kind) or [None] for kind in OTHERS))
-    for chosen in others:
-        choice = laws.choose(tangential=tangential, **dict(zip(OTHERS, chosen, strict=True)))
-        try:
-            (choice if arguments.integrator else choice.suited()).simulation()
-        except ValueError:
-            return False
-    return True
-
-
-def simulations(arguments: argparse.Namespace, laws: LawChoice) -> dict[str, Simulation]:
+def simulations(
+    arguments: argparse.Namespace, laws: LawChoice, defaults: Sequence[str] = ()
+) -> dict[str, Simulation]:
     """Return all combinations of the requested laws, named by the kinds that differ.
 
     ``laws`` holds the laws of kinds without a request. Its integrator is replaced
-    by the preferred one for tangential laws that it does not run.
+    by the preferred one for tangential laws that it does not run. Combinations that do not fit are
+    left out if their friction law is one of the ``defaults``.
     """
     requested = {kind: getattr(arguments, kind) or [None] for kind in KINDS}
+    if defaults:
+        requested["tangential"] = list(defaults)
     several = [kind for kind in KINDS if len(requested[kind]) > 1] or ["tangential"]
     combinations = {}
     used: set[str] = set()
@@ -255,7 +249,11 @@ def simulations(arguments: argparse.Namespace, laws: LawChoice) -> dict[str, Sim
     for combination in itertools.product(*requested.values()):
         chosen = dict(zip(KINDS, combination, strict=True))
         choice = laws.choose(**chosen)
-        choice = (choice if arguments.integrator else choice.suited()).resolved()
+        if not arguments.integrator:
+            choice = choice.suited()
+        if defaults and not _fit(choice):
+            continue
+        choice = choice.resolved()
         settings = {
             path: value for path, value in arguments.settings if _knows(choice, path, used, offered)
         }
@@ -268,6 +266,15 @@ def simulations(arguments: argparse.Namespace, laws: LawChoice) -> dict[str, Sim
                 f"{nearest(path, offered)}known: {', '.join(sorted(offered)) or 'none'}"
             )
     return combinations
+
+
+def _fit(choice: LawChoice) -> bool:
+    """Return whether laws run beside each other."""
+    try:
+        choice.simulation()
+    except ValueError:
+        return False
+    return True
 
 
 def _knows(choice: LawChoice, path: str, used: set[str], offered: set[str]) -> bool:

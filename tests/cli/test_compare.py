@@ -80,6 +80,14 @@ def test_integrators_can_be_compared_too(run, short_sweep):
     assert list(content["laws"]) == ["paper", "symplectic"]
 
 
+def test_normal_laws_that_no_friction_law_is_common_to_have_their_own(run):
+    ran = run("compare", "--psi1", "1.2", "--chi", "1.44", "--json", "--normal", "hertz,linear")
+    assert list(json.loads(ran.out)["laws"]) == [
+        "hertz + fronts", "hertz + annulus", "hertz + coulomb", "linear + annulus",
+        "linear + coulomb",
+    ]  # fmt: skip
+
+
 def test_elastic_and_rigid_are_the_default(run):
     content = json.loads(run("compare", "--psi1", "1.2", "--chi", "1.44", "--json").out)
     assert list(content["laws"]) == ["fronts", "coulomb"]
