@@ -30,6 +30,7 @@ import numpy as np
 from contactlab.cli import arguments as shared
 from contactlab.cli.measured import add_measured, beside_measured
 from contactlab.cli.scene import add_file, add_ranges, check_alone, read
+from contactlab.compose.composition import ON_A_PATH
 from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.compose.names import KINDS, full_name, kind_of
 from contactlab.compose.registry import REGISTRY
@@ -96,7 +97,8 @@ def execute(arguments: argparse.Namespace) -> int:
         compared = simulations(arguments, file.laws)
     else:
         own = own_laws(arguments, file.laws, file.scene)
-        defaults = list(dict.fromkeys([*own, *DEFAULT_LAWS]))
+        stepped = [ON_A_PATH] if arguments.loops else []
+        defaults = list(dict.fromkeys([*own, *stepped, *DEFAULT_LAWS]))
         compared = simulations(arguments, file.laws, defaults)
     compared = _answering(file.scene, compared, told=named or arguments.all)
     with shared.progress(arguments.progress, "runs") as progress:
