@@ -10,7 +10,7 @@ import numpy as np
 
 from contactlab.compose.answers import Answered, answers, followed, separated, show
 from contactlab.compose.normal_motion import normal_or_failed
-from contactlab.compose.way import ONE_BY_ONE, Prepared, Way, halves
+from contactlab.compose.way import ONE_BY_ONE, Prepared, Way, books_bound, halves
 from contactlab.contracts import faults
 from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.motion import NormalMotion
@@ -60,7 +60,7 @@ class Along(Way):
             size, accuracy = psi_magnitude(scene), laws.integrator.accuracy
             most = math.inf if accuracy is None else accuracy * (1.0 + ROUNDING) * size
             answered = answers(normal, laws.tangential, history=history, largest_error=most)
-            bound = laws.tangential.books_bound(scene)
+            bound = books_bound(laws.tangential, scene)
             return Prepared(normal, answered, self._columns(normal, answered, size), bound)
 
     def moved(self, prepared: Prepared, recorder: Recorder | None) -> Motion:

@@ -177,14 +177,19 @@ def _unanswered(law: TangentialLaw) -> faults.LawFaultError:
     return faults.LawFaultError(Status.MALFORMED, sentence)
 
 
-def followed(motion: object, shape: tuple[int, ...]) -> TangentialMotion:
-    """Return the motion that an integrator gave, or raise what is wrong with it."""
+def followed(
+    motion: object, shape: tuple[int, ...], axes: tuple[int, ...] = ()
+) -> TangentialMotion:
+    """Return the motion that a law or an integrator gave, or raise what is wrong with it.
+
+    ``axes`` are those of a slip velocity beside the batch's.
+    """
     if not isinstance(motion, TangentialMotion):
-        raise TypeError(f"integrate gave {shown(motion)}, not a TangentialMotion")
-    for name in ("slip_velocity_change", "friction_work", "shear_loss"):
-        value = getattr(motion, name)
-        if not (type(value) is float and not shape) and faults.malformed(value, shape):
-            raise TypeError(f"{name} = {shown(value)}: must be real, of shape {shape}")
+        raise TypeError(f"gave {shown(motion)}, not a TangentialMotion")
+    for name, own in ("slip_velocity_change", axes), ("friction_work", ()), ("shear_loss", ()):
+        value, whole = getattr(motion, name), (*shape, *own)
+        if not (type(value) is float and not whole) and faults.malformed(value, whole):
+            raise TypeError(f"{name} = {shown(value)}: must be real, of shape {whole}")
     if not _of_each(motion.status, shape):
         raise TypeError(f"status = {shown(motion.status)}: must be a Status for each impact")
     return motion

@@ -11,6 +11,7 @@ import attrs
 from contactlab.compose.loading import outdated
 from contactlab.compose.names import KINDS, full_name
 from contactlab.compose.registry import REGISTRY, PluginError
+from contactlab.contracts import faults
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.law import Law
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
@@ -210,7 +211,11 @@ def misfit(normal: Law, tangential: Any, integrator: Any = None) -> str | None:
 def _refused(first: Law, second: Law) -> str | None:
     """Return why one of two laws refuses the other, with the names of both; or None."""
     for law, other in ((first, second), (second, first)):
-        if (reason := law.refuses(other)) is not None:
+        try:
+            reason = law.refuses(other)
+        except Exception as error:  # a law that cannot say whether it runs does not run
+            reason = f"its refuses raised {faults.raised(error)}"
+        if reason is not None:
             both = f"{law.kind} = {_name(law)}: does not run beside {other.kind} = {_name(other)}"
             return f"{both}: {reason}"
     return None

@@ -259,6 +259,9 @@ class Simulation:
             same sweep resumes from them.
         """
         started, laws = time.perf_counter(), self.laws
+        if not (progress is None or callable(progress)):
+            remedy = "give a function of done and total"
+            raise refuse("progress", progress, "must be callable", remedy)
         options: dict[str, Any] = {"progress": progress, "chunk": chunk}
         options["executor"] = executor
         if into is not None:

@@ -13,6 +13,8 @@ from contactlab.compose.names import KINDS
 from contactlab.compose.pieces import Piece
 from contactlab.compose.together import Together
 from contactlab.compose.way import Way, blocks
+from contactlab.contracts import faults
+from contactlab.contracts.law import Law
 from contactlab.impact.scene import Scene
 from contactlab.outcome.chunk_forms import Chunk
 from contactlab.outcome.history import Recorder
@@ -38,10 +40,21 @@ def accepted(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
     found = ways(laws, scene, as_one=as_one)
     for _, part, used in found:
         central = part.central
-        used.normal.accept(central)
-        used.tangential.accept(central)
-        used.integrator.accept(central)
+        _accept(used.normal, central)
+        _accept(used.tangential, central)
+        _accept(used.integrator, central)
     return found
+
+
+def _accept(law: Law, scene: Scene) -> None:
+    """Let a law refuse a scene; whatever else it raises is a refusal too."""
+    try:
+        law.accept(scene)
+    except ValueError:
+        raise
+    except Exception as error:
+        told = f"{law.kind} = {type(law).__name__}: its accept raised {faults.raised(error)}"
+        raise ValueError(told) from error
 
 
 def versions_of(found: Sequence[Way]) -> dict[str, str]:

@@ -8,20 +8,19 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.compose.answers import Mask, separated
+from contactlab.compose.answers import Mask, followed, separated
 from contactlab.compose.normal_motion import normal_or_failed
 from contactlab.compose.solved_motion import FailedMotion
-from contactlab.compose.way import ONE_BY_ONE, Masks, Prepared, Way, asked, halves
+from contactlab.compose.way import ONE_BY_ONE, Masks, Prepared, Way, asked, books_bound, halves
 from contactlab.contracts import faults
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import TangentialLaw
-from contactlab.contracts.tangential_motion import Observer, TangentialMotion
+from contactlab.contracts.tangential_motion import Observer
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import chosen, every, spread
-from contactlab.numeric.checks import shown
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
@@ -70,7 +69,7 @@ class Together(Way):
             self.refuse_history(history, common_instants=common)
         normal = normal_or_failed(laws.normal, scene.central)
         with faults.blaming(laws.tangential):
-            bound: Any = laws.tangential.books_bound(normal.scene)
+            bound: Any = books_bound(laws.tangential, normal.scene)
             least = max if isinstance(bound, float) else np.maximum
             return Prepared(normal, [], self._columns(normal), least(bound, CANCELS))
 
@@ -105,13 +104,11 @@ class Together(Way):
                 answer = law.impacts_together(scene, normal, integrator.accuracy, observer)
             else:
                 answer = integrator.integrate_together(normal, law, scene, observer)
-            if not isinstance(answer, TangentialMotion) or (
-                answer.normal is None and np.any(np.asarray(answer.status) == Status.SUCCESS)
-            ):
-                told = f"the answer {shown(answer)}, no TangentialMotion with the ends of its"
-                sentence = faults.sentence(blamed, f"{told} normal motion", 1)
-                raise faults.LawFaultError(Status.MALFORMED, sentence)
-            return Motion.along(normal, answer, scene.slip_axes)
+            moved = followed(answer, scene.shape, scene.slip_axes)
+            if moved.normal is None and np.any(np.asarray(moved.status) == Status.SUCCESS):
+                told = "the answer has not the ends of its normal motion"
+                raise faults.LawFaultError(Status.MALFORMED, faults.sentence(blamed, told, 1))
+            return Motion.along(normal, moved, scene.slip_axes)
 
     def _apart(self, motion: Motion) -> Motion:
         """Return the motion of a batch with the impacts that one beside them made fail."""

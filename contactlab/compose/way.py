@@ -20,9 +20,11 @@ from contactlab.compose.solved_motion import FailedMotion
 from contactlab.contracts import faults
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.status import Status
+from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import consecutive
-from contactlab.numeric.checks import refuse
+from contactlab.numeric.checks import refuse, shown
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.energy import balanced
 from contactlab.outcome.history import Recorder
@@ -181,6 +183,15 @@ class Way(Entries, ABC):
         if self.scene.shape and not common_instants:
             rule = f"impacts of a batch have instants of their own under {self.laws.integrator!r}"
             raise refuse("history", history, rule, "run them one by one")
+
+
+def books_bound(law: TangentialLaw, scene: Scene) -> Real:
+    """Return the bound of the books that a law declares, or raise LawFaultError."""
+    bound = law.books_bound(scene)
+    if faults.malformed(bound, scene.shape):
+        sentence = faults.sentence(law, f"books_bound gave {shown(bound)}", 1)
+        raise faults.LawFaultError(Status.MALFORMED, sentence)
+    return bound
 
 
 def asked(law: Law, question: Callable[..., tuple[str, ...]], *about: object) -> list[str]:

@@ -20,8 +20,8 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.contracts.whole_impact import WholeImpact
+from contactlab_laws.springs.law import Springs
 from tests.compose.any_scene import (
-    BATCHES,
     ONES,
     each_batch,
     every_scene,
@@ -250,31 +250,39 @@ class Spoiling(Integrator):
 
     api_version: ClassVar[int] = 2
     tangential_contract: ClassVar[type] = SteppedTangentialLaw
+    together: ClassVar[bool] = True
     how: str
 
     def integrate(self, normal, tangential, scene, observer=None):
-        motion = create("integrator.symplectic").integrate(normal, tangential, scene, observer)
+        sound = create("integrator.symplectic")
+        return self.spoilt(sound.integrate(normal, tangential, scene, observer))
+
+    def integrate_together(self, normal, tangential, scene, observer=None):
+        sound = create("integrator.symplectic", steps=20)
+        return self.spoilt(sound.integrate_together(normal, tangential, scene, observer))
+
+    def spoilt(self, motion):
         change = motion.slip_velocity_change
         return {
             "none": lambda: None,
             "tuple": lambda: (change, motion.friction_work),
             "complex": lambda: attrs.evolve(motion, slip_velocity_change=change + 0j),
             "column": lambda: attrs.evolve(motion, friction_work=np.full((1, 1), 0.1)),
-            "first": lambda: attrs.evolve(motion, slip_velocity_change=np.ravel(change)[:1]),
+            "empty": lambda: attrs.evolve(motion, slip_velocity_change=np.ravel(change)[:0]),
             "word": lambda: attrs.evolve(motion, status="SUCCESS"),
             "no status": lambda: attrs.evolve(motion, status=None),
         }[self.how]()
 
 
-@pytest.mark.parametrize("scene", [ONES["central"], BATCHES["central"]], ids=["one", "batch"])
+@every_scene
 @pytest.mark.parametrize(
     ("how", "words"),
     [
-        ("none", "integrate gave None, not a TangentialMotion"),
+        ("none", "gave None, not a TangentialMotion"),
         ("tuple", "not a TangentialMotion"),
         ("complex", "slip_velocity_change = .*must be real"),
         ("column", "friction_work = .*must be real"),
-        ("first", "slip_velocity_change = .*of shape"),
+        ("empty", "slip_velocity_change = .*of shape"),
         ("word", "status = 'SUCCESS': must be a Status"),
         ("no status", "status = None: must be a Status"),
     ],
@@ -284,3 +292,39 @@ def test_what_is_no_motion_of_an_integrator_is_told(scene, how, words):
     assert set(statuses(result)) == {"LAW_RAISED"}
     assert re.search(words, result.failures[0])
     assert "Spoiling" in result.failures[0]
+
+
+@attrs.frozen
+class Unsure(Springs):
+    """Springs, of which one answer is no answer."""
+
+    how: str = ""
+
+    def refuses(self, other):
+        return [][1] if self.how == "refuses" else None
+
+    def accept(self, scene):
+        if self.how == "accept":
+            raise TypeError("unknown scene")
+
+    def books_bound(self, scene):
+        return "small" if self.how == "books_bound" else 0.1
+
+
+@pytest.mark.parametrize(
+    ("how", "words"),
+    [
+        ("refuses", "Unsure.*its refuses raised IndexError"),
+        ("accept", "tangential = Unsure: its accept raised TypeError: unknown scene"),
+    ],
+)
+def test_a_law_that_cannot_say_whether_it_runs_does_not_run(how, words):
+    with pytest.raises(ValueError, match=words):
+        Simulation(tangential=Unsure(how=how)).run(ONES["central"])
+
+
+@every_scene
+def test_a_bound_of_the_books_in_words_is_malformed(scene):
+    result = Simulation(tangential=Unsure(how="books_bound")).run(scene)
+    assert set(statuses(result)) == {"MALFORMED"}
+    assert "books_bound gave 'small'" in result.failures[0]

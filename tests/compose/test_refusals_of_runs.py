@@ -171,6 +171,10 @@ REFUSED = [
         "scenes = (1, 2): must be a sequence, or a one-dimensional batch; for one impact use run",
     ),
     (
+        lambda: Simulation().sweep([BARE], progress=5),
+        "progress = 5: must be callable; give a function of done and total",
+    ),
+    (
         lambda: Simulation().sweep([BARE], chunk=0),
         "chunk = 0: must be a whole number from 1 to 10000000",
     ),
