@@ -59,7 +59,7 @@ def answers(
         if normal.status is not Status.SUCCESS:
             return []
         for answer in tangential.whole_impacts(scene, normal):
-            if answer.where and (always or _serves(answer, history, largest_error)):
+            if answer.where and (always or not _falls_short(answer, history, largest_error)):
                 return [Answered(ONE, _checked(answer, tangential, shape))]
         if always:
             raise _unanswered(tangential)
@@ -69,7 +69,7 @@ def answers(
     for answer in tangential.whole_impacts(scene, normal):
         where = left & np.broadcast_to(answer.where, shape)
         if not always:
-            where &= _serves(answer, history, largest_error)
+            where &= np.logical_not(_falls_short(answer, history, largest_error))
         if where.any():
             given.append(Answered(where, _checked(answer, tangential, shape)))
             left &= ~where
@@ -145,12 +145,9 @@ def _fields(
     return fields
 
 
-def _serves(answer: WholeImpact, history: bool | str, largest_error: Real) -> Any:
-    """Return where an answer is as accurate as a march, and has a course if one is asked for."""
-    if history and answer.course is None:
-        return False
-    excessive: Any = answer.psi2_error > largest_error
-    return ~excessive if isinstance(excessive, np.ndarray) else not excessive
+def _falls_short(answer: WholeImpact, history: bool | str, largest_error: Real) -> Any:
+    """Return where a march is more accurate than an answer, or has a course that is asked for."""
+    return (history and answer.course is None) or answer.psi2_error > largest_error
 
 
 def _checked(answer: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) -> WholeImpact:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.numeric.checks import real, refuse, shown
+from contactlab.numeric.checks import of_kind, real, refuse, shown
 from contactlab.numeric.labels import library_of
 
 #: Names of what is returned: psi2 and its derivatives.
@@ -62,9 +62,8 @@ def _library(arguments: Mapping[str, object]) -> tuple[str, str]:
         if not library:
             continue
         kind = getattr(importlib.import_module(MODULES[library]), KINDS[library])
-        if not isinstance(value, kind):
-            rule = f"must be a {library} {KINDS[library]}, or numbers"
-            raise refuse(name, value, rule, "give one column or variable of it")
+        rule = f"must be a {library} {KINDS[library]}, or numbers"
+        of_kind(name, value, kind, rule=rule, remedy="give one column or variable of it")
         owners.setdefault(library, name)
     if len(owners) > 1:
         given = ", ".join(f"{name} of {library}" for library, name in owners.items())

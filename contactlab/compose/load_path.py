@@ -198,9 +198,10 @@ def _laws(scene: Scene, normal: object, tangential: object) -> tuple[Any, Any]:
     """Return the two laws of a path, or refuse them."""
     first = composition.law("normal", normal)
     second = composition.law("tangential", tangential)
-    if not isinstance(second, SteppedTangentialLaw):
-        rule = "must answer to steps, as a SteppedTangentialLaw does"
-        raise refuse("tangential", second, rule, "take springs, or annulus")
+    rule = "must answer to steps, as a SteppedTangentialLaw does"
+    of_kind(
+        "tangential", second, SteppedTangentialLaw, rule=rule, remedy="take springs, or annulus"
+    )
     if (complaint := composition.misfit(first, second)) is not None:
         raise ValueError(complaint)
     for law in (first, second):

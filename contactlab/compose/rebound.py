@@ -250,7 +250,8 @@ def rebound(
     velocity, ratio = paired("psi1", "chi", (incidence, inertia))
     if type(psi1) in (float, int) and type(chi) in (float, int):  # typed, not out of an array
         _warn_if_exchanged(float(incidence), float(inertia))
-    if not isinstance(e, float):
+    one = isinstance(e, float)  # one restitution for all
+    if not one:
         velocity, each = paired("psi1", "restitution", (velocity, e))
         velocity, ratio = paired("psi1", "chi", (velocity, ratio))
     flat, ratios = velocity.ravel(), ratio.ravel()
@@ -258,7 +259,7 @@ def rebound(
         count = 1 + (2 + three) * derivatives
         nothing = tuple(np.empty(velocity.shape) for _ in range(count))
         return nothing if derivatives else nothing[0]
-    if not isinstance(e, float):
+    if not one:
         e = np.broadcast_to(each, velocity.shape).ravel()
         psi2 = _each(flat, ratios, e, aim)
     elif e != 1.0:

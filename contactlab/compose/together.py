@@ -20,7 +20,7 @@ from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.contracts.tangential_motion import Observer
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import chosen, every, spread
+from contactlab.numeric.arrays import chosen, every, greater, spread
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
@@ -69,9 +69,8 @@ class Together(Way):
             self.refuse_history(history, common_instants=common)
         normal = normal_or_failed(laws.normal, scene.central)
         with faults.blaming(laws.tangential):
-            bound: Any = books_bound(laws.tangential, normal.scene)
-            least = max if isinstance(bound, float) else np.maximum
-            return Prepared(normal, [], self._columns(normal), least(bound, CANCELS))
+            bound = greater(books_bound(laws.tangential, normal.scene), CANCELS)
+            return Prepared(normal, [], self._columns(normal), bound)
 
     def _columns(self, normal: NormalMotion) -> PlanColumns:
         """Return the columns of the plan: who answers, and the declared errors."""
