@@ -29,7 +29,7 @@ from contactlab.contracts import (
     faults,
 )
 from contactlab.contracts.status import Status
-from contactlab.numeric.arrays import filled, locked
+from contactlab.numeric.arrays import chosen, filled, locked
 from contactlab.numeric.checks import shown
 from contactlab.numeric.types import Mask, Real
 from contactlab_laws.march.division import resolving
@@ -189,6 +189,7 @@ class _March:
             time = time + drift
             approach = approach + velocity[0] * drift
             before = contact
+            drifting = velocity[0]
             moved = self._joined([each * drift for each in velocity[1:]])
             start = self._joined(velocity[1:])
             if self.axes == 2 or many:
@@ -244,6 +245,8 @@ class _March:
             again = going & (velocity[0] > 0.0) & (velocity[0] + kick[0] <= 0.0)
             self.compressions = self.compressions + again
             self.duration = self.duration + step * going
+            if self.elastic and (self.shape or not touching):
+                self._parted(self.alive & np.logical_not(touching), time, approach, drifting)
             self.alive = going
             if not self.elastic and np.any(again):
                 self._pulled(again & (contact.force < 0.0))
@@ -259,6 +262,12 @@ class _March:
                     f"compression{'s' * (count > 1)}."
                 )
                 return self.fail(Status.NOT_SEPARATED, sentence, self.alive)
+
+    def _parted(self, parted: Mask, time: Real, approach: Real, rate: Real) -> None:
+        """Note when surfaces of an elastic contact parted: between two steps, at a known rate."""
+        if np.any(parted):
+            crossed = time - approach / chosen(parted, rate, 1.0)
+            self.duration = chosen(parted, crossed, self.duration)
 
     def _pulled(self, back: Mask) -> None:
         """Count turns that tension made, and give up impacts that had too many."""
