@@ -369,6 +369,7 @@ def test_a_folder_that_goes_in_the_middle_is_told(tmp_path):
         )
 
 
+@pytest.mark.slow
 def test_an_executor_changes_no_bit(tmp_path):
     simulation = Simulation(tangential="springs")
     here = simulation.sweep(parts(), into=tmp_path / "here").check()

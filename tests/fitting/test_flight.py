@@ -89,6 +89,7 @@ def test_friction_lies_within_its_interval_from_ten_bounces_at_240_frames(restit
     assert sum(inside) >= 9
 
 
+@pytest.mark.slow
 def test_the_errors_are_those_of_many_films():
     """Of what is measured less what would follow from the flight before: no impact changes it."""
     found = [read_flight(film(seed)[0]) for seed in range(60)]

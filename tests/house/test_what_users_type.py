@@ -149,7 +149,12 @@ class Mine(SteppedTangentialLaw):
         pytest.param(
             "while True: pass", "", "was stopped after 0.2 s of computing", marks=pytest.mark.slow
         ),
-        ("return 1", "while True: pass", "did not return within 0.2 s of computing"),
+        pytest.param(
+            "return 1",
+            "while True: pass",
+            "did not return within 0.2 s of computing",
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_a_law_that_exits_or_never_returns(start, at_once, words, tmp_path, capsys):

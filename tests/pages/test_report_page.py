@@ -174,6 +174,7 @@ SWEPT = "[sweep]\nangle_deg = [50.0, 60.0, 70.0]\n"
 HEAD = "angle_deg,speed (m/s),tangential_restitution\n"
 
 
+@pytest.mark.slow
 def test_a_report_of_slip_that_turns_leaves_out_laws_without_an_answer(reported, tmp_path):
     scene = tmp_path / "aside.toml"
     text = (EXAMPLES / "foot.toml").read_text("utf-8")
