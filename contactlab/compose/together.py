@@ -39,8 +39,6 @@ LITTLE = 1e-3
 GIVEN_UP = (Status.LAW_RAISED, Status.MALFORMED, Status.NON_FINITE)
 #: Why impacts are not marched.
 WHOLE = Reason("the law answers normal and tangential motion together")
-
-
 #: What a plan says of such impacts.
 TOGETHER = "normal and tangential motion together: friction changes the approach, or slip turns"
 OF_CONTACT = (

@@ -1,4 +1,4 @@
-"""What is common to the ways in which impacts are solved: whom a failure costs, and the judgement.
+"""Base of the ways to solve impacts: it divides batches that fail, and judges the motions.
 
 Spheres, and bodies whose contact does not couple, go along a known normal motion (``along.py``).
 Where friction changes the approach, or slip turns, both motions are found together

@@ -200,12 +200,11 @@ def yield_unknown(scene: Scene) -> tuple[str, Any, Real]:
             where[f"the {name}"] = np.broadcast_to(missing, scene.shape)
     if not where:
         return "", False, 0.0
+    have = "has" if len(where) == 1 else "have"
     words = (
-        f"yield: not checked, {' and '.join(where)} have no yield_stress; the peak pressure of "
+        f"yield: not checked, {' and '.join(where)} {have} no yield_stress; the peak pressure of "
         "Hertz's contact is {:.2g} GPa"
     )
-    if len(where) == 1:
-        words = words.replace("have no", "has no")
     return words, np.logical_or.reduce([*where.values()]), peak_pressure(scene) / GPA
 
 

@@ -30,13 +30,18 @@ from tests.compose.any_scene import (
 )
 
 
-@attrs.frozen
-class Liar(SteppedTangentialLaw):
-    """Answers both motions as told: NaN, an error for one impact, or books that do not close."""
+class OfVectors(SteppedTangentialLaw):
+    """Base of laws that need no future, of slip that turns too."""
 
     api_version: ClassVar[int] = 2
     needs_future: ClassVar[bool] = False
     vectors: ClassVar[bool] = True
+
+
+@attrs.frozen
+class Liar(OfVectors):
+    """Answers both motions as told: NaN, an error for one impact, or books that do not close."""
+
     together: ClassVar[bool] = True
     how: str = "nan"
 
@@ -109,12 +114,9 @@ def test_one_impact_that_raises_costs_that_impact_alone(scene, count):
 
 
 @attrs.frozen
-class FailsAtOne(SteppedTangentialLaw):
+class FailsAtOne(OfVectors):
     """No friction, and no answer for the impact of index 1."""
 
-    api_version: ClassVar[int] = 2
-    needs_future: ClassVar[bool] = False
-    vectors: ClassVar[bool] = True
     how: str = "raises"
 
     def start(self, scene, normal):
@@ -182,12 +184,9 @@ def test_books_off_a_declared_bound_fail(scene):
 
 
 @attrs.frozen
-class Mistaken(SteppedTangentialLaw):
+class Mistaken(OfVectors):
     """Viscous friction, but for a mistake that the step does not show by itself."""
 
-    api_version: ClassVar[int] = 2
-    needs_future: ClassVar[bool] = False
-    vectors: ClassVar[bool] = True
     how: str = "moves"
 
     def start(self, scene, normal):

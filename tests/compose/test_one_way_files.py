@@ -19,29 +19,16 @@ from tests.compose.any_scene import (
     every_scene,
 )
 from tests.present import extra
+from tests.scene_file.test_bodies_of_files import ROD
 
-ROD = """
-[body]
-shape = "rod"
-length = 1.0
-radius = 0.02
-material = "steel"
-[target]
-kind = "half-space"
-material = "steel"
-[impact]
-friction_coefficient = 0.3
-normal = [0, 0, -1]
-velocity = [0.2, 0.1, -1.0]
-[sweep]
-tilt_deg = [0, 10, 30, 60]
-"""
+#: A rod in space, over its tilt.
+SWEPT = ROD.replace("[0.2, 0, -1.0]", "[0.2, 0.1, -1.0]") + "[sweep]\ntilt_deg = [0, 10, 30, 60]\n"
 
 
 @pytest.fixture
 def swept(tmp_path):
     """Return a sweep over the tilt of a rod, the encounters and a folder."""
-    (tmp_path / "rod.toml").write_text(ROD, encoding="utf-8")
+    (tmp_path / "rod.toml").write_text(SWEPT, encoding="utf-8")
     file = read_scene(tmp_path / "rod.toml")
     return file.laws.simulation().sweep(file.scene).check(), file.encounter, tmp_path
 
