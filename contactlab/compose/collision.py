@@ -234,8 +234,8 @@ class Collision(Answer, Generic[Each]):
             start, lost, slip = self.encounter.pair.energies(contact.approach, contact.slip, *after)
             if np.any(self.collided) and (scene := self._met.scene).turns:
                 change = 0.0 if known is None else known.motion.normal_spin_change
-                whole, taken = self._spread(*scene.spin_energies(change))
-                start, slip = start + whole, slip + taken
+                whole, rubbed = self._spread(*scene.spin_energies(change))
+                start, slip = start + whole, slip + rubbed
             energies = of_each(start, self.encounter.shape), lost, slip
             return books(energies, (self.friction_work, shear), exchange, unchecked == 0.0)
 

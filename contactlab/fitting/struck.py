@@ -9,7 +9,6 @@ from contactlab.scene_file.entries import STRUCK_KEYS
 
 #: Columns of the struck body: its velocity along the normal and along the surface, and its spin.
 VELOCITY, SPIN = STRUCK_KEYS[:2], STRUCK_KEYS[2]
-#: Columns of the velocity of the first body, by its components.
 #: Rebound angles, of which one may be measured beside the rebound speed.
 ANGLES = {"rebound_angle_deg": np.pi / 180.0, "rebound_angle": 1.0}
 NORMAL, TANGENTIAL, SPEED = (

@@ -21,7 +21,7 @@ from contactlab.numeric.vectors import components, dot
 #: count as rounding, over the largest moment.
 ROUNDING = 1e-9
 #: A flat surface has an infinite radius; ``real`` refuses infinity, so this one is put in for it.
-FLAT = 1e100
+FLAT = MOST_RADIUS
 #: Curvatures of smaller radii, in m, would overflow.
 LEAST_RADIUS = 1e-100
 CURVED = Rule(
