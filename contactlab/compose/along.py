@@ -17,6 +17,7 @@ from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.status import Status, succeeded
 from contactlab.contracts.tangential_motion import Observer, TangentialMotion
+from contactlab.contracts.whole_impact import WholeImpact
 from contactlab.impact.inverse_mass import unit_slip
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import are_zeros, every, plain, some, spread, zeros
@@ -56,12 +57,15 @@ class Along(Way):
         if history:
             self.refuse_history(history, common_instants=laws.integrator.common_instants)
         normal = normal_or_failed(laws.normal, scene)
-        with faults.blaming(laws.tangential):
-            size, accuracy = psi_magnitude(scene), laws.integrator.accuracy
-            most = math.inf if accuracy is None else accuracy * (1.0 + ROUNDING) * size
+        size, accuracy = psi_magnitude(scene), laws.integrator.accuracy
+        most = math.inf if accuracy is None else accuracy * (1.0 + ROUNDING) * size
+        try:
             answered = answers(normal, laws.tangential, history=history, largest_error=most)
             bound = books_bound(laws.tangential, scene)
             return Prepared(normal, answered, self._columns(normal, answered, size), bound)
+        except BaseException as error:
+            faults.blame(laws.tangential, error)
+            raise
 
     def moved(self, prepared: Prepared, recorder: Recorder | None) -> Motion:
         """Return the motion by whole-impact answers where there are any, else marched."""
@@ -89,7 +93,7 @@ class Along(Way):
                 code[one.where] = place
             marched = code == MARCHED
         reasons = tuple(
-            Reason(each.reason, each.balanced, each.fields is not None) for _, each in answered
+            [Reason(each.reason, each.balanced, each.fields is not None) for _, each in answered]
         )
         # the load impulse of a frictionless impact is M_n v1 (1 + e), at most twice M_n v1
         restitution: Any = CLOSED_FORM + 2.0 * normal.accuracy
@@ -107,7 +111,7 @@ class Along(Way):
         scene, laws = normal.scene, self.laws
         rounding = CLOSED_FORM * size + normal.accuracy * 4.0 * scene.chi
         if not (scene.shape or marched):
-            return float(rounding + sum(one.answer.psi2_error for one in answered))
+            return float(rounding + answered[0].answer.psi2_error if answered else rounding)
         error: Any = spread(rounding, scene.shape)
         for one in answered:
             error = error + np.where(one.where, one.answer.psi2_error, 0.0)
@@ -125,7 +129,7 @@ class Along(Way):
         answered: list[Answered],
         marched: Mask,
         recorder: Recorder | None,
-    ) -> TangentialMotion:
+    ) -> TangentialMotion | WholeImpact:
         """Return the tangential motion by answers where there are any, else marched."""
         shape = normal.scene.shape
         if every(marched):
@@ -135,16 +139,7 @@ class Along(Way):
         if not shape:
             if not answered:
                 return TangentialMotion.nothing((), normal.status, normal.detail)
-            answer = answered[0].answer
-            return TangentialMotion(
-                slip_velocity_change=float(answer.slip_velocity_change),
-                friction_work=float(answer.friction_work),
-                normal_spin_change=float(answer.normal_spin_change),
-                status=answer.status,
-                detail=answer.detail,
-                counters={} if answer.counter is None else {answer.counter: 1},
-                normal=answer.normal,
-            )
+            return answered[0].answer
         motion = _joined(normal, answered)
         if not some(marched):
             return motion

@@ -39,10 +39,9 @@ def accepted(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
     """Return the ways in which a scene is solved, or refuse one that a law cannot run."""
     found = ways(laws, scene, as_one=as_one)
     for _, part, used in found:
-        central = part.central
-        _accept(used.normal, central)
-        _accept(used.tangential, central)
-        _accept(used.integrator, central)
+        for law in used:
+            if type(law).accept is not Law.accept:
+                _accept(law, part.central)
     return found
 
 

@@ -181,9 +181,6 @@ class SolvedMotion(NormalMotion):
     ) -> None:
         self.law, self.scene, self.table, self.units = law, scene, table, units
         self.alike = not table.shape
-        # Batches of one table are alike up to the number of their axes.
-        shared = self.alike and units is None
-        self.shared = table.shared.setdefault(len(scene.shape), {}) if shared else None
         unit = Units() if units is None else units
         self.duration = table.shaped(table.ends * table.unit) * unit.time
         self.final_rate = table.shaped(table.last[:, RATE]) * unit.rate
@@ -196,6 +193,14 @@ class SolvedMotion(NormalMotion):
         self.maximum_radius = table.shaped(largest) * unit.radius
         self.status = batch.filled(table.shaped(table.status), scene.shape)
         self.detail = batch.filled(table.shaped(table.detail), scene.shape)
+
+    @property
+    def shared(self) -> dict[Any, Any] | None:
+        """What batches of one table share that have as many axes."""
+        if not self.alike or self.units is not None:
+            return None
+        kept: dict[Any, Any] = self.table.shared.setdefault(len(self.scene.shape), {})
+        return kept
 
     @np.errstate(under="ignore")  # on a node the weights of the other nodes are about 1e-290
     def at(self, phase: Real) -> NormalSample:

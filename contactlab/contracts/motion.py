@@ -97,8 +97,11 @@ class NormalMotion(ABC):
     accuracy: float = math.nan
     #: True if the motions of all impacts are one but for their scale.
     alike: bool = False
-    #: A dict that equal motions share, for ``once``; None, the default, if nothing is shared.
-    shared: dict[Any, Any] | None = None
+
+    @property
+    def shared(self) -> dict[Any, Any] | None:
+        """A dict that equal motions share, for ``once``; None, the default, if there is none."""
+        return None
 
     @property
     def offers(self) -> frozenset[str]:
@@ -115,13 +118,13 @@ class NormalMotion(ABC):
         make : callable
             Returns the value, which nobody may change afterwards.
         """
-        if self.shared is None:
+        if (shared := self.shared) is None:
             return make()
-        if key not in self.shared:
-            if len(self.shared) >= MOST_SHARED:
-                self.shared.clear()
-            self.shared[key] = make()
-        value: T = self.shared[key]
+        if key not in shared:
+            if len(shared) >= MOST_SHARED:
+                shared.clear()
+            shared[key] = make()
+        value: T = shared[key]
         return value
 
     @abstractmethod

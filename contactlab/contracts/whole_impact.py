@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 import attrs
 import numpy as np
@@ -78,6 +78,13 @@ class WholeImpact:
     balanced: bool = False
     counter: str | None = None
     normal_spin_change: Real = 0.0
+    #: A whole impact that loses energy in shear is marched.
+    shear_loss: ClassVar[float] = 0.0
+
+    @property
+    def counters(self) -> Mapping[str, int]:
+        """What one impact counts."""
+        return {} if self.counter is None else {self.counter: 1}
 
 
 class Tabulated(ABC):

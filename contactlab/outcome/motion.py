@@ -14,6 +14,7 @@ from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential_motion import TangentialMotion
+from contactlab.contracts.whole_impact import WholeImpact
 from contactlab.numeric.arrays import are_zeros, chosen, finite, locked, spread, zeros
 from contactlab.numeric.types import Array, Either, Real
 
@@ -64,11 +65,15 @@ class Motion(TangentialMotion):
 
     @classmethod
     def along(
-        cls, normal: NormalMotion, tangential: TangentialMotion, axes: tuple[int, ...] = ()
+        cls,
+        normal: NormalMotion,
+        tangential: TangentialMotion | WholeImpact,
+        axes: tuple[int, ...] = (),
     ) -> Self:
         """Return the motion of one batch from its two parts; its arrays are read-only.
 
-        ``axes`` are those of a slip velocity beside the batch's.
+        ``tangential`` is the answer of one whole impact, or a motion; ``axes`` are those of a slip
+        velocity beside the batch's.
         """
         shape = normal.scene.shape
         if not (shape or axes or tangential.normal is not None):
@@ -104,7 +109,7 @@ class Motion(TangentialMotion):
 
 
 def _coupled(
-    normal: NormalMotion, tangential: TangentialMotion, entries: Mapping[str, Real]
+    normal: NormalMotion, tangential: TangentialMotion | WholeImpact, entries: Mapping[str, Real]
 ) -> Mapping[str, Real]:
     """Return the entries of the normal motion that came of the friction, and the exchange."""
     scene, own = normal.scene, Ends.of(tangential.normal)

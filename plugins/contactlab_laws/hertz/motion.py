@@ -110,15 +110,12 @@ class HertzMotion(ClosedFormMotion):
     maximum_force: Real
     final_rate: Real
     total_load_impulse: Real
-    shared: dict[Any, Any] | None = None
     accuracy = 1e-14  # rounding: the impulse is a closed form
 
     @classmethod
     def of(cls, law: NormalLaw, scene: Scene) -> HertzMotion:
         """Return the motion of ``scene``, eqs (7)-(9); the final rate is minus the first."""
-        scales, speed, pair = hertz_scales(scene), scene.normal_speed, scene.pair
-        # All that the motion depends on; arrays are compared with difficulty, and not shared.
-        numbers: Any = (pair.radius, pair.effective_modulus, pair.normal_mass, speed)
+        scales, speed = hertz_scales(scene), scene.normal_speed
         return cls(
             law=law,
             scene=scene,
@@ -127,9 +124,17 @@ class HertzMotion(ClosedFormMotion):
             maximum_approach=scales.approach,
             maximum_force=scales.force,
             final_rate=-speed,
-            total_load_impulse=2.0 * pair.normal_mass * speed,
-            shared=_shared(len(scene.shape), *numbers) if isinstance(scales.force, float) else None,
+            total_load_impulse=2.0 * scene.pair.normal_mass * speed,
         )
+
+    @property
+    def shared(self) -> dict[Any, Any] | None:
+        """What equal motions share; arrays are compared with difficulty, and not shared."""
+        if not isinstance(self.maximum_force, float):
+            return None
+        pair, speed = self.scene.pair, self.scene.normal_speed
+        numbers: Any = (pair.radius, pair.effective_modulus, pair.normal_mass, speed)
+        return _shared(len(self.scene.shape), *numbers)
 
     def take(self, part: Index) -> HertzMotion:
         """Return the motion of some impacts."""
