@@ -86,11 +86,11 @@ def execute(arguments: argparse.Namespace) -> int:
     """Run the sweep and report; the status is 1 if an impact failed."""
     file = read(arguments)
     check_alone(arguments)
+    if file and not file.scene.shape:
+        raise ValueError(f"{arguments.scene}: holds a single impact; use contactlab run")
     if _is_folder(arguments.out):
         return _into_folder(arguments, file)
     scene = file.scene if file else _ranges(arguments.psi1, arguments.chi)
-    if not scene.shape:
-        raise ValueError(f"{arguments.scene}: holds a single impact; use contactlab run")
     simulation = composed(arguments, file.laws if file else LawChoice())
     keep = _folder(arguments.out) if arguments.resume else None
     before = 0 if keep is None else _done(keep)

@@ -103,9 +103,9 @@ class _Into:
             sweep=self.sweep,
             scene=scene,
         )
-        # A sweep that grew and was stopped is not the one that was finished.
-        (self.folder / self.form.finished).unlink(missing_ok=True)
         with written_piece("into", self.folder, chunk, "impacts", self.form) as stream:
+            # A sweep that grew and was stopped is not the one that was finished.
+            (self.folder / self.form.finished).unlink(missing_ok=True)
             self.form.write(stream, arrays, about, NAMES)
 
     def _same_columns(self, units: dict[str, str], chunk: Chunk) -> None:
@@ -126,8 +126,11 @@ class _Into:
                 rule = f"lies beyond the last of {impacts} impacts"
                 remedy = "give the scenes as before, or name another folder"
                 raise refuse_file("into", path, rule, remedy)
-        with written(self.folder / self.form.finished) as stream:
-            stream.write(json.dumps({"impacts": impacts}) + "\n")
+        path, words = self.folder / self.form.finished, json.dumps({"impacts": impacts}) + "\n"
+        if path.is_file() and path.read_text("utf-8") == words:
+            return  # nothing is to be written, and maybe nothing can be
+        with written(path) as stream:
+            stream.write(words)
 
 
 def swept_into(
@@ -146,15 +149,26 @@ def swept_into(
     """
     size = None if chunk is None else whole("chunk", chunk)
     of_kind("scenes", scenes, Scene, Iterable, rule="must be a Scene, or an iterable of them")
+    if isinstance(scenes, Scene):  # a refusal leaves no folder
+        one_axis(scenes.shape)
+        accepted(laws, scenes)
     target = _Into(folder, laws)
     waiting: dict[Chunk, tuple[Scene, str]] = {}
     done = stop = 0
-    total = _total(scenes)
+    total, failed = _total(scenes), None
 
     def unsolved() -> Iterator[Part]:
+        nonlocal failed
+        try:
+            yield from parts()
+        except Exception as error:  # of who makes the scenes: chunks that are sent come first
+            failed = error
+
+    def parts() -> Iterator[Part]:
         nonlocal done, stop
         for scene in _batches(scenes, size or MARCHED_AT_A_TIME):
-            accepted(laws, scene)
+            if scene is not scenes:
+                accepted(laws, scene)
             begin, block = stop, block_for(laws, scene)
             usual = IMPACTS_AT_A_TIME if block == WHOLE_IMPACTS else MARCHED_AT_A_TIME
             step = math.ceil((size or usual) / block) * block
@@ -179,6 +193,8 @@ def swept_into(
             done += piece.chunk.size
             if progress is not None:
                 progress(done, total or done)
+        if failed is not None:
+            raise failed
         if not stop:
             raise refuse("scenes", scenes, "must hold at least one Scene")
         target.finish(stop)
@@ -192,7 +208,6 @@ def swept_into(
 def _batches(scenes: Scene | Iterable[Scene], size: int) -> Iterator[Scene]:
     """Yield batches of one axis; single impacts are joined, ``size`` in a batch."""
     if isinstance(scenes, Scene):
-        one_axis(scenes.shape)
         yield scenes
         return
     singles: list[Scene] = []

@@ -129,14 +129,14 @@ def _check(argument: str, folder: Path, about: Mapping[str, object], form: Form)
     """Make the folder if there is none, or refuse a folder of another sweep."""
     remedy = "delete the folder, or name another for this sweep"
     path = folder / form.about
-    if not path.exists():
-        if folder.exists() and any(folder.glob("[!.]*")):
+    if not os.path.exists(path):
+        if os.path.exists(folder) and any(folder.glob("[!.]*")):
             rule = "is not empty, and holds no sweep"
             raise refuse(argument, str(folder), rule, "name a new folder")
         try:
             folder.mkdir(exist_ok=True)
-        except OSError as error:
-            rule = f"cannot be made: {error.strerror}"
+        except (OSError, ValueError) as error:  # a name with a null character
+            rule = f"cannot be made: {getattr(error, 'strerror', error)}"
             raise refuse(
                 argument, str(folder), rule, "name a folder in one that is there"
             ) from None
@@ -145,6 +145,9 @@ def _check(argument: str, folder: Path, about: Mapping[str, object], form: Form)
         return
     try:
         before = dict(json.loads(path.read_text(encoding="utf-8")))
+    except OSError as error:
+        rule = f"cannot be read: {error.strerror}"
+        raise refuse_file(argument, path, rule, "try again") from error
     except (ValueError, TypeError) as error:
         rule = f"{form.about} in it cannot be read: {error}"
         raise refuse(argument, str(folder), rule, remedy) from error

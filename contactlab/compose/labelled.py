@@ -104,12 +104,13 @@ def _by_index(
             columns.append(value)
             continue
         index = value.index if index is None else index
-        if not value.index.equals(index):
-            same = len(value) == len(index) and value.index.is_unique and index.is_unique
-            if not (same and index.isin(value.index).all()):
+        labels = _like_levels(value.index, index)
+        if labels is None or not labels.equals(index):
+            places = _places(labels, index)
+            if places is None:
                 remedy = "align them first: psi1, chi = psi1.align(chi, join='inner')"
                 raise _unequal(arguments, "labels", remedy)
-            value = value.reindex(index)
+            value = value.iloc[places]
         columns.append(value.to_numpy())
     found = function(*columns)
     each = found if answers > 1 else (found,)
@@ -117,6 +118,25 @@ def _by_index(
         pandas.Series(array, index=index, name=name)
         for array, name in zip(each, ANSWERS, strict=False)
     )
+
+
+def _like_levels(labels: Any, index: Any) -> Any:
+    """Return labels with their levels in the order of an index; None if levels have other names."""
+    names, wanted = [*labels.names], [*index.names]
+    if len(wanted) == 1 or names == wanted or None in names + wanted:
+        return labels
+    same = len(set(wanted)) == len(wanted) and sorted(map(str, names)) == sorted(map(str, wanted))
+    return labels.reorder_levels(wanted) if same else None
+
+
+def _places(labels: Any, index: Any) -> Any:
+    """Return the place of each label of an index; None where labels differ or repeat."""
+    if labels is None or len(labels) != len(index) or not (labels.is_unique and index.is_unique):
+        return None
+    places = labels.get_indexer(index)
+    # a number is found in an index of intervals, and True in one of numbers
+    same = (places >= 0).all() and labels.take(places).equals(index)
+    return places if same else None
 
 
 def _lazily(

@@ -76,6 +76,8 @@ def pieces_of(
                 rule = f"its workers have {dict(answer.versions)}, this process {dict(ours)}"
                 raise refuse("executor", executor, rule, "install the same versions there")
             assert answer.piece is not None
+            if answer.piece.chunk != chunk:
+                raise refuse("executor", executor, "answers another call", FUTURES)
             yield answer.piece
     finally:
         for future in waiting:
@@ -101,8 +103,8 @@ def _submitted(executor: Executor, *call: Any) -> Future[Reply]:
     except BrokenExecutor as error:
         future = Future()
         future.set_exception(error)
-    except RuntimeError as error:
-        raise refuse("executor", executor, f"takes no work: {error}", "open one") from error
+    except Exception as error:  # of executors that are shut, each library has one of its own
+        raise refuse("executor", executor, f"takes no work: {short(error)}", "open one") from error
     if not callable(getattr(future, "add_done_callback", None)):
         raise refuse("executor", executor, "has a submit that returns no future", FUTURES)
     return future

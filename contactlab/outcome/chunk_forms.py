@@ -15,6 +15,8 @@ import numpy as np
 from contactlab.outcome.frames import needed
 
 COLUMN_OF_STATUS = "status"
+#: Compression of columns of Parquet; no check sum covers the word of a file about it.
+CODEC = "SNAPPY"
 #: In the metadata of a Parquet file: what the chunk tells, and the check sum of these words.
 TOLD, SUM = b"contactlab", b"contactlab crc32"
 
@@ -132,6 +134,7 @@ def _write_parquet(
         row_group_size=about.chunk.size,
         use_dictionary=[*few, COLUMN_OF_STATUS],  # other columns hardly repeat a number
         write_page_checksum=True,
+        compression=CODEC,
     )
 
 
@@ -158,6 +161,11 @@ class _ParquetColumns:
                 raise ValueError("its words are not those that were written")
             return told[TOLD].decode()
         column = self.file.read([name], use_threads=False).column(name).combine_chunks()
+        place = self.file.schema_arrow.get_field_index(name)
+        # Only after a column is read: pyarrow ends the process if asked for a codec it has not.
+        codec = self.file.metadata.row_group(0).column(place).compression
+        if codec != CODEC:
+            raise ValueError(f"{name} is compressed by {codec}, not {CODEC}")
         if name != COLUMN_OF_STATUS:
             values = column.to_numpy()
             if values.dtype != np.float64:

@@ -98,18 +98,19 @@ class SweepFolder(Checked):
     def __init__(self, path: str | Path) -> None:
         rule = "must be the path of a folder"
         self.path = Path(of_kind("path", path, str, os.PathLike, rule=rule))
-        there = (form for form in FORMS if (self.path / form.about).exists())
+        there = (form for form in FORMS if os.path.exists(self.path / form.about))
         self._form = next(there, NPZ)
         try:
             about = dict(json.loads((self.path / self._form.about).read_text(encoding="utf-8")))
-        except (OSError, ValueError, TypeError) as error:
+            if of_columns := about.get("form") == KIND:
+                self.laws = {kind: about[kind] for kind in ("normal", "tangential", "integrator")}
+                self._names = about[STATUSES].split()
+        except (AttributeError, *DAMAGED) as error:
             rule = f"holds no sweep: {self._form.about} in it cannot be read: {error}"
             raise refuse("path", str(path), rule, "make one: sweep(scenes, into=folder)") from error
-        if about.get("form") != KIND:
+        if not of_columns:
             remedy = "the same sweep with keep=folder returns the result"
             raise refuse("path", str(path), "is a folder of keep=, without columns", remedy)
-        self.laws = {kind: about[kind] for kind in ("normal", "tangential", "integrator")}
-        self._names = about[STATUSES].split()
 
     @cached_property
     def _abouts(self) -> list[tuple[Path, About]]:
@@ -124,7 +125,7 @@ class SweepFolder(Checked):
             return int(json.loads(path.read_text("utf-8"))["impacts"])
         except FileNotFoundError:
             return None
-        except DAMAGED as error:
+        except (OverflowError, *DAMAGED) as error:
             raise refuse_damaged("path", path, error) from error
 
     @property
@@ -167,8 +168,11 @@ class SweepFolder(Checked):
         """
         wanted = names or tuple(self.units)
         for name in wanted:
+            rule, remedy = "must be the name of a column", "'psi2', or chunks('psi1', 'psi2')"
+            of_kind("column", name, str, rule=rule, remedy=remedy)
             if name not in self.units:
-                remedy = f"{nearest(name, self.units)}known: {', '.join(self.units)}"
+                known = ", ".join(self.units) or "none, as no chunk is finished"
+                remedy = f"{nearest(name, self.units)}known: {known}"
                 raise refuse("column", name, "is not a column of the sweep", remedy)
         for path, about in self._abouts:
             with columns_of(path, self._form, self._names) as content:
@@ -189,7 +193,6 @@ class SweepFolder(Checked):
             rule = f"impacts {first} to {stop} are missing"
             remedy = "run the same sweep into the folder again, or read chunks()"
             raise refuse("path", str(self.path), rule, remedy)
-        of_kind("column", name, str, rule="must be the name of a column", remedy="such as 'psi2'")
         column = np.empty(0)
         for place, columns in self.chunks(name):
             if not column.size:

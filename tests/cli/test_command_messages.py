@@ -64,6 +64,7 @@ MISSING = "must be given too (chi is 1.4412 for a solid sphere)"
         (["sweep", "--psi1", "0:1:2", "--chi", 1, "--resume"],
          "--resume: needs --out FILE; finished impacts are kept beside this file"),
         (["sweep", "BALL"], "{ball}: holds a single impact; use contactlab run"),
+        (["sweep", "BALL", "--out", "new/"], "{ball}: holds a single impact; use contactlab run"),
         (["compare", "--psi1", 1], f"--chi: {MISSING}"),
         (["compare", "--chi", 1], f"--psi1: {MISSING}"),
         (["compare", "SWEEP", "--chi", 1], BOTH),

@@ -99,8 +99,14 @@ def test_chunks_are_read_one_by_one(tmp_path):
     assert [*everything] == [*folder.units]
     with pytest.raises(ValueError, match=r"column = 'psi3'.*did you mean 'psi"):
         folder["psi3"]
-    with pytest.raises(ValueError, match="must be the name of a column"):
-        folder[0]
+    for read in (lambda: folder[0], lambda: next(folder.chunks(["psi1", "psi2"]))):
+        with pytest.raises(ValueError, match=r"must be the name of a column; .*chunks\('psi1',"):
+            read()
+    assert folder.complete
+    finished = tmp_path / "swept" / "finished.json"
+    before = finished.stat().st_mtime_ns
+    Simulation(**RIGID).sweep(scene(), into=tmp_path / "swept", chunk=40)
+    assert finished.stat().st_mtime_ns == before  # nor could it be where nothing can be written
 
 
 def parts(size=150, each=40):
@@ -230,8 +236,17 @@ def test_bad_arguments_are_refused(tmp_path):
         simulation.sweep(scene(), into=3)
     with pytest.raises(ValueError, match=r"path = None: must be the path of a folder"):
         SweepFolder(None)
-    with pytest.raises(ValueError, match=r"scenes = 3: must be a Scene, or an iterable"):
-        simulation.sweep(3, into=tmp_path / "three")
+    table = Scene.nondimensional(psi1=[[1.0, 2.0]], chi=CHI)
+    for bad, words in ((3, "3: must be a Scene, or an iterable"), (table, "must be a sequence")):
+        with pytest.raises(ValueError, match=words):
+            simulation.sweep(bad, into=tmp_path / "three")
+        assert not (tmp_path / "three").exists()
+    for name in ("a\0b", "a" * 300):
+        for given in ("keep", "into"):
+            with pytest.raises(ValueError, match=rf"{given} = .*cannot be made: "):
+                simulation.sweep(scene(), **{given: tmp_path / name})
+        with pytest.raises(ValueError, match=r"path = .*holds no sweep"):
+            SweepFolder(tmp_path / name)
     with pytest.raises(ValueError, match="at least one Scene"):
         simulation.sweep(iter([]), into=tmp_path / "none")
     with pytest.raises(ValueError, match=r"scenes\[1\] = 4: must be a Scene"):
@@ -265,11 +280,18 @@ def test_a_damaged_file_is_told(tmp_path):
         SweepFolder(target)["psi2"]
     finished = target / "finished.json"
     words = finished.read_text("utf-8")
-    for bad in ('{"impact": 150}', "[150]", '{"impacts": "?"}', ""):
+    for bad in ('{"impact": 150}', "[150]", '{"impacts": "?"}', '{"impacts": 1e999}', ""):
         finished.write_text(bad, "utf-8")
         with pytest.raises(ValueError, match=r"path = .*finished.json': is damaged: .*; delete"):
             SweepFolder(target).check()
     finished.write_text(words, "utf-8")
+    about = target / "sweep.json"
+    words = about.read_text("utf-8")
+    for bad in ("[]", '{"form": "columns of results"}', words.replace('s": "SUC', 's": 1, "": "')):
+        about.write_text(bad, "utf-8")
+        with pytest.raises(ValueError, match=r"path = .*holds no sweep|is a folder of keep="):
+            SweepFolder(target)
+    about.write_text(words, "utf-8")
     path.unlink()
     folder = SweepFolder(target)
     assert folder.missing == [(40, 80)]
@@ -397,6 +419,21 @@ def test_an_executor_has_a_limited_number_of_chunks(tmp_path, monkeypatch):
     )
     assert len(folder.check()) == 400
     assert max(seen) <= 3
+
+
+@pytest.mark.parametrize("executor", [None, ThreadPoolExecutor(1)], ids=["here", "a thread"])
+def test_what_makes_scenes_may_raise(tmp_path, executor):
+    """Chunks made before are in the folder, also those that an executor has not answered yet."""
+
+    def ending():
+        yield from [*parts()][:3]
+        raise OSError("the end of the file")
+
+    simulation, target = Simulation(**RIGID), tmp_path / "swept"
+    with pytest.raises(OSError, match="the end of the file"):
+        simulation.sweep(ending(), into=target, executor=executor)
+    assert (len(SweepFolder(target)), SweepFolder(target).complete) == (120, False)
+    assert len(simulation.sweep(parts(), into=target).check()) == 150
 
 
 class Losing:

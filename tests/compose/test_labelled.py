@@ -102,6 +102,30 @@ def test_series_are_paired_by_index():
     for other in (Series(CHI), chi[:2], Series(CHI, index=["a", "a", "c"])):
         with pytest.raises(ValueError, match=r"psi1, chi = .*equal labels.*align"):
             rebound(psi1, other)
+    spans = arrays("pandas").interval_range(0, 3)  # pandas finds 0.5 in the first
+    with pytest.raises(ValueError, match="equal labels"):
+        rebound(Series(PSI1, index=[0.5, 1.5, 2.5]), Series(CHI, index=spans))
+
+
+@extra("pandas")
+def test_levels_of_an_index_are_paired_by_name():
+    pandas = arrays("pandas")
+
+    def series(values, names, labels):
+        index = pandas.MultiIndex.from_tuples(labels, names=names)
+        return pandas.Series(values, index=index)
+
+    psi1 = series(PSI1, ["x", "y"], [(0, 1), (1, 0), (1, 1)])
+    for chi in (
+        series([CHI[1], CHI[0], CHI[2]], ["y", "x"], [(0, 1), (1, 0), (1, 1)]),
+        series(CHI, ["y", "x"], [(1, 0), (0, 1), (1, 1)]),
+        series(CHI, [None, None], [(0, 1), (1, 0), (1, 1)]),
+    ):
+        psi2 = rebound(psi1, chi)
+        assert psi2.index.equals(psi1.index)
+        np.testing.assert_allclose(psi2, np.diag(TABLE), atol=1e-10)
+    with pytest.raises(ValueError, match="equal labels"):
+        rebound(psi1, series(CHI, ["x", "z"], [(0, 1), (1, 0), (1, 1)]))
 
 
 @extra("xarray")

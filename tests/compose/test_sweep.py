@@ -256,20 +256,36 @@ def test_workers_that_cannot_load_a_law_say_so():
         Simulation(tangential=Absent()).sweep(scene(), executor=executor)
 
 
-def test_what_is_no_executor_is_refused():
+def test_what_is_no_executor_is_refused(monkeypatch):
     for bad in (4, "dask", ThreadPoolExecutor):
         with pytest.raises(ValueError, match=r"executor = .*get_executor"):
             Simulation(**RIGID).sweep(scene(), executor=bad)
     closed = ThreadPoolExecutor(1)
     closed.shutdown()
-    with pytest.raises(ValueError, match=r"executor = .*takes no work"):
-        Simulation(**RIGID).sweep(scene(), executor=closed)
+
+    def gone(*_):
+        raise OSError("the cluster is closed")
+
+    for executor in (closed, types.SimpleNamespace(submit=gone)):
+        with pytest.raises(ValueError, match=r"executor = .*takes no work: .*Error: .*; open one"):
+            Simulation(**RIGID).sweep(scene(), executor=executor)
     done = Future()
     done.set_result(None)
     for answer, words in ((4, "returns no future"), (done, "what its call did not return")):
         wrong = types.SimpleNamespace(submit=lambda *_, answer=answer: answer)
         with pytest.raises(ValueError, match=rf"executor = .*{words}; submit\(call"):
             Simulation(**RIGID).sweep(scene(), executor=wrong)
+    answers = []
+
+    def remembered(function, *arguments):
+        answers.append(function(*arguments))
+        future = Future()
+        future.set_result(answers[0])
+        return future
+
+    blocks_of(monkeypatch, 50)
+    with pytest.raises(ValueError, match=r"executor = .*answers another call; submit\(call"):
+        Simulation(**RIGID).sweep(scene(), executor=types.SimpleNamespace(submit=remembered))
     for bad in (0, 1.5, True):
         with pytest.raises(ValueError, match="workers"):
             processes(bad).__enter__()
