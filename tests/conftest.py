@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 
@@ -23,6 +24,17 @@ settings.register_profile(
     "long", settings.get_profile("quick"), max_examples=LONG, derandomize=False
 )
 settings.load_profile("long" if "CONTACTLAB_EXAMPLES" in os.environ else "quick")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection():
+    """Collect without a search for garbage, which takes a third of the time and finds little."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.fixture
