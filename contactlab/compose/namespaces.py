@@ -13,6 +13,8 @@ from contactlab.numeric.checks import Rule, real, refuse
 from contactlab.numeric.labels import library_of, numbers_of
 from contactlab.numeric.types import AnyArray
 
+#: In the names of types that are not of real numbers.
+NO_NUMBERS = ("complex", "bool")
 #: The shortest type that answers are computed in; shorter ones are widened.
 SHORTEST = "float32"
 
@@ -48,7 +50,7 @@ class _Jax:
 
     def arrays(self, values: Iterable[object]) -> list[Any]:
         """Return numbers and arrays as arrays of one type, that of the arrays among them."""
-        given: list[Any] = [*values]
+        given = [*map(_plain, values)]
         kind = self.xp.result_type(*filter(_is_array, given))
         if not self.xp.issubdtype(kind, self.xp.floating):
             kind = self.xp.result_type(float)
@@ -85,7 +87,7 @@ class _Torch:
 
     def arrays(self, values: Iterable[object]) -> list[Any]:
         """Return numbers and arrays as arrays of one type and place."""
-        given: list[Any] = [*values]
+        given = [*map(_plain, values)]
         tensors = [v if library_of(v) else self.torch.tensor(v) for v in filter(_is_array, given)]
         kind = reduce(self.torch.promote_types, (tensor.dtype for tensor in tensors))
         if not kind.is_floating_point:
@@ -116,6 +118,15 @@ class _Torch:
         return function
 
 
+def _plain(value: Any) -> Any:
+    """Return an array of NumPy of a type that other libraries have; other values as they are."""
+    if isinstance(value, np.ndarray | np.generic) and not (
+        value.dtype.isnative and value.dtype.itemsize <= 8
+    ):
+        return value.astype(np.float64)
+    return value
+
+
 def _is_array(value: object) -> bool:
     """Return whether a value sets the type of the answer: numbers and lists beside it do not."""
     return isinstance(value, np.ndarray) or bool(library_of(value))
@@ -127,7 +138,7 @@ def library_named(name: str) -> TracingLibrary:
     return _Torch() if name == "torch" else _Jax()
 
 
-def known(library: str, name: str, value: object, rule: Rule, remedy: str = "") -> Any:
+def known(library: str, name: str, value: Any, rule: Rule, remedy: str = "") -> Any:
     """Return the checked numbers of an argument; None if they are not known, but traced.
 
     Raises
@@ -138,5 +149,10 @@ def known(library: str, name: str, value: object, rule: Rule, remedy: str = "") 
     if library_of(value) not in ("", library):
         other = f"must be numbers or an array of {library}, as the others"
         raise refuse(name, value, other, "give arrays of one package")
-    numbers = numbers_of(value) if library_of(value) else value
-    return None if numbers is None else real(name, numbers, rule=rule, remedy=remedy, empty=True)
+    if not library_of(value):
+        return real(name, value, rule=rule, remedy=remedy, empty=True)
+    if (numbers := numbers_of(value)) is not None:
+        return real(name, numbers, rule=rule, remedy=remedy, empty=True)
+    if any(word in str(value.dtype) for word in NO_NUMBERS):  # it is traced, its type is not
+        raise refuse(name, value, "must be a real number", remedy)
+    return None

@@ -8,6 +8,7 @@ import numpy as np
 
 from contactlab.compose.namespaces import known, library_named
 from contactlab.compose.rebound import rebound, traceable
+from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
 from contactlab.numeric.checks import NON_NEGATIVE, of_kind, refuse
 from contactlab.numeric.vectors import LEAST, RANGE
@@ -41,6 +42,8 @@ def velocities(
     of_kind("body", body, Sphere, remedy=remedy)
     of_kind("target", target, Sphere, HalfSpace, remedy=remedy)
     _check(library, target, friction, vectors)
+    if not callable(restitution):
+        known(library, "restitution", restitution, RESTITUTIONS)
     pair, e = Pair.of(body, target), 1.0 if callable(restitution) else restitution
     masses = pair.normal_mass, pair.tangential_mass
     spheres = [each for each in (body, target) if isinstance(each, Sphere)]

@@ -18,7 +18,7 @@ from contactlab.fitting.csv_columns import (
     read_numbers,
     read_text,
 )
-from contactlab.fitting.measurements import Measurements
+from contactlab.fitting.measurements import Measurements, column_of
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array
 
@@ -129,7 +129,8 @@ def _film(table: Mapping[str, object], names: Mapping[str, str]) -> dict[str, Ar
             known = ", ".join(f"({each})" for each, to in CONVERSIONS if to == own)
             reason = f"is in {unit}, which is not known here" if unit else "has no unit"
             raise ValueError(f"heading {text!r}: {reason}; write '{name} ({own})', or {known}")
-        film[name] = sign * CONVERSIONS.get((unit, own), 1.0) * np.asarray(values, dtype=float)
+        numbers = column_of(text, values, gaps=True)
+        film[name] = sign * CONVERSIONS.get((unit, own), 1.0) * numbers
     for name in ("t", "x", "y"):
         if name not in film:
             raise ValueError(

@@ -174,7 +174,7 @@ def _from_columns(
             continue
         if name in parts[role]:
             raise ValueError(f"heading {text!r}: {name} is there twice")
-        parts[role][name] = _column(text, content, gaps=role != "given") * factor
+        parts[role][name] = column_of(text, content, gaps=role != "given") * factor
     notes = foreign(unknown, parts["given"].keys() | parts["measured"].keys(), refused)
     given, measured, errors = parts.values()
     _leave_out_duplicates(given, measured, unused)
@@ -202,9 +202,12 @@ def _from_columns(
     )
 
 
-def _column(text: str, content: object, *, gaps: bool) -> Array:
+def column_of(text: str, content: object, *, gaps: bool) -> Array:
     """Return the numbers of a column, shape (n,); NaN only if it may have gaps."""
     check_place(text, content)
+    if hasattr(content, "_mask") and np.ma.is_masked(content):
+        remedy = "drop them, or fill them with NaN where nothing was measured"
+        raise refuse(text, content, "must have no masked entries", remedy)
     values = np.atleast_1d(np.asarray(content))
     if values.ndim != 1 or values.dtype.kind not in "iuf" or not values.size:
         raise refuse(text, content, "must be a list of numbers", "one for each impact")

@@ -196,7 +196,10 @@ class Batches(Motions):
             If ``index`` has another shape, or its numbers are not integers.
         """
         check_place("index", index)
-        indices = np.array(index)
+        try:
+            indices = np.array(index)
+        except ValueError:  # rows of unequal length
+            indices = np.empty(())
         if indices.shape != self.shape or indices.dtype.kind not in "iu":
             rule = f"must be whole numbers of the shape {self.shape}"
             raise refuse("index", index, rule, "such as scene.index of the whole batch")

@@ -21,7 +21,11 @@ def axes_of(entries: Mapping[str, Numbers]) -> dict[str, Array]:
     axes: dict[str, Any] = {}
     values: Any
     for name, values in entries.items():
-        if np.ndim(values):
+        try:
+            varies = bool(np.ndim(values))
+        except (TypeError, ValueError):  # rows of unequal length, data sets: refused below
+            varies = True
+        if varies:
             axes[name] = real(name, values)
             if np.ndim(axes[name]) != 1:
                 raise refuse(name, values, "must be a number or a plain list of numbers")

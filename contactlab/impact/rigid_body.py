@@ -12,7 +12,16 @@ import numpy as np
 from contactlab.impact.bodies import MOST_RADIUS
 from contactlab.impact.material import Material
 from contactlab.numeric.arrays import chosen, common_shape, known, some, taken
-from contactlab.numeric.checks import POSITIVE, Rule, instance, key, quantity, real, refuse
+from contactlab.numeric.checks import (
+    POSITIVE,
+    Rule,
+    check_place,
+    instance,
+    key,
+    quantity,
+    real,
+    refuse,
+)
 from contactlab.numeric.names import arguments_stated
 from contactlab.numeric.types import Array, Either, Index, Numbers, Real
 from contactlab.numeric.vectors import components, dot
@@ -66,6 +75,7 @@ def _radius(value: Numbers | None, field: attrs.Attribute[object]) -> Real | Non
     remedy = "in m; math.inf if flat, negative if hollow"
     if not np.any(flat):
         return real(field.name, value, rule=CURVED, remedy=remedy)
+    check_place(field.name, value)
     finite = np.where(flat, FLAT, np.asarray(value, dtype=np.float64))
     try:
         checked = real(field.name, finite, rule=CURVED, remedy=remedy)

@@ -19,7 +19,6 @@ from contactlab.numeric.checks import (
     NON_NEGATIVE,
     POSITIVE,
     Rule,
-    check_place,
     instance,
     key,
     quantity,
@@ -45,8 +44,11 @@ OBLIQUE = Rule(
 
 def _tensors(value: Numbers | None) -> Array | None:
     """Return a read-only copy as float64; None as it is."""
-    check_place("inverse_mass", value)
-    return None if value is None else np.asarray(batch.locked(np.array(value, dtype=np.float64)))
+    if value is None:
+        return None
+    if type(value) is not np.ndarray or value.dtype != np.float64:
+        value = real("inverse_mass", value, remedy="in 1/kg, shape (..., 3, 3)", empty=True)
+    return np.asarray(batch.locked(np.array(value, dtype=np.float64)))
 
 
 @arguments_stated

@@ -62,10 +62,10 @@ def _posed(one: Maker) -> Maker:
     def posed(*values: Any, **given: Any) -> Any:
         poses = {name: given[name] for name in POSE if given.get(name) is not None}
         try:
-            arrays = {name: np.asarray(pose, dtype=float) for name, pose in poses.items()}
+            arrays = {name: np.asarray(real(name, pose)) for name, pose in poses.items()}
             fronts = [array.shape[: array.ndim - POSE[name]] for name, array in arrays.items()]
             shape = np.broadcast_shapes(*fronts)
-        except (TypeError, ValueError):  # refused for one pose
+        except ValueError:  # refused for one pose
             return one(*values, **given)
         if not shape or values:
             return one(*values, **given)

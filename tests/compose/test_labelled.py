@@ -239,6 +239,8 @@ DOORS = {
     "approach": lambda x: load_path(Scene(BALL, BALL, 0.3, 1.0), x, [0.0, 0.0, 0.0]),
     "displacement": lambda x: load_path(Scene(BALL, BALL, 0.3, 1.0), [0.0, 1e-6, 2e-6], x),
     "inertia": lambda x: RigidBody(material=STEEL, mass=1.0, inertia=x, curvature_radius=0.1),
+    "flat radii": lambda x: RigidBody(material=STEEL, mass=1.0, inertia=np.eye(3),
+                                      curvature_radius=x * np.inf),
     "index": lambda x: Scene(BALL, PLATE, 0.2, [1.0, 2.0, 3.0]).numbered(x),
     "e at each speed": lambda x: collide(Encounter(BALL, PLATE, 0.2, normal=(0, 0, -1),
                                                    velocity=3 * [[0, 0, -1]]),

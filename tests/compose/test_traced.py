@@ -159,6 +159,9 @@ def test_float32_keeps_its_digits(jax):
     lossy = rebound(jax.numpy.asarray(psi1), jax.numpy.asarray(chi), restitution=0.75)
     exact = rebound(psi1.astype(float), chi.astype(float), restitution=0.75)
     assert (np.abs(np.asarray(lossy, float) - exact) / size).max() < 2e-6
+    for chi in (np.array([1.44], ">f8"), np.array([1.44], np.longdouble), np.longdouble(1.44)):
+        found = rebound(jax.numpy.asarray([1.0, 2.0]), chi)
+        assert found == pytest.approx(rebound([1.0, 2.0], 1.44), abs=1e-9)
     assert rebound(jax.numpy.asarray([1, 2]), 1.44).dtype == np.float64
     assert rebound(jax.numpy.asarray([1.0], "float16"), 1.44).dtype == np.float32
 
@@ -184,6 +187,9 @@ def test_known_numbers_are_refused_and_traced_ones_are_nan(jax):
         rebound(one, 1.0, tolerance=2.0)
     with pytest.raises(ValueError, match=r"derivatives.*jax\.grad"):
         rebound(one, 1.0, derivatives=True)
+    for kind in ("complex64", "bool"):  # a type is known, also of what is traced
+        with pytest.raises(ValueError, match=r"psi1 = .*: must be a real number"):
+            jax.jit(rebound)(one.astype(kind), 1.0)
     assert np.isnan(jax.jit(rebound)(one, 2.6)).all()
     assert np.isnan(jax.jit(rebound)(one * np.nan, 1.0)).all()
     pandas = pytest.importorskip("pandas")

@@ -154,6 +154,8 @@ def test_known_numbers_are_refused(jax):
         ({"target_spin": one}, "target_spin = .*half-space does not spin"),
         ({"friction_coefficient": -0.1}, "friction_coefficient = -0.1"),
         ({"restitution": 1.5}, "restitution = 1.5"),
+        ({"restitution": np.array([0.9 + 0.1j])}, "restitution = .*must be a real number"),
+        ({"restitution": None}, "restitution = None: must be a real number"),
         ({"velocity": jax.numpy.ones((4, 3)), "normal": np.ones((2, 3))}, "shapes = .*must fit"),
         ({"body": ROD}, "body = RigidBody.*must be a Sphere; arrays of .* are for spheres"),
         ({"body": Sphere(0.01, STEEL, gyration_ratio=0.2)}, "chi = .* with arrays of jax"),

@@ -126,6 +126,7 @@ def test_a_third_coordinate_and_other_headings(tmp_path):
         ({"y (m)": -1.0}, "y: lies off the parabolas between touches by .*grows upwards"),
         ({"y (m)": 1e-2}, "y: the flights fall with 0.0981 m/s².*its unit, the frame rate"),
         ({"t (s)": 0.0}, "t: does not grow"),
+        ({"x (m)": 1.0 + 0.0j}, "x .m. = .*: must be a list of numbers"),
     ],
 )
 def test_films_that_cannot_be_read(change, words):

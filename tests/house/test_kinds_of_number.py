@@ -14,7 +14,9 @@ from contactlab import (
     collide,
     load_path,
     rebound,
+    shapes,
 )
+from contactlab.fitting import read_flight, read_measurements
 from tests.present import extra
 
 needs_pandas = extra("pandas")
@@ -128,6 +130,43 @@ def test_what_is_no_number_is_refused_by_name(door, kind):
     enter, argument = DOORS[door]
     with pytest.raises(ValueError, match=argument):
         enter(REFUSED[kind])
+
+
+MASKED = np.ma.array([0.5, 0.75, 1.0], mask=[0, 1, 0])
+SCENE = Scene(BALL, PLATE, 0.2, [1.0, 2.0, 3.0])
+
+
+def of_inverse_mass(tensor):
+    return Scene(None, None, 0.2, 1.0, inverse_mass=tensor, pair=SCENE.pair)
+
+
+def rods(normal):
+    return shapes.rod(material=STEEL, length=0.1, radius=0.01, axis=(0.6, 0, 0.8), normal=normal)
+
+
+#: Doors that take no single number, by the begin of their refusals.
+OTHER_DOORS = {
+    "psi2 = .*masked": lambda: read_measurements({"psi1": VALUES, "psi2": MASKED}),
+    "psi1 = .*masked": lambda: read_measurements({"psi1": MASKED, "psi2": VALUES}),
+    "x .m. = .*masked": lambda: read_flight(
+        {"t (s)": VALUES, "x (m)": MASKED, "y (m)": VALUES}),
+    "restitution = .*masked": lambda: collide(
+        Encounter(BALL, PLATE, 0.2, normal=(0, 0, -1), velocity=3 * [(0, 0, -1)]),
+        restitution=lambda _: MASKED),
+    "normal = .*masked": lambda: rods(np.ma.array(np.ones((3, 3)), mask=np.eye(3))),
+    "normal = .*real number": lambda: rods(np.ones((3, 3)) + 0j),
+    "inverse_mass = .*masked": lambda: of_inverse_mass(np.ma.array(np.eye(3), mask=np.eye(3))),
+    "inverse_mass = .*real number": lambda: of_inverse_mass(np.eye(3) + 0j),
+    "inverse_mass = .*regular array": lambda: of_inverse_mass([[1.0], [1.0, 2.0]]),
+    "index = .*whole numbers": lambda: SCENE.numbered([1, [2]]),
+    "psi1 = .*regular array": lambda: Scene.grid(psi1=[[1.0], [1.0, 2.0]], chi=[1.0, 2.0]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("words", OTHER_DOORS)
+def test_what_is_no_number_is_refused_at_other_doors(words):
+    with pytest.raises(ValueError, match=words):
+        OTHER_DOORS[words]()
 
 
 @pytest.mark.parametrize("order", ["C", "F"])
