@@ -6,8 +6,8 @@ Examples
   contactlab sweep --psi1 1.2 --chi 0.5:8:76 --tangential coulomb --csv
   contactlab sweep examples/sweep.toml --out sweep.npz
   contactlab sweep --psi1 0:7:100000 --chi 1.4412 --workers 2 --out sweep.npz --resume
-  contactlab sweep --psi1 0:7:100000 --chi 0.5:2:1000 --out sweep/
-  contactlab sweep --psi1 0:7:100000 --chi 0.5:2:1000 --out sweep.parquet/
+  contactlab sweep --psi1 0:7:10000 --chi 0.5:2:1000 --out sweep/
+  contactlab sweep --psi1 0:7:10000 --chi 0.5:2:1000 --out sweep.parquet/
 """
 
 from __future__ import annotations

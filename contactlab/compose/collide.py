@@ -148,5 +148,6 @@ def _at_speeds(restitution: Callable[..., Numbers], encounter: Encounter) -> Any
     if hasattr(found, "_mask") and np.ma.is_masked(found):
         raise refuse("restitution", found, "must have no masked entries", "fill or drop them")
     each = np.array(_spread(found, shape))
-    each[apart] = 1.0
+    if apart.any():
+        each[apart] = 1.0
     return each

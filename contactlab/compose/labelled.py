@@ -147,6 +147,11 @@ def _lazily(
         if any(map(math.isnan, np.shape(value))):
             rule = "has chunks of unknown size, which cannot be paired"
             raise refuse(name, value, rule, "call its compute_chunk_sizes() first")
+    shapes = {name: np.shape(value) for name, value in arguments.items()}
+    try:
+        np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        raise refuse("shapes", shapes, "must fit", "give one value of each for each") from None
     signature = f"{','.join(['()'] * len(arguments))}->{','.join(['()'] * answers)}"
     return dask_array.apply_gufunc(
         function,

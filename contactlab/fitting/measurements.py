@@ -208,7 +208,10 @@ def column_of(text: str, content: object, *, gaps: bool) -> Array:
     if hasattr(content, "_mask") and np.ma.is_masked(content):
         remedy = "drop them, or fill them with NaN where nothing was measured"
         raise refuse(text, content, "must have no masked entries", remedy)
-    values = np.atleast_1d(np.asarray(content))
+    try:
+        values = np.atleast_1d(np.asarray(content))
+    except Exception:  # rows of unequal length, sparse arrays, those of other devices
+        values = np.empty(0)
     if values.ndim != 1 or values.dtype.kind not in "iuf" or not values.size:
         raise refuse(text, content, "must be a list of numbers", "one for each impact")
     values = values.astype(np.float64)

@@ -23,7 +23,7 @@ def axes_of(entries: Mapping[str, Numbers]) -> dict[str, Array]:
     for name, values in entries.items():
         try:
             varies = bool(np.ndim(values))
-        except (TypeError, ValueError):  # rows of unequal length, data sets: refused below
+        except Exception:  # rows of unequal length, data sets, sparse arrays: refused below
             varies = True
         if varies:
             axes[name] = real(name, values)

@@ -165,6 +165,8 @@ def test_dask_arrays_are_computed_when_they_are_asked():
     plain = rebound(np.array(PSI1)[:, None], np.array(CHI), derivatives=True)
     for mine, theirs in zip(found, plain, strict=True):
         np.testing.assert_allclose(mine.compute(), theirs, atol=1e-10)
+    with pytest.raises(ValueError, match=r"shapes = .*'chi': \(2,\)}: must fit"):
+        rebound(psi1[:, 0], [1.0, 1.4])
     late = rebound(psi1, chi - 1.0)
     with pytest.raises(ValueError, match="chi"):
         late.compute()

@@ -148,6 +148,8 @@ def rods(normal):
 OTHER_DOORS = {
     "psi2 = .*masked": lambda: read_measurements({"psi1": VALUES, "psi2": MASKED}),
     "psi1 = .*masked": lambda: read_measurements({"psi1": MASKED, "psi2": VALUES}),
+    "psi2 = .*list of numbers": lambda: read_measurements(
+        {"psi1": VALUES, "psi2": [[1.0], [1.0, 2.0]]}),
     "x .m. = .*masked": lambda: read_flight(
         {"t (s)": VALUES, "x (m)": MASKED, "y (m)": VALUES}),
     "restitution = .*masked": lambda: collide(
