@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 from collections.abc import Callable, Iterable, Iterator
@@ -149,10 +150,12 @@ def swept_into(
     """
     size = None if chunk is None else whole("chunk", chunk)
     of_kind("scenes", scenes, Scene, Iterable, rule="must be a Scene, or an iterable of them")
-    if isinstance(scenes, Scene):  # a refusal leaves no folder
-        one_axis(scenes.shape)
-        accepted(laws, scenes)
-    target = _Into(folder, laws)
+    batches = _batches(scenes, size or MARCHED_AT_A_TIME)
+    if (begin := next(batches, None)) is None:
+        remedy = "make the generator anew: it gives its scenes once"
+        raise refuse("scenes", scenes, "must hold at least one Scene", remedy)
+    accepted(laws, begin)
+    target = _Into(folder, laws)  # of scenes that are refused there is no folder
     waiting: dict[Chunk, tuple[Scene, str]] = {}
     done = stop = 0
     total, failed = _total(scenes), None
@@ -166,15 +169,15 @@ def swept_into(
 
     def parts() -> Iterator[Part]:
         nonlocal done, stop
-        for scene in _batches(scenes, size or MARCHED_AT_A_TIME):
-            if scene is not scenes:
+        for scene in itertools.chain([begin], batches):
+            if scene is not begin:
                 accepted(laws, scene)
-            begin, block = stop, block_for(laws, scene)
+            before, block = stop, block_for(laws, scene)
             usual = IMPACTS_AT_A_TIME if block == WHOLE_IMPACTS else MARCHED_AT_A_TIME
             step = math.ceil((size or usual) / block) * block
             stop += scene.shape[0]
             for place in cut([Chunk(0, scene.shape[0])], step):
-                where = Chunk(begin + place.first, begin + place.stop)
+                where = Chunk(before + place.first, before + place.stop)
                 part = scene.take(slice(*place))
                 if not isinstance(scenes, Scene):  # the index in the whole sweep
                     part = part.numbered(np.arange(*where))
@@ -195,8 +198,6 @@ def swept_into(
                 progress(done, total or done)
         if failed is not None:
             raise failed
-        if not stop:
-            raise refuse("scenes", scenes, "must hold at least one Scene")
         target.finish(stop)
     except KeyboardInterrupt:
         pass  # finished chunks are in the folder, which tells that it is not complete
@@ -208,6 +209,7 @@ def swept_into(
 def _batches(scenes: Scene | Iterable[Scene], size: int) -> Iterator[Scene]:
     """Yield batches of one axis; single impacts are joined, ``size`` in a batch."""
     if isinstance(scenes, Scene):
+        one_axis(scenes.shape)
         yield scenes
         return
     singles: list[Scene] = []

@@ -264,6 +264,9 @@ class Simulation:
             raise refuse("progress", progress, "must be callable", remedy)
         options: dict[str, Any] = {"progress": progress, "chunk": chunk}
         options["executor"] = executor
+        if isinstance(scenes, str | Path) or hasattr(scenes, "scene"):
+            remedy = "give its .scene" if hasattr(scenes, "scene") else INSTEAD[str]
+            raise refuse("scenes", scenes, "must be a Scene, or a sequence of them", remedy)
         if into is not None:
             return self._into(into, keep, scenes, options)
         if isinstance(scenes, GridParts):

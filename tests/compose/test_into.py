@@ -237,7 +237,15 @@ def test_bad_arguments_are_refused(tmp_path):
     with pytest.raises(ValueError, match=r"path = None: must be the path of a folder"):
         SweepFolder(None)
     table = Scene.nondimensional(psi1=[[1.0, 2.0]], chi=CHI)
-    for bad, words in ((3, "3: must be a Scene, or an iterable"), (table, "must be a sequence")):
+    met = Encounter(*BODIES, 0.2, normal=(0, 0, -1), velocity=[(0, 0, -1)])
+    for bad, words in (
+        (3, "3: must be a Scene, or an iterable"),
+        (table, "must be a sequence"),
+        (met, "must be a Scene, .*; give its .scene"),
+        ("scene.toml", r"must be a Scene, .*; for a file use read_scene"),
+        (iter([]), "at least one Scene; make the generator anew"),
+        ([4], r"scenes\[0\] = 4: must be a Scene"),
+    ):
         with pytest.raises(ValueError, match=words):
             simulation.sweep(bad, into=tmp_path / "three")
         assert not (tmp_path / "three").exists()
@@ -247,8 +255,6 @@ def test_bad_arguments_are_refused(tmp_path):
                 simulation.sweep(scene(), **{given: tmp_path / name})
         with pytest.raises(ValueError, match=r"path = .*holds no sweep"):
             SweepFolder(tmp_path / name)
-    with pytest.raises(ValueError, match="at least one Scene"):
-        simulation.sweep(iter([]), into=tmp_path / "none")
     with pytest.raises(ValueError, match=r"scenes\[1\] = 4: must be a Scene"):
         simulation.sweep([scene(), 4], into=tmp_path / "four")
     with pytest.raises(ValueError, match="chunk"):
