@@ -78,9 +78,16 @@ def columns_of(path: Path, form: Form, names: Sequence[str] = ()) -> Iterator[An
 
 
 def read_about(path: Path, form: Form) -> About:
-    """Return what a chunk tells, or refuse a damaged file."""
+    """Return what a chunk tells, or refuse a damaged file and one of another version."""
     with columns_of(path, form) as content:
-        return About(**json.loads(str(content["about"])))
+        told = dict(json.loads(str(content["about"])))
+    if told.keys() != {*About._fields}:
+        rule = (
+            f"tells {', '.join(told)}; this version of contactlab reads {', '.join(About._fields)}"
+        )
+        remedy = f"read it by the version that {form.about} names"
+        raise refuse_file("path", path, rule, remedy)
+    return About(**told)
 
 
 def abouts_in(folder: Path, form: Form) -> list[tuple[Path, About]]:

@@ -284,6 +284,10 @@ def test_a_damaged_file_is_told(tmp_path):
     path.write_bytes(bytes(bit))
     with pytest.raises(ValueError, match=r"impacts-40-80.npz': is damaged: .*CRC"):
         SweepFolder(target)["psi2"]
+    np.savez(path, about=np.array('{"first": 40, "last": 79}'))
+    with pytest.raises(ValueError, match=r"npz': tells first, last; .*; read it by the version"):
+        SweepFolder(target)["psi2"]
+    path.write_bytes(sound)
     finished = target / "finished.json"
     words = finished.read_text("utf-8")
     for bad in ('{"impact": 150}', "[150]", '{"impacts": "?"}', '{"impacts": 1e999}', ""):
