@@ -41,12 +41,11 @@ def _no_answer(laws: Laws, part: Scene) -> str | None:
     tangential: Any = laws.tangential
     integrator, turns = laws.integrator, not part.planar
     name, reason = _name(tangential), None
-    stepped = isinstance(tangential, SteppedTangentialLaw)
     if turns and not tangential.vectors:
         reason = "it follows slip along one line"
     elif tangential.together:
         return None
-    elif not stepped or tangential.needs_future:
+    elif not isinstance(tangential, SteppedTangentialLaw) or tangential.needs_future:
         reason = "it needs the normal motion before the march"
     elif not integrator.together:
         name, reason = _name(integrator), "it follows a normal motion that is known before"

@@ -18,7 +18,7 @@ from contactlab.numeric.arrays import chosen
 from contactlab.numeric.types import Array, Mask, Real
 
 
-@attrs.frozen(kw_only=True, eq=False)
+@attrs.frozen(kw_only=True, eq=False, slots=False)
 class WholeImpact:
     """Whole-impact answer of a law for some impacts of a batch.
 

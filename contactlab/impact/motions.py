@@ -239,6 +239,8 @@ class Motions:
         if self.inverse_mass is None:
             return 0.0
         W = self.inverse_mass
+        if self.planar and not self.shape:
+            return factor * entry(W, 0, 1) / entry(W, 0, 0)
         with np.errstate(all="ignore"):
             if self.planar:
                 return factor * entry(W, 0, 1) / entry(W, 0, 0)

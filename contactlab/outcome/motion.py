@@ -28,7 +28,7 @@ ENDS = {
 }
 
 
-@attrs.frozen(kw_only=True, eq=False)
+@attrs.frozen(kw_only=True, eq=False, slots=False)
 class Motion(TangentialMotion):
     """A tangential motion with the duration, the maxima and the end of its normal motion.
 
@@ -76,13 +76,19 @@ class Motion(TangentialMotion):
         velocity beside the batch's.
         """
         shape = normal.scene.shape
-        if not (shape or axes or tangential.normal is not None):
+        if not (shape or axes):
+            ends: NormalMotion | Ends = normal
+            exchange, compressions = 0.0, 1.0
+            if tangential.normal is not None:
+                own = Ends.of(tangential.normal)
+                if not math.isnan(own.final_rate):
+                    ends, exchange, compressions = own, _exchange(normal, own), own.compressions
             return cls(  # named entry by entry: a loop is slower than all else here
-                duration=float(normal.duration),
-                normal_velocity=float(normal.final_rate),
-                maximum_radius=float(normal.maximum_radius),
-                maximum_approach=float(normal.maximum_approach),
-                maximum_force=float(normal.maximum_force),
+                duration=float(ends.duration),
+                normal_velocity=float(ends.final_rate),
+                maximum_radius=float(ends.maximum_radius),
+                maximum_approach=float(ends.maximum_approach),
+                maximum_force=float(ends.maximum_force),
                 slip_velocity_change=float(tangential.slip_velocity_change),
                 friction_work=float(tangential.friction_work),
                 shear_loss=float(tangential.shear_loss),
@@ -90,6 +96,8 @@ class Motion(TangentialMotion):
                 status=tangential.status,
                 detail=tangential.detail,
                 counters=tangential.counters,
+                exchange=float(exchange),
+                compressions=float(compressions),
             )
         entries: dict[str, Any] = {name: getattr(normal, source) for name, source in ENDS.items()}
         entries |= {"exchange": 0.0, "compressions": 1.0}
@@ -112,19 +120,24 @@ def _coupled(
     normal: NormalMotion, tangential: TangentialMotion | WholeImpact, entries: Mapping[str, Real]
 ) -> Mapping[str, Real]:
     """Return the entries of the normal motion that came of the friction, and the exchange."""
-    scene, own = normal.scene, Ends.of(tangential.normal)
+    own = Ends.of(tangential.normal)
     # NaN, unequal to itself, where friction left the normal motion as it was.
     alone = own.final_rate != own.final_rate
     coupled = {
         name: chosen(alone, entries[name], getattr(own, source)) for name, source in ENDS.items()
     }
-    speed: Any = scene.normal_speed
-    rate = coupled["normal_velocity"]
-    lost = 0.5 * scene.pair.normal_mass * (speed * speed - rate * rate)
     return coupled | {
-        "exchange": chosen(alone, 0.0, lost - own.dissipation),
+        "exchange": chosen(alone, 0.0, _exchange(normal, own)),
         "compressions": chosen(alone, 1.0, own.compressions),
     }
+
+
+def _exchange(normal: NormalMotion, own: Ends) -> Any:
+    """Return the energy in J that the normal motion lost, and the normal law did not take."""
+    speed: Any = normal.scene.normal_speed
+    rate = own.final_rate
+    lost = 0.5 * normal.scene.pair.normal_mass * (speed * speed - rate * rate)
+    return lost - own.dissipation
 
 
 #: What a law that answers both motions together must know.

@@ -21,9 +21,9 @@ FORCE, RADIUS = np.array([4.0, -2.0, 0.0]), np.array([0.7, 0.9, 0.0])
 OVERLAP, LOAD = np.array([0.6, 0.1, -0.1]), np.array([5.0, 1.0, 0.0])
 
 
-def sampled(*, load=LOAD):
+def sampled(kind=SampledMotion, *, load=LOAD):
     contact = NormalContact(FORCE, RADIUS, OVERLAP, load)
-    return SampledMotion(LAW, ONE, time=TIME, approach=APPROACH, rate=RATE, contact=contact)
+    return kind(LAW, ONE, time=TIME, approach=APPROACH, rate=RATE, contact=contact)
 
 
 def both():
@@ -130,18 +130,22 @@ def test_ends_are_merged_from_the_motions_of_parts():
 
 
 def test_what_equal_motions_share_is_made_once_and_stays_bounded():
-    motion, made = sampled(), []
+    made, kept = [], {}
+
+    class Sharing(SampledMotion):
+        shared = kept
 
     def make():
         made.append(1)
         return len(made)
 
+    motion = sampled()
     assert (motion.once("a", make), motion.once("a", make)) == (1, 2)  # nothing is shared
-    motion.shared = {}
+    motion = sampled(Sharing)
     assert (motion.once("a", make), motion.once("a", make)) == (3, 3)
     for number in range(1, MOST_SHARED):
         assert motion.once(number, make) == 3 + number
-    assert len(motion.shared) == MOST_SHARED == 8
+    assert len(kept) == MOST_SHARED == 8
     assert motion.once("a", make) == 3
     assert motion.once("b", make) == 11
-    assert motion.shared == {"b": 11}
+    assert kept == {"b": 11}
