@@ -105,6 +105,7 @@ def test_impacts_in_the_steps_of_lammps(springs, bound, kernel):
 
 
 @needs_c
+@pytest.mark.slow
 def test_the_kernel_without_macros_is_the_same_to_the_last_bit(merging, tmp_path):
     compiler = shutil.which("c++") or shutil.which("g++")
     if compiler is None:

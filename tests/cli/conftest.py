@@ -8,6 +8,7 @@ from typing import NamedTuple
 import pytest
 
 from contactlab.cli.main import main
+from tests.timed_once import timed_once  # noqa: F401
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

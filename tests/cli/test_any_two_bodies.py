@@ -162,6 +162,7 @@ def test_animate_draws_the_body_and_the_ghost(frames, least, run, tmp_path, monk
         assert max(frames // 2, 6) <= picture.n_frames <= frames - 2
 
 
+@pytest.mark.slow
 def test_animate_draws_an_impact_of_numbers(run, tmp_path, monkeypatch):
     shorten(monkeypatch)
     scene, out = tmp_path / "scene.toml", tmp_path / "m.gif"

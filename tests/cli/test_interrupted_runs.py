@@ -86,6 +86,7 @@ def test_a_bootstrap_keeps_its_samples_if_they_are_enough(run, monkeypatch, afte
     assert any("10 samples of 150" in note for note in content["notes"]) == kept
 
 
+@pytest.mark.slow
 def test_an_animation_keeps_its_frames(run, monkeypatch, ball, tmp_path):
     monkeypatch.setattr(animation, "SAMPLES", (0.0, 1.0))
     monkeypatch.setattr(animation, "DOTS", 30)

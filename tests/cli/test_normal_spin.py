@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+from tests.longer import longer
 from tests.short_animations import shorten
 
 BODIES = {
@@ -52,7 +53,8 @@ def test_run_tells_in_words_json_and_files(run, files, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "words", [("sweep", 2), ("compare", 2), ("compare", 1), ("sweep", 2, "--json")]
+    "words",
+    [("sweep", 2), ("compare", 2), *longer((("compare", 1),)), ("sweep", 2, "--json")],
 )
 def test_commands_that_print_tables_tell_too(run, files, words):
     command, which, *options = words

@@ -79,7 +79,9 @@ SHORT = {"{short}", "--psi1 0:4:3", "--tangential springs"}
 
 
 def long(command, pair):
-    """Return whether a pair takes long: what draws or fits, and comparisons by default."""
+    """Return whether a pair takes long, or is of an option that meets any other alike."""
+    if len(pair) == 2 and (command == "explore" or set(LOOKS) & set(pair)):
+        return True
     default = command == "compare" and pair and not SHORT & set(pair)
     page = command == "report" and len(pair) == 2
     several = page or command in {"bench", "stability", "figures", "fit", "animate"}

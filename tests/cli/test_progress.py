@@ -60,9 +60,11 @@ def test_short_work_says_nothing(begin, terminal):
         ("compare {short}", "runs"),
         ("stability --quick --law tangential.coulomb", "stability"),
         ("bench --quick --law tangential.coulomb", "bench"),
-        ("figures --out . --only 2", "figures"),
-        ("fit {impacts} {ball} --laws coulomb,mindlin_cap", "laws"),
-        *longer(("validate", "checks")),
+        *longer(
+            ("figures --out . --only 2", "figures"),
+            ("fit {impacts} {ball} --laws coulomb,mindlin_cap", "laws"),
+            ("validate", "checks"),
+        ),
     ],
 )
 def test_commands_tell_what_is_done(

@@ -184,6 +184,8 @@ def test_a_wrong_value_fails(run, monkeypatch):
     }
     monkeypatch.setattr(validation, "REFERENCE_PSI2", wrong)
     monkeypatch.setattr(validation, "COMPOSITIONS", validation.COMPOSITIONS[:1])
+    laws = ["tangential.fronts", "integrator.events"]  # those of that composition
+    monkeypatch.setattr(validation.REGISTRY, "names", lambda: laws)
     monkeypatch.setattr(evidence, "SOURCES", ())
     ran = run("validate")
     assert ran.status == 1

@@ -114,9 +114,9 @@ def test_the_tolerance_of_the_adaptive_integrator_is_no_bound():
     assert np.isnan(result.plan.psi2_error[result.plan.marched]).all()
 
 
-def test_estimates_of_240_runs():
+def test_estimates_of_120_runs():
     """A part of the set; laws without an exact limit and annuli take longer."""
-    found = figures("springs", "symplectic", 240)
+    found = figures("springs", "symplectic", 120)
     assert found["estimate within a factor of three"] >= 0.96
     assert found["estimate over ten times too small"] == 0
     assert 0.9 < found["estimate over true error, median"] < 1.2

@@ -15,6 +15,7 @@ from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 from contactlab.impact.hertz import hertz_scales
 from tests.compose.spoiled import SpoiledMotion
 from tests.laws.normal_laws import LinearSpring
+from tests.longer import longer
 
 HERTZ = contactlab.compose.registry.REGISTRY.law_class("normal.hertz")
 
@@ -176,7 +177,7 @@ def test_a_few_failures_in_a_large_batch_are_found(shape):
 
 
 @pytest.mark.parametrize("law", ["springs", "annulus", "mindlin_cap"])
-@pytest.mark.parametrize("chi", [41.6, 1000.0])
+@pytest.mark.parametrize("chi", [41.6, *longer(1000.0)])
 def test_adaptive_steps_are_stable_where_slip_is_too_small_to_see(law, chi):
     """Unstable steps grew it up to the tolerance, unseen: by 1e14 for psi1 = 1e-20."""
     sim = Simulation(tangential=law, integrator="adaptive")

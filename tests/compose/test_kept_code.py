@@ -277,6 +277,7 @@ def script(folder, *words, **options):
     )
 
 
+@pytest.mark.slow
 def test_the_code_of_a_script_counts(tmp_path):
     for text in (HALF, FULL):
         (tmp_path / "study.py").write_text(law(text) + SWEEP)

@@ -109,8 +109,8 @@ def test_rescaled_capped_springs_creep_under_an_oscillating_load(form):
 
 def test_a_batch_is_its_paths():
     rng = np.random.default_rng(3)
-    depth = np.abs(np.cumsum(rng.normal(0.05, 0.2, (60, 3)), axis=0)) * DEEP
-    moved = np.cumsum(rng.normal(0.0, 0.2, (60, 3)), axis=0) * FULL
+    depth = np.abs(np.cumsum(rng.normal(0.05, 0.2, (30, 3)), axis=0)) * DEEP
+    moved = np.cumsum(rng.normal(0.0, 0.2, (30, 3)), axis=0) * FULL
     scenes = Scene(BALL, BALL, np.array([0.1, 0.3, 0.9]), normal_speed=1.0)
     batch = load_path(scenes, depth, moved).check()
     for item in range(3):
@@ -122,7 +122,7 @@ def test_a_batch_is_its_paths():
         for name, field in alone.fields.items():
             assert batch.fields[name][:, item] == pytest.approx(field, rel=1e-9, abs=1e-16)
     shared = load_path(scenes, depth[:, 0], moved[:, 0])
-    assert shared.friction_force.shape == (60, 3)
+    assert shared.friction_force.shape == (30, 3)
 
 
 def test_random_paths_give_no_energy():

@@ -54,7 +54,8 @@ ROWS = [
         laws,
         words,
         id="-".join((*(str(law) for law in laws.values()), name)),
-        marks=[pytest.mark.slow] * (name in ("mixed batch", "space batch")),
+        marks=[pytest.mark.slow]
+        * (name in ("mixed batch", "space batch") or laws.get("normal") in ("jkr", "thornton")),
     )
     for scenes, table in ((dict(zip(NAMES, ALL, strict=True)), CAUTIONED), (ONES, SOLVED))
     for laws, words in table

@@ -15,6 +15,7 @@ from tests.compose.any_scene import (
     EXACT,
     ONES,
 )
+from tests.longer import longer
 
 
 @pytest.mark.parametrize("name", ["central", "planar"])
@@ -44,7 +45,7 @@ def test_in_a_mixed_batch_each_impact_has_its_own_errors():
             assert getattr(plan[place], error) == pytest.approx(getattr(alone, error), nan_ok=True)
 
 
-@pytest.mark.parametrize(("springs", "steps"), [(50, 200), (12, 60)])
+@pytest.mark.parametrize(("springs", "steps"), [(12, 60), *longer((50, 200))])
 def test_the_normal_restitution_has_an_error_of_its_own(springs, steps):
     """Within a factor of three of the distance from the exact law, as that of psi2."""
     scene = Scene.nondimensional(psi1=np.linspace(-3.0, 3.0, 13) + 0.05, chi=1.4, lam=0.2, eta=0.5)

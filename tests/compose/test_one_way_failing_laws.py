@@ -135,11 +135,22 @@ class FailsAtOne(OfVectors):
         return 1.0
 
 
+#: How a law fails, and the integrator under which it does so in the default suite.
+FAILING = {
+    "nan": ("NON_FINITE", "symplectic"),
+    "raises": ("LAW_RAISED", "adaptive"),
+    "unsettled": ("UNSETTLED", "paper"),
+}
+
+
 @each_batch
-@pytest.mark.parametrize("integrator", ["symplectic", "adaptive", "paper"])
 @pytest.mark.parametrize(
-    ("how", "status"),
-    [("nan", "NON_FINITE"), ("raises", "LAW_RAISED"), ("unsettled", "UNSETTLED")],
+    ("how", "status", "integrator"),
+    [
+        pytest.param(how, status, name, marks=[pytest.mark.slow] * (name != usual))
+        for how, (status, usual) in FAILING.items()
+        for name in ("symplectic", "adaptive", "paper")
+    ],
 )
 def test_an_impact_that_fails_in_a_march_takes_no_other_with_it(scene, integrator, how, status):
     laws = Simulation(tangential=FailsAtOne(how), integrator=integrator)

@@ -85,7 +85,7 @@ def test_numbers_that_nobody_measures_are_told(change, words):
     assert words in told
 
 
-@pytest.mark.parametrize("times", [2, 3])
+@pytest.mark.parametrize("times", [2, *longer(3)])
 def test_copies_of_a_table_are_told(times):
     once = table(restitution(0.12) + SCATTER)
     copied = fit({name: np.tile(values, times) for name, values in once.items()}, BODIES)
@@ -117,7 +117,7 @@ def test_sound_measurements_are_not_accused(count):
     rng = np.random.default_rng(count)
     angles = np.linspace(5.0, 65.0, count)
     true = restitution(0.12, angles)
-    for _ in range(4):
+    for _ in range(2):
         assert fit(table(true + 0.01 * rng.standard_normal(count), angles), BODIES).notes == ()
 
 

@@ -17,6 +17,7 @@ from contactlab import (
 from contactlab.cli.main import main
 from contactlab.fitting import fit, read_measurements
 from contactlab.outcome.columns import QUANTITIES
+from tests.longer import longer
 
 STEEL = Material.named("steel")
 BALL, OTHER = Sphere(0.01, STEEL), Sphere(0.025, STEEL, mass=0.04)
@@ -52,7 +53,7 @@ def columns(target):
     }
 
 
-@pytest.mark.parametrize("target", [HalfSpace(STEEL), OTHER], ids=["plate", "ball"])
+@pytest.mark.parametrize("target", [*longer(HalfSpace(STEEL)), OTHER], ids=["plate", "ball"])
 def test_friction_of_a_struck_body_that_moves(target):
     data = columns(target)
     bodies = Scene(BALL, target, friction_coefficient=0.5, normal_speed=1.0)

@@ -31,7 +31,11 @@ def test_the_wheel_installs_contactlab_and_its_laws_only():
 @pytest.mark.parametrize(
     ("compiler", "holds"),
     [
-        pytest.param("cc -O1", True, marks=pytest.mark.skipif(not which("cc"), reason="no cc")),
+        pytest.param(
+            "cc -O1",
+            True,
+            marks=[pytest.mark.slow, pytest.mark.skipif(not which("cc"), reason="no cc")],
+        ),
         ("no-such-compiler", False),
         ("false", False),
     ],

@@ -36,8 +36,10 @@ LAWS = (
     "OneSpring",
 )  # fmt: skip
 #: Laws whose checks take longer than a second.
-HEAVY = ("Viscoelastic", "Brush", "Bristle", "Leapfrog")
+HEAVY = ("Viscoelastic", "Brush", "Bristle", "Leapfrog", "OneSpring")
 WITH_CODE = [page for page in PAGES if BLOCKS.search(text(page))]
+#: Pages whose code takes longer than half a second.
+LONG_CODE = ("many-machines", "any-two-bodies")
 #: Extras that the code of a page needs.
 EXTRAS = {
     "for-a-paper": ("pandas",),
@@ -124,7 +126,13 @@ def test_lines_fit_a_terminal_but_for_tables_and_code(topic):
 @pytest.mark.parametrize(
     "page",
     [
-        pytest.param(page, marks=[extra(name) for name in EXTRAS.get(page, ())])
+        pytest.param(
+            page,
+            marks=[
+                *[extra(name) for name in EXTRAS.get(page, ())],
+                *[pytest.mark.slow] * (page in LONG_CODE),
+            ],
+        )
         for page in WITH_CODE
     ],
 )

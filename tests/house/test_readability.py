@@ -30,11 +30,19 @@ UPWARD = {
 }
 
 
+def statements(node):
+    """Yield every statement under a node; expressions, most of a file, are passed over."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.stmt | ast.excepthandler | ast.match_case):
+            yield child
+            yield from statements(child)
+
+
 @cache
 def imported_names(text):
     """Return the dotted name of every import in a file: lazy and type-only ones too."""
     names = []
-    for node in ast.walk(ast.parse(text)):
+    for node in statements(ast.parse(text)):
         if isinstance(node, ast.Import):
             names += [name.name for name in node.names]
         elif isinstance(node, ast.ImportFrom):

@@ -1,6 +1,7 @@
 """Refusals in the source: every call gives the name, then the value of an argument."""
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import contactlab
@@ -8,6 +9,7 @@ import contactlab
 ROOT = Path(contactlab.__file__).parents[1]
 
 
+@cache
 def refusals(text):
     """Return the arguments of every call of ``refuse`` in a file."""
     if "refuse(" not in text:

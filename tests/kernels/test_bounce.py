@@ -40,7 +40,7 @@ def bounced(request, tmp_path_factory):
     """Return a function of rows (n, 27) that gives answers (n, 13), by the code in C or JS."""
     folder = tmp_path_factory.mktemp("bounce")
     if request.param == "c":
-        words = [COMPILER, *STRICT, *SANITIZERS, f"-I{KERNELS}", HERE / "bounce.c"]
+        words = [COMPILER, *STRICT, "-O0", *SANITIZERS, f"-I{KERNELS}", HERE / "bounce.c"]
         subprocess.run([*words, "-o", folder / "bounce", "-lm"], check=True, timeout=120)
         command = [folder / "bounce"]
     else:  # as npm lays a package out

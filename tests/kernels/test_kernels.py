@@ -255,6 +255,7 @@ def test_what_the_notes_say_of_spin_about_the_normal(tmp_path):
     assert np.linalg.norm(np.subtract(first, second)) > 0.2 * np.linalg.norm(first)
 
 
+@pytest.mark.slow
 @needs_c
 def test_no_undefined_behaviour(built, tmp_path):
     """The sanitizers stop the program at the first read or write out of the state, or overflow."""

@@ -132,6 +132,7 @@ def test_what_is_no_damping_is_nan_until_the_contact_ends(words, column, value, 
         assert np.isfinite(found[:90]).all()
 
 
+@pytest.mark.slow
 @needs_c
 def test_no_undefined_behaviour(built, tmp_path):
     rows = damped(wandering(3), 3)

@@ -43,6 +43,7 @@ def test_the_axes_are_those_of_the_builder():
     assert (nodes().size[1:, :, :, -1] > 0.0).all()
 
 
+@pytest.mark.slow
 def test_at_a_node_the_table_is_the_solution():
     fresh = np.abs(shift(np.array([1.0, 3.0]), 1.44, 0.5, (0.5,)))
     table = size(np.array([1.0, 3.0]), 1.44, 0.5, (0.5,))

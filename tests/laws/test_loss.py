@@ -149,7 +149,7 @@ def test_slip_throughout_is_exact(grid):
 def test_it_sticks_from_the_start_below_psi1_of_one():
     """And the first gross slip ends at V = (2 chi - psi1)/(2 chi - 1), as without loss."""
     chi, simulation = 1.5, springs(viscoelastic(0.7), 50, 400)
-    for psi1 in (0.9, 1.4, 2.0):
+    for psi1 in (0.9, 1.4):
         history = simulation.run(PLANAR(psi1=psi1, chi=chi), history="fields").history
         rate = history.normal_velocity / history.normal_velocity[0]
         stuck = np.asarray(history.fields["stuck"])[3:].any(axis=-1)
@@ -403,7 +403,7 @@ def test_books_of_bodies_close(e):
 )  # fmt: skip
 def test_errors_of_bodies_are_those_declared(law, scene):
     """By the extrapolation of finer springs and steps; where W is nearly singular none is."""
-    middle, fine = (springs(law, parts, 4 * parts).run(scene).check() for parts in (60, 120))
+    middle, fine = (springs(law, parts, 4 * parts).run(scene).check() for parts in (40, 80))
 
     def exact(name):
         return (4.0 * np.asarray(getattr(fine, name)) - getattr(middle, name)) / 3.0
@@ -427,13 +427,20 @@ def test_errors_of_bodies_are_those_declared(law, scene):
 
 
 @pytest.mark.parametrize(
-    ("e", "psi1", "chi", "lam", "eta"),
-    [(0.05, 3.0, 1.4, 0.2, 0.4), *longer((0.05, 1.3, 1.2, 0.1, 0.5), (0.5, 1.3, 1.2, 0.1, 0.5))],
+    ("sizes", "e", "psi1", "chi", "lam", "eta"),
+    [
+        ((25, 50), 0.05, 3.0, 1.4, 0.2, 0.4),
+        *longer(
+            ((25, 50, 100), 0.05, 3.0, 1.4, 0.2, 0.4),
+            ((25, 50, 100), 0.05, 1.3, 1.2, 0.1, 0.5),
+            ((25, 50, 100), 0.5, 1.3, 1.2, 0.1, 0.5),
+        ),
+    ],
 )
-def test_the_loss_in_shear_of_bodies_is_that_of_dashpots(e, psi1, chi, lam, eta):
+def test_the_loss_in_shear_of_bodies_is_that_of_dashpots(sizes, e, psi1, chi, lam, eta):
     """A w'², and w² at the end: what the springs hold, without any force or work of theirs."""
     scene, off = PLANAR(psi1=psi1, chi=chi, lam=lam, eta=eta), []
-    for parts in (25, 50, 100):
+    for parts in sizes:
         law = viscoelastic(e)
         result = springs(law, parts, 4 * parts).run(scene, history="fields").check()
         history, fields = result.history, result.history.fields
@@ -449,6 +456,4 @@ def test_the_loss_in_shear_of_bodies_is_that_of_dashpots(e, psi1, chi, lam, eta)
         spent = np.sum(law.start(scene.central).time * np.diff(w, axis=0) ** 2 / moving)
         lost = stiffness * (spent + 0.5 * np.sum(w[-1] ** 2))
         off.append(abs(result.energy.shear_loss / lost - 1.0))
-    assert off[0] < 6e-4
-    assert off[1] < 8e-5
-    assert off[2] < 4e-5
+    assert (np.array(off) < (6e-4, 8e-5, 4e-5)[: len(off)]).all()

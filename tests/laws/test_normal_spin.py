@@ -52,7 +52,7 @@ def pure(sigma1, chi_t, **options):
     return result.w2 * UNIT
 
 
-@pytest.mark.parametrize(("sigma1", "chi_t", "sigma2"), [*TORSION[:2], *longer(*TORSION[2:])])
+@pytest.mark.parametrize(("sigma1", "chi_t", "sigma2"), [TORSION[0], *longer(*TORSION[1:])])
 def test_two_programs_agree_on_torsion_to_nine_digits(sigma1, chi_t, sigma2):
     """The referee of the others, whose integrals share nothing with the springs."""
     assert torsion(sigma1, chi_t) == pytest.approx(sigma2, abs=1e-8)
@@ -65,7 +65,7 @@ def test_torsion_of_little_and_of_much_slip_is_a_closed_form():
     assert (1e-7 - torsion(1e-7, 1e-6, nodes=40)) / 1e-13 == pytest.approx(7.5462014746, rel=2e-5)
 
 
-@pytest.mark.parametrize(("sigma1", "chi_t", "sigma2"), [*TORSION[:2], *longer(*TORSION[2:])])
+@pytest.mark.parametrize(("sigma1", "chi_t", "sigma2"), [TORSION[0], *longer(*TORSION[1:])])
 def test_pure_spin_of_the_half_space(sigma1, chi_t, sigma2):
     assert pure(sigma1, chi_t, rings=64) == pytest.approx(sigma2, abs=1e-4)
 
@@ -86,7 +86,7 @@ def test_beyond_a_stuck_disc_springs_are_no_more_exact(sigma1, chi_t, sigma2):
 def test_a_small_steel_ball_loses_little():
     """C = 0.1, w1 = 0.5: theory §17's third program."""
     chi_w = 5.0 / 7.0 * CHI * 0.01
-    result = simulation(rings=64).run(spun(0.0, 0.5, chi_w=chi_w)).check()
+    result = simulation(rings=32).run(spun(0.0, 0.5, chi_w=chi_w)).check()
     assert result.w2 == pytest.approx(0.482234, abs=3e-5)
     assert torsion(0.5 * UNIT, chi_w * UNIT) / UNIT == pytest.approx(0.482234, abs=5e-7)
 
@@ -162,7 +162,7 @@ def test_slip_throughout_is_a_closed_form(psi1, chi):
     assert (w1 - result.w2) / chi_w == pytest.approx(0.4 * w1 * integral(1), rel=0.01)
 
 
-@pytest.mark.parametrize("psi1", [0.5, 1.0, *longer(0.1, 2.0, 4.0)])
+@pytest.mark.parametrize("psi1", [1.0, *longer(0.1, 0.5, 2.0, 4.0)])
 def test_a_spin_that_vanishes_leaves_the_answer_without(psi1):
     """Two mirror classes, two tables: they meet where nothing turns."""
     still = simulation().run(Scene.nondimensional(psi1=psi1, chi=CHI, poisson_ratio=NU))
@@ -187,7 +187,7 @@ def test_eight_angles_are_enough(psi1, w1, bound):
 
 def test_a_batch_with_and_without_spin_is_its_impacts():
     psi1, w1 = np.array([1.0, 0.5, 0.0, 2e7, -1.0]), np.array([0.5, 0.0, 0.3, 1.0, -0.5])
-    law = simulation(rings=16)
+    law = simulation(rings=8)
     whole = law.run(spun(psi1, w1)).check()
     for place, pair in enumerate(zip(psi1.tolist(), w1.tolist(), strict=True)):
         one = law.run(spun(*pair)).check()

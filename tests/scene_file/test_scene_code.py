@@ -8,6 +8,7 @@ import pytest
 
 from contactlab import Simulation, create, read_scene
 from contactlab.cli.main import main
+from tests.longer import longer
 from tests.short_animations import shorten
 
 #: A friction law that says whether its file ran.
@@ -202,7 +203,9 @@ REPLACED = (
     (SCENE, "cite", "normal", ("--normal", "hertz")),
     (SCENE, "cite", "integrator", ("--integrator", "paper")),
     (SCENE, "report", "normal", ("--normal", "hertz", "--out", "page.html")),
-    (SCENE, "animate", "tangential", ("--tangential", "annulus", "--out", "moving.gif")),
+    *longer(
+        (SCENE, "animate", "tangential", ("--tangential", "annulus", "--out", "moving.gif")),
+    ),
 )
 
 

@@ -324,7 +324,7 @@ def eccentric(method, *, quick):
     [
         ("fronts", "events"),
         ("coulomb", "symplectic"),
-        ("springs", "symplectic"),
+        *longer(("springs", "symplectic")),
     ],
 )
 def test_extreme_eccentric_impacts_are_right_or_have_a_status(tangential, integrator):

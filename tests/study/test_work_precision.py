@@ -19,6 +19,7 @@ from contactlab.study import work_precision
 from contactlab.study.bench_methods import Method, methods, scenes
 from contactlab.study.benchmark import Benchmark, Row
 from contactlab.study.work_precision import bench
+from tests.longer import longer
 
 
 def row(method="a", error=1.0, time=1.0, failed=0, options="steps=10"):
@@ -136,7 +137,7 @@ def test_command_writes_table_csv_and_picture(tmp_path, capsys):
     assert main(["bench", "--budget", "-1"]) == 2
 
 
-@pytest.mark.parametrize("width", [6.0, 9.0])
+@pytest.mark.parametrize("width", [6.0, *longer(9.0)])
 def test_the_picture_names_every_law_beside_its_points(width):
     """Both panels have one error axis; a law of another model is grey and a single point."""
     rows = tuple(

@@ -39,18 +39,19 @@ CLAIMING = [law for law in LAWS if "partial_slip" in law.offers]
 LONGER = {
     "Annulus": "all_steps answers batch books closed_cycles friction_work impact_coulomb_limit "
     "impact_units load_impulse odd_in_slip partial_unloading random_paths sliding_impulse "
-    "stiffness turning_points units whole_impact_form whole_impacts",
-    "Springs": "impact_books impact_bounds impact_odd impact_units vectors_on_a_line "
-    "vectors_rotate whole_impacts",
-    "LinearSpring": "impact_units",
+    "stiffness turning_points units whole_impact_form whole_impacts coulomb_at_a_point_damped "
+    "two_stiffnesses",
+    "Springs": "closed_cycles impact_batch impact_books impact_bounds impact_coulomb_limit "
+    "impact_odd impact_units vectors_on_a_line vectors_rotate whole_impact_form whole_impacts",
+    "LinearSpring": "impact_books impact_odd impact_units",
     "WaltonBraun": "motion_batch rebounds",
     "Viscoelastic": "ends_unloaded rebounds",
     "MindlinCap": "impact_odd impact_units vectors_on_a_line vectors_rotate whole_impact_form "
     "whole_impacts",
-    "MindlinDeresiewicz": "begin_is_start impact_odd impact_units",
+    "MindlinDeresiewicz": "begin_is_start impact_bounds impact_odd impact_units unlike_bodies",
     "Coulomb": "whole_impact_form",
     "Frictionless": "whole_impact_form",
-    "PaperSteps": "impact_odd spin unlike_bodies",
+    "PaperSteps": "books_by impact_batch impact_odd spin unlike_bodies",
     "Adaptive": "impact_batch impact_odd impact_repeatable spin unlike_bodies",
     "Tsuji": "ends_unloaded rebounds",
     "HuntCrossley": "ends_unloaded motion_batch rebounds",

@@ -1,0 +1,3 @@
+"""Scenes that commands run compare laws, each of which runs once."""
+
+from tests.timed_once import timed_once  # noqa: F401
