@@ -53,14 +53,13 @@ SCRIPTS = {
     "signs": ("spin -90 rad/s, slip 0.00 m/s", "signs.png"),
     "law_in_five_minutes": ("0.1 of the normal speed", "law_in_five_minutes.png"),
 }
-#: Those that take long, but for one of each kind.
+#: Those that take long, but for one of each kind, run by an interpreter of their own; the others
+#: in this one, which has matplotlib already.
 SLOW = (
     *("sweep_on_a_cluster", "reproduce_the_paper", "fit_your_experiment", "billiards"),
     *("beyond_the_paper", "superball", "law_swap", "stick_slip_map", "granular_gas"),
     *("hysteresis", "signs", "any_two_bodies", "egg", "toe_shot", "custom_law"),
 )
-#: Run by an interpreter of their own; the others in this one, which has matplotlib already.
-ALONE = ("one_impact", *SLOW)
 #: Options that make a script short.
 OPTIONS = {
     "billiards": ("--collisions", 40, "--frames", 3),
@@ -95,7 +94,7 @@ def test_script(name, tmp_path, monkeypatch, capsys):
     for module in ("dask.distributed", "xarray") if name == "sweep_on_a_cluster" else ():
         pytest.importorskip(module, reason=f"needs the extra {module.partition('.')[0]}")
     script = EXAMPLES / f"{name}.py"
-    if name in ALONE:
+    if name in SLOW:
         done = python(script, *OPTIONS.get(name, ()), folder=tmp_path)
         assert done.returncode == 0, done.stderr
         told = done.stdout

@@ -111,6 +111,7 @@ def test_laws_are_those_of_the_file_and_of_the_options(run, impacts, tmp_path, o
     assert json.loads(ran.out)["laws"].startswith(laws)
 
 
+@pytest.mark.slow
 def test_cautions_are_told_of_every_law(run):
     options = ("fit", KHARAZ, *E_T, "--laws", "exact,coulomb", "--bootstrap", 0)
     content = json.loads(run(*options, "--json").out)

@@ -162,7 +162,7 @@ def test_an_ascii_terminal_gets_words(evil):
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
 @pytest.mark.parametrize(
     "words",
-    [["plugins", "list"], ["--version"], *longer(PSI, ["--help"], ["run", "--help"])],
+    [["plugins", "list"], *longer(["--version"], PSI, ["--help"], ["run", "--help"])],
 )  # fmt: skip
 def test_a_full_disk_behind_stdout_is_one_line_and_status_1(words):
     with open("/dev/full", "w") as full:

@@ -15,7 +15,7 @@ from tests.laws.outside_laws import Walton
 from tests.longer import longer
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
-UNDECLARED = ["springs", "annulus", "mindlin_cap", "linear_spring"]
+UNDECLARED = ["springs", *longer("annulus"), "mindlin_cap", "linear_spring"]
 
 
 def test_what_nobody_declared_is_not_a_number():
@@ -42,7 +42,7 @@ def test_the_whole_impact_law_of_a_stranger_is_not_exact():
         {},
         {"tangential": contactlab.create("tangential.fronts", table=False)},
         {"normal": "tsuji", "tangential": "stronge"},
-        {"tangential": "halfspace"},
+        *longer({"tangential": "halfspace"}),
     ],
     ids=["default", "fronts", "stronge", "halfspace"],
 )

@@ -134,8 +134,7 @@ NAMES = ("jkr", "dmt", "thornton", "hunt_crossley", "kuwabara_kono", "walton_bra
     "law",
     [
         WidePlastic(),
-        LinearDashpot(),
-        *longer(Plastic(restitution=0.3), Adhesive(pull=20.0), Tsuji()),
+        *longer(LinearDashpot(), Plastic(restitution=0.3), Adhesive(pull=20.0), Tsuji()),
         *longer(*NAMES),
     ],
 )

@@ -121,7 +121,7 @@ def test_sound_measurements_are_not_accused(count):
         assert fit(table(true + 0.01 * rng.standard_normal(count), angles), BODIES).notes == ()
 
 
-@pytest.mark.parametrize("e", [0.6, *longer(0.9), 1.0])
+@pytest.mark.parametrize("e", [0.6, *longer(0.9, 1.0)])
 def test_one_loss_is_fitted_by_its_table(e):
     """Data by the closed form of gross slip, psi2 = psi1 - 2 chi (1 + e), and e itself."""
     angles = np.array([70.0, 74.0, 78.0, 80.0, 82.0, 84.0])

@@ -19,7 +19,7 @@ DATA = table(1.0 - 0.2 * SLOPE + 0.002 * PULLS, SLIPPING)
 LOSSY = Simulation(normal="tsuji", tangential="coulomb")
 
 
-@pytest.mark.parametrize("stated", [None, (0.01, 0.004), (0.0005, 0.0002)])
+@pytest.mark.parametrize("stated", [None, (0.01, 0.004), *longer(((0.0005, 0.0002),))])
 def test_errors_and_correlation_of_two_parameters(stated):
     """In gross slip e_t = 1 - mu (1 + e)/tan(angle), beside e itself; errors stated or not."""
     e_n = 0.8 + 0.001 * PULLS[::-1] * np.array([1.0, 1.0, -1.0, 1.0, 1.0, 1.0])
@@ -52,7 +52,7 @@ def test_errors_and_correlation_of_two_parameters(stated):
 
 @pytest.mark.parametrize(
     ("after", "kept"),
-    [(99, False), (100, True), *longer((101, True))],
+    [(100, True), *longer((99, False), (101, True))],
 )
 def test_an_interruption_keeps_a_hundred_samples_or_none(after, kept):
     def progress(done, total):

@@ -36,8 +36,10 @@ def refused(measurements, *parameters, **options):
     [
         (GRAZING, ["stiffness_ratio"], "stiffness_ratio"),
         *longer((GRAZING, ["friction_coefficient", "stiffness_ratio"], "stiffness_ratio")),
-        (STEEP, ["friction_coefficient"], "friction_coefficient"),
-        *longer((STEEP, ["stiffness_ratio", "friction_coefficient"], "friction_coefficient")),
+        *longer(
+            (STEEP, ["friction_coefficient"], "friction_coefficient"),
+            (STEEP, ["stiffness_ratio", "friction_coefficient"], "friction_coefficient"),
+        ),
     ],
 )  # fmt: skip
 def test_the_measurement_that_is_advised_determines_what_was_not(angles, parameters, missing):

@@ -234,6 +234,7 @@ def test_a_half_space_does_not_spin_at_any_door_of_measurements(tmp_path, capsys
     assert told in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_spin_of_zero_is_that_of_a_half_space():
     data = columns(HalfSpace(STEEL))
     bodies = Scene(BALL, HalfSpace(STEEL), friction_coefficient=0.5, normal_speed=1.0)

@@ -38,8 +38,8 @@ LAWS = (
 #: Laws whose checks take longer than a second.
 HEAVY = ("Viscoelastic", "Brush", "Bristle", "Leapfrog", "OneSpring")
 WITH_CODE = [page for page in PAGES if BLOCKS.search(text(page))]
-#: Pages whose code takes longer than half a second.
-LONG_CODE = ("many-machines", "any-two-bodies")
+#: Pages whose code takes longer than a third of a second.
+LONG_CODE = ("many-machines", "any-two-bodies", "beyond-the-paper")
 #: Extras that the code of a page needs.
 EXTRAS = {
     "for-a-paper": ("pandas",),

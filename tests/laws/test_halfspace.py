@@ -133,6 +133,7 @@ def test_two_way_coupling_changes_the_normal_motion():
     assert psi[-1] == pytest.approx(result.psi2, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_one_way_coupling_over_lam():
     """Some of theory §9's table, at 24 rings."""
     for lam, psi1, column in ((1.0, 0.5, 0), (0.5, 1.0, 1), (2.0, 2.0, 3)):

@@ -403,7 +403,7 @@ def test_books_of_bodies_close(e):
 )  # fmt: skip
 def test_errors_of_bodies_are_those_declared(law, scene):
     """By the extrapolation of finer springs and steps; where W is nearly singular none is."""
-    middle, fine = (springs(law, parts, 4 * parts).run(scene).check() for parts in (40, 80))
+    middle, fine = (springs(law, parts, 4 * parts).run(scene).check() for parts in (30, 60))
 
     def exact(name):
         return (4.0 * np.asarray(getattr(fine, name)) - getattr(middle, name)) / 3.0

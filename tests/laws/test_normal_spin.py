@@ -83,6 +83,7 @@ def test_beyond_a_stuck_disc_springs_are_no_more_exact(sigma1, chi_t, sigma2):
     assert pure(sigma1, chi_t, rings=64) == pytest.approx(sigma2, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_a_small_steel_ball_loses_little():
     """C = 0.1, w1 = 0.5: theory §17's third program."""
     chi_w = 5.0 / 7.0 * CHI * 0.01

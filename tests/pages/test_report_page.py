@@ -12,6 +12,7 @@ from contactlab import create
 from contactlab.compose.citations import DOI, YEAR, bibtex, references
 from contactlab.compose.registry import REGISTRY
 from tests.cli.conftest import EXAMPLES
+from tests.longer import longer
 
 
 class Balanced(html.parser.HTMLParser):
@@ -117,7 +118,7 @@ def test_arrows_of_the_drawing_point_along_the_motion_of_the_sphere(reported, ba
     assert np.degrees(before) == pytest.approx(15.0, abs=0.2)  # as the file says
 
 
-@pytest.mark.parametrize(("spin", "turn"), [(20.0, " ↺"), (-20.0, " ↻"), (0.0, "")])
+@pytest.mark.parametrize(("spin", "turn"), [(-20.0, " ↻"), *longer((20.0, " ↺"), (0.0, ""))])
 def test_the_drawing_tells_the_sense_of_a_spin(reported, ball, tmp_path, spin, turn):
     turning = tmp_path / "turning.toml"
     text = ball.read_text("utf-8").replace("spin = 20.0", f"spin = {spin}")
