@@ -94,6 +94,15 @@ def file_of(*suffixes: str) -> Callable[[str], Path]:
     return convert
 
 
+def folder_of(text: str) -> Path:
+    """Return the path of a folder for files, or refuse a name that is empty, or that of a file."""
+    path = Path(text)
+    if not text or (path.exists() and not path.is_dir()):
+        what = "is a file" if text else "is no name"
+        raise argparse.ArgumentTypeError(f"{text!r}: {what}; give a folder")
+    return path
+
+
 def add_file(
     parser: argparse.ArgumentParser,
     option: str,

@@ -25,7 +25,7 @@ from contactlab.study.paper_figures import CAPTIONS, FigureData, paper_data
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the folder, the figures, their form and the laws."""
     parser.add_argument(
-        "--out", required=True, type=Path, metavar="DIR", help="folder for the files"
+        "--out", required=True, type=shared.folder_of, metavar="DIR", help="folder for the files"
     )
     parser.add_argument(
         "--only",

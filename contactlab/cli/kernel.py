@@ -13,7 +13,6 @@ from pathlib import Path
 
 from contactlab.cli import arguments as shared
 from contactlab.compose.hooks import Execute, hookimpl
-from contactlab.numeric.checks import refuse
 from contactlab.outcome.files import written
 
 #: Files of ``contactlab/kernels``: springs on a doubling grid (theory §13), bounces, exact impacts
@@ -30,7 +29,11 @@ FILES = (
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the folder."""
     parser.add_argument(
-        "--out", type=Path, required=True, metavar="DIR", help="folder; made if it is not there"
+        "--out",
+        type=shared.folder_of,
+        required=True,
+        metavar="DIR",
+        help="folder; made if it is not there",
     )
     return shared.checked(execute)
 
@@ -38,9 +41,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
 def execute(arguments: argparse.Namespace) -> int:
     """Write the files and print their paths."""
     folder: Path = arguments.out
-    if folder.exists() and not folder.is_dir():
-        raise refuse("--out", str(folder), "is a file", "give a folder")
-    folder.mkdir(parents=True, exist_ok=True)
+    shared.make_folder("--out", folder)
     source = resources.files("contactlab").joinpath("kernels")
     for name in FILES:
         with written(folder / name) as stream:

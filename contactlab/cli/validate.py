@@ -37,7 +37,10 @@ DRAWN = (
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the outputs."""
     parser.add_argument(
-        "--figures", type=Path, metavar="DIR", help="draw a picture of each source in this folder"
+        "--figures",
+        type=shared.folder_of,
+        metavar="DIR",
+        help="draw a picture of each source in this folder",
     )
     shared.add_json(parser, "the tables")
     shared.add_progress(parser)

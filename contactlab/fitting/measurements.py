@@ -128,7 +128,8 @@ def read_measurements(
         return content
     if isinstance(content, SceneFile):
         return _from_scene_file(content)
-    raise refuse("measurements", content, "must be a CSV file, or a mapping of columns")
+    remedy = "of a DataFrame give frame.to_dict('list')"
+    raise refuse("measurements", content, "must be a CSV file, or a mapping of columns", remedy)
 
 
 def _from_csv(path: Path, names: Mapping[str, str] | Sequence[str]) -> Measurements:

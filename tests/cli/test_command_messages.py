@@ -93,7 +93,10 @@ MISSING = "must be given too (chi is 1.4412 for a solid sphere)"
         (["guide", "qqq"], None),
         (["guide", "theory", "99"], "section = '99': is not a section of 'theory'; leave it out "
          "for the whole topic"),
-        (["kernel", "--out", "FILE"], "--out = '{file}': is a file; give a folder"),
+        (["kernel", "--out", "FILE"], "argument --out: '{file}': is a file; give a folder "
+         "(see contactlab kernel --help)"),
+        (["kernel", "--out", ""], "argument --out: '': is no name; give a folder "
+         "(see contactlab kernel --help)"),
     ],
 )  # fmt: skip
 def test_a_refusal_is_one_line(run, short_sweep, ball, tmp_path, monkeypatch, words, told):

@@ -216,7 +216,7 @@ def test_the_normal_speed_of_the_scene_is_its_own(bodies):
 def test_only_a_file_or_a_mapping_has_headings_to_name():
     with pytest.raises(ValueError, match=re.escape("columns = {'a': 'b'}: need a CSV file, or a")):
         read_measurements(table(), columns={"a": "b"})
-    words = "measurements = 7: must be a CSV file, or a mapping of columns"
+    words = r"measurements = 7: must be a CSV file, or a mapping of columns; of a DataFrame"
     with pytest.raises(ValueError, match=re.escape(words)):
         read_measurements(7)
     with pytest.raises(ValueError, match=re.escape(f"{Path('none.csv')}: no such file")):
