@@ -95,7 +95,7 @@ def kernel(tmp_path_factory):
 
 
 @needs_c
-@pytest.mark.parametrize(("springs", "bound"), [(8, 0.015), *longer((50, 2e-3))])
+@pytest.mark.parametrize(("springs", "bound"), longer((8, 0.015), (50, 2e-3)))
 def test_impacts_in_the_steps_of_lammps(springs, bound, kernel):
     """Velocity Verlet with velocities of half a step ago: 200 steps, contacts of ten sizes."""
     loss, library = kernel

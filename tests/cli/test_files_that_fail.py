@@ -134,12 +134,12 @@ KHARAZ = EXAMPLES / "kharaz2001.toml"
         ("run", "--psi1", 1, "--chi", 1, "--history", "a.csv", "--figure", "a.png"),
         ("sweep", "--psi1", "0:1:3", "--chi", 1, "--csv", "--figure", "a.pdf"),
         ("compare", "--psi1", 1, "--chi", 1, "--figure", "a.svg"),
-        ("fit", KHARAZ, "--bootstrap", 0, "--csv", "a.csv"),
         ("bench", "--quick", "--law", "tangential.coulomb", "--csv", "a.csv"),
         ("report", EXAMPLES / "steel_ball.toml", "--out", "a.html"),
         ("explore", "--out", "a.html"),
         ("kernel", "--out", "."),
         *longer(
+            (("fit", KHARAZ, "--bootstrap", 0, "--csv", "a.csv"),),
             (("stability", "--quick", "--law", "tangential.walton", "--csv", "a.csv"),),
             (("figures", "--only", 2, "--tangential", "coulomb", "--out", "."),),
             (("animate", "--psi1", 1, "--chi", 1, "--out", "a.gif"),),

@@ -157,6 +157,7 @@ def test_the_notes_lead_from_a_csv_of_soft_data_to_its_friction(run, tmp_path):
     assert ran.status == 0
 
 
+@pytest.mark.slow
 def test_restitution_comes_out_of_kharaz(run):
     """Of e_t and the rebound angle: nearer to 1 than the 0.98 that is quoted beside them."""
     ran = run("fit", KHARAZ, "--fit", "friction_coefficient,restitution",

@@ -70,7 +70,7 @@ def test_a_fit_keeps_the_laws_that_are_done(run, monkeypatch, tmp_path):
     assert {row["law"] for row in rows} == {"exact", "coulomb"}
 
 
-@pytest.mark.parametrize(("after", "kept"), [(10, True), *longer((9, False))])
+@pytest.mark.parametrize(("after", "kept"), longer((10, True), (9, False)))
 def test_a_bootstrap_keeps_its_samples_if_they_are_enough(run, monkeypatch, after, kept):
     monkeypatch.setattr(estimation, "FEWEST", 10)
     again = interrupting(estimation._solved_again, after)

@@ -112,6 +112,7 @@ def test_effects_that_are_alike_are_not_told_apart():
     assert found["friction_coefficient"] == pytest.approx(0.1 * 2.0 / 1.9, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_single_number_of_a_quantity_needs_its_error():
     """It would be met to the last digit, whatever the others say."""
     one, three = np.array([np.nan, -120.0, np.nan]), GRAZING[:3]

@@ -194,6 +194,7 @@ def test_columns_beside_a_scene_of_vectors_are_refused():
         fit(data, met.scene)
 
 
+@pytest.mark.slow
 def test_a_spinning_ball_that_is_struck():
     """Its surface moves against its spin, as the convention of spins that add to slip has it."""
     turning = columns(OTHER)

@@ -5,7 +5,6 @@ import re
 from functools import cached_property
 
 import attrs
-import pytest
 
 import contactlab
 from contactlab import contracts, shapes
@@ -66,12 +65,12 @@ def undocumented(value, owner=None):
     return [name for name in parameters(value) if name not in told]
 
 
-@pytest.mark.parametrize(("name", "value", "owner"), entries())
-def test_a_public_name_is_documented(name, value, owner):
-    text = value.func.__doc__ if isinstance(value, cached_property) else value.__doc__
-    assert text, f"{name} has no docstring"
-    assert text.strip().partition("\n\n")[0].endswith((".", ":"))
-    assert undocumented(value, owner) == []
+def test_every_public_name_is_documented():
+    for name, value, owner in entries():
+        text = value.func.__doc__ if isinstance(value, cached_property) else value.__doc__
+        assert text, f"{name} has no docstring"
+        assert text.strip().partition("\n\n")[0].endswith((".", ":")), name
+        assert undocumented(value, owner) == [], name
 
 
 def test_all_of_the_public_names_are_looked_at():

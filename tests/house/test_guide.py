@@ -89,13 +89,13 @@ def test_topics_are_the_files():
     assert sorted(path.stem for path in GUIDE.glob("*")) == sorted(PAGES)
 
 
-@pytest.mark.parametrize("topic", PAGES)
-def test_a_topic_begins_with_a_title_and_a_line_about_it(topic):
-    lines = text(topic).split("\n", 4)
-    assert lines[0].startswith("# ")
-    assert (lines[1], lines[3]) == ("", "")
-    assert lines[2].endswith(".")
-    assert summary(topic) == lines[2]
+def test_a_topic_begins_with_a_title_and_a_line_about_it():
+    for topic in PAGES:
+        lines = text(topic).split("\n", 4)
+        assert lines[0].startswith("# "), topic
+        assert (lines[1], lines[3]) == ("", ""), topic
+        assert lines[2].endswith("."), topic
+        assert summary(topic) == lines[2]
 
 
 @pytest.mark.parametrize("topic", PARTS)
@@ -117,10 +117,11 @@ def test_every_page_has_a_picture_that_exists(topic):
     assert [picture for picture in pictures if not (ROOT / picture).is_file()] == []
 
 
-@pytest.mark.parametrize("topic", PAGES)
-def test_lines_fit_a_terminal_but_for_tables_and_code(topic):
-    prose = re.sub(r"```.*?```", "", text(topic), flags=re.DOTALL).splitlines()
-    assert not [line for line in prose if len(line) > 120 and not line.startswith(("|", "!["))]
+def test_lines_fit_a_terminal_but_for_tables_and_code():
+    for topic in PAGES:
+        prose = re.sub(r"```.*?```", "", text(topic), flags=re.DOTALL).splitlines()
+        long = [line for line in prose if len(line) > 120 and not line.startswith(("|", "!["))]
+        assert long == [], topic
 
 
 @pytest.mark.parametrize(
@@ -253,10 +254,10 @@ def test_dois_are_well_formed():
     assert len(set(found)) > 10
 
 
-@pytest.mark.parametrize("topic", PAGES)
-def test_topics_named_in_the_guide_exist(topic):
-    named = re.findall(r"`contactlab guide ([a-z0-9-]+)", text(topic))
-    assert set(named) <= set(PAGES)
+def test_topics_named_in_the_guide_exist():
+    for topic in PAGES:
+        named = re.findall(r"`contactlab guide ([a-z0-9-]+)", text(topic))
+        assert set(named) <= set(PAGES), topic
 
 
 def test_every_status_is_explained():

@@ -291,6 +291,7 @@ def test_where_it_slips_throughout_or_does_not_rebound_psi2_is_in_closed_form(ps
     assert psi2(psi1 * 2.0 * chi, np.maximum(chi, 0.5), 0.0) == pytest.approx(0.0, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_small_restitutions_lead_to_none(psi2):
     """That at 0.004 is half way from e = 0 to 0.008; springs meet it there."""
     values = (0.4, 1.4, 3.0), (0.0, 0.004, 0.008, 0.00801), np.linspace(0.05, 0.95, 19)

@@ -78,7 +78,7 @@ def test_pure_spin_of_any_size_is_that_of_the_integrals(seed):
     assert sigma1 - pure(sigma1, chi_t) == pytest.approx(loss, rel=2e-3)
 
 
-@pytest.mark.parametrize(("sigma1", "chi_t", "sigma2"), [BEYOND[0], *longer(*BEYOND[1:])])
+@pytest.mark.parametrize(("sigma1", "chi_t", "sigma2"), longer(*BEYOND))
 def test_beyond_a_stuck_disc_springs_are_no_more_exact(sigma1, chi_t, sigma2):
     assert pure(sigma1, chi_t, rings=64) == pytest.approx(sigma2, abs=1e-3)
 

@@ -109,6 +109,7 @@ def test_gross_slip_over_thornton_is_exact():
     assert psi2(law, psi1, CHI, springs=20) == pytest.approx(expected, abs=1e-8)
 
 
+@pytest.mark.slow
 def test_gross_slip_over_walton_and_braun_is_reached_asymptotically():
     """Stuck until zeta = (0.8/psi)²: psi2 is more by 0.2 chi (0.8/psi1)⁴, to leading order."""
     psi1, e = np.array([5.5, 7.0]), 0.7

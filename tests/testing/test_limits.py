@@ -7,6 +7,7 @@ import attrs
 import pytest
 
 from contactlab.testing import CheckFailedError, Verdict, checks_for, examine, limits
+from tests.longer import longer
 from tests.testing.fresh_sound import HardSphere, Press, Slider
 from tests.testing.made import checked
 
@@ -68,10 +69,12 @@ def _looks_often(monkeypatch):
     ("law", "name", "words"),
     [
         (Hangs(), "odd_in_slip", "in a path of 192 steps at step 1, in Hangs.advance, line "),
-        (
-            Hangs(),
-            "impact_odd",
-            "in an impact, psi1 = 0.01, chi = 0.4 (Hangs by Symplectic), in Hangs.",
+        *longer(
+            (
+                Hangs(),
+                "impact_odd",
+                "in an impact, psi1 = 0.01, chi = 0.4 (Hangs by Symplectic), in Hangs.",
+            )
         ),
         (Sleeps(), "impact_odd", "in an impact, psi1 = 0.01, chi = 0.4 (as whole impacts), in Sle"),
         (Press(), "contacts", ""),
