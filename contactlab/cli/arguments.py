@@ -6,6 +6,7 @@ import argparse
 import contextlib
 import json
 import math
+import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -97,7 +98,7 @@ def file_of(*suffixes: str) -> Callable[[str], Path]:
 def folder_of(text: str) -> Path:
     """Return the path of a folder for files, or refuse a name that is empty, or that of a file."""
     path = Path(text)
-    if not text or (path.exists() and not path.is_dir()):
+    if not text or (os.path.exists(path) and not os.path.isdir(path)):
         what = "is a file" if text else "is no name"
         raise argparse.ArgumentTypeError(f"{text!r}: {what}; give a folder")
     return path
