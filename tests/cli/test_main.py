@@ -133,7 +133,7 @@ def test_interrupted_sweep_reports_what_is_done(tmp_path):
         (["plugins", "lst"], "did you mean 'list'?"),
         (["run", "--psi", "1", "--chi", "1"], "contactlab run: error: unrecognized"),
         (["sweep", "--psi1", "0:1:3", "--chi", "1", "--csv", "out.csv"], "--out"),
-        (["figures", "--out", __file__], "cannot make the folder"),
+        (["figures", "--out", __file__], "is a file; give a folder"),
         (["figures"], "the following arguments are required: --out"),
         (["plugins"], "the following arguments are required: list|show|check"),
     ],
