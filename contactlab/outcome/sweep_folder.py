@@ -19,7 +19,13 @@ from contactlab.contracts.status import Status
 from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import attributes_told, nearest
 from contactlab.outcome.answer import Checked
-from contactlab.outcome.chunk_files import DAMAGED, abouts_in, columns_of, refuse_damaged
+from contactlab.outcome.chunk_files import (
+    DAMAGED,
+    abouts_in,
+    columns_of,
+    refuse_damaged,
+    refuse_file,
+)
 from contactlab.outcome.chunk_forms import COLUMN_OF_STATUS, FORMS, NPZ, About
 from contactlab.outcome.result import ImpactResult
 
@@ -71,6 +77,15 @@ def _told(same: list[tuple[list[float], str, About]], total: int) -> str:
     return f"impacts {about.first} to {about.stop}: {sentence}{others}"
 
 
+def _stamp(path: Path) -> tuple[int, ...]:
+    """Return what changes when a file is written; nothing of one that is not there."""
+    try:
+        status = os.stat(path)
+    except OSError:
+        return ()
+    return status.st_ino, status.st_size, status.st_mtime_ns
+
+
 @attributes_told
 class SweepFolder(Checked):
     """The finished chunks of ``sweep(..., into=folder)``, read by columns and chunks.
@@ -115,7 +130,9 @@ class SweepFolder(Checked):
     @cached_property
     def _abouts(self) -> list[tuple[Path, About]]:
         """The finished chunks in order."""
-        return abouts_in(self.path, self._form)
+        found = abouts_in(self.path, self._form)
+        self._stamps = {path: _stamp(path) for path, _ in found}
+        return found
 
     @cached_property
     def impacts(self) -> int | None:
@@ -175,6 +192,9 @@ class SweepFolder(Checked):
                 remedy = f"{nearest(name, self.units)}known: {known}"
                 raise refuse("column", name, "is not a column of the sweep", remedy)
         for path, about in self._abouts:
+            if _stamp(path) != self._stamps[path]:  # by another sweep, maybe
+                rule = "was written or removed after this folder was opened"
+                raise refuse_file("path", path, rule, f"open {self.path} again")
             with columns_of(path, self._form, self._names) as content:
                 columns = {
                     name: np.broadcast_to(content[name], about.chunk.size) for name in wanted

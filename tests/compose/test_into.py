@@ -325,6 +325,18 @@ def test_a_damaged_file_is_told(tmp_path):
         (target / name).unlink()
 
 
+def test_an_open_folder_reads_no_other_sweep(tmp_path):
+    """Its words are those of the sweep that it was opened with."""
+    target = tmp_path / "swept"
+    folder = Simulation(**RIGID).sweep(scene(), into=target).check()
+    shutil.rmtree(target)
+    with pytest.raises(ValueError, match=r"impacts-0-150.npz': was written or removed .*; open"):
+        folder["psi2"]
+    Simulation(tangential="frictionless").sweep(scene(), into=target)
+    with pytest.raises(ValueError, match=r"impacts-0-150.npz': was written or removed .*; open"):
+        folder["psi2"]
+
+
 def test_files_of_two_sweeps_are_not_read_as_one(tmp_path):
     simulation = Simulation(**RIGID)
     simulation.sweep(parts(), into=tmp_path / "one")
