@@ -174,10 +174,10 @@ def turned(body: Sphere | RigidBody, *moments: Vector) -> list[Vector]:
     return [tuple(each / inertia for each in moment) for moment in moments]
 
 
-def inverse_mass_of(encounter: _Meeting, normal: Vector, axes: Sequence[Vector]) -> list[list[Any]]:
+def inverse_mass_of(bodies: Sequence[Side], axes: Sequence[Vector]) -> list[list[Any]]:
     """Return the rows of W in 1/kg along unit vectors at right angles."""
     W: list[list[Any]] = [[0.0 for _ in axes] for _ in axes]
-    for _, body, arm, _ in sides(encounter, normal):
+    for _, body, arm, _ in bodies:
         # an impulse p turns the body by J⁻¹ (arm x p), and moves the contact by that x arm
         moments = [cross(arm, axis) for axis in axes]
         turns = turned(body, *moments)
@@ -188,10 +188,10 @@ def inverse_mass_of(encounter: _Meeting, normal: Vector, axes: Sequence[Vector])
     return W
 
 
-def relative_velocity(encounter: _Meeting, normal: Vector) -> Vector:
+def relative_velocity(encounter: _Meeting, bodies: Sequence[Side]) -> Vector:
     """Return the velocity in m/s of the first body over the target at the contact."""
     velocity = difference(encounter.velocity, encounter.target_velocity)
-    for name, _, arm, sense in sides(encounter, normal):
+    for name, _, arm, sense in bodies:
         spin = getattr(encounter, f"{name}spin")
         if moving(spin):
             rim = cross(components(spin), arm)
@@ -214,13 +214,13 @@ def spin_about(encounter: _Meeting, normal: Sequence[Real]) -> Any:
     return np.broadcast_to(omega, encounter.shape) if encounter.shape else omega
 
 
-def _spin_alone(encounter: _Meeting, n: Vector, round_: Mask) -> Any:
+def _spin_alone(encounter: _Meeting, bodies: Sequence[Side], n: Vector, round_: Mask) -> Any:
     """Return the spin about the normal that a couple alone moves; ``round_`` where it may.
 
     It is 0 where a body is off centre, or the normal is no principal axis of its inertia.
     """
     spin: Any = chosen(round_, spin_about(encounter, n), 0.0)
-    for _, body, arm, _ in sides(encounter, n):
+    for _, body, arm, _ in bodies:
         if isinstance(body, RigidBody) and some(spin != 0.0):
             for vector in (arm, *turned(body, n)):
                 least = inverse_mass.ROUNDING * square_root(dot(vector, vector))
@@ -229,10 +229,10 @@ def _spin_alone(encounter: _Meeting, n: Vector, round_: Mask) -> Any:
     return spin if some(spin != 0.0) else 0.0
 
 
-def turning_compliance(encounter: _Meeting, normal: Vector, radius: Real) -> Any:
+def turning_compliance(bodies: Sequence[Side], normal: Vector, radius: Real) -> Any:
     """Return radius² n·J⁻¹·n of both bodies, in 1/kg."""
     total: Any = 0.0
-    for _, body, _, _ in sides(encounter, normal):
+    for _, body, _, _ in bodies:
         if isinstance(body, Sphere):
             total = total + inverse_turning_mass(body, radius)
         else:
@@ -242,7 +242,7 @@ def turning_compliance(encounter: _Meeting, normal: Vector, radius: Real) -> Any
 
 def meeting_of_bodies(encounter: _Meeting, normal: Vector) -> Contact:
     """Return directions and speeds at the contact of bodies that are no spheres."""
-    velocity = relative_velocity(encounter, normal)
+    velocity = relative_velocity(encounter, sides(encounter, normal))
     approach = dot(velocity, normal)
     slip = [v - approach * n for v, n in zip(velocity, normal, strict=True)]
     size = square_root(dot(slip, slip))
@@ -265,14 +265,14 @@ def _tangents(normal: Vector) -> tuple[Vector, Vector]:
     return one, cross(normal, one)
 
 
-def frame(encounter: _Meeting, normal: Vector) -> Frame:
+def frame(encounter: _Meeting, bodies: Sequence[Side], normal: Vector) -> Frame:
     """Return the frame with t1 along W_nt, or along the slip without coupling; bodies approach.
 
     For an ellipse t1 is the axis that holds both, or else the major one.
     """
     one, other = _tangents(normal)
-    W = inverse_mass_of(encounter, normal, (normal, one, other))
-    velocity = relative_velocity(encounter, normal)
+    W = inverse_mass_of(bodies, (normal, one, other))
+    velocity = relative_velocity(encounter, bodies)
     approach = dot(velocity, normal)
     if not every(approach >= LEAST):
         raise encounter.separate()
@@ -397,8 +397,8 @@ def _along_an_axis(
 
 def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
     """Return the scene in numbers; it keeps the inverse mass if any impact needs it."""
-    shape = encounter.shape
-    axes, W, (speed, *slip), gap = frame(encounter, normal)
+    shape, bodies = encounter.shape, sides(encounter, normal)
+    axes, W, (speed, *slip), gap = frame(encounter, bodies, normal)
     contact = _elastic(encounter, gap)
     ways = inverse_mass.ways(W, speed, slip, contact.get("cross_stiffness_ratio", 1.0))
     central = ways == inverse_mass.CENTRAL
@@ -413,9 +413,9 @@ def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
         along, entries = hypotenuse(*slip), {}
         unit = along + (along == 0.0)
         tangential = inverse_mass.along(W, (slip[0] + (along == 0.0)) / unit, slip[1] / unit)
-    spin = _spin_alone(encounter, normal, chosen(gap.elliptic, False, central))
+    spin = _spin_alone(encounter, bodies, normal, chosen(gap.elliptic, False, central))
     if some(spin != 0.0):
-        turning = turning_compliance(encounter, normal, contact["radius"])
+        turning = turning_compliance(bodies, normal, contact["radius"])
         contact |= {"inverse_spin_mass": turning}
     pair = Pair(normal_mass=1.0 / W[0][0], tangential_mass=1.0 / tangential, **contact)
     entries |= {"encounter": encounter, "frame": joined(axes, shape), "normal_spin": spin}

@@ -17,6 +17,7 @@ from contactlab.impact.body_contact import (
     inverse_mass_of,
     meeting_of_bodies,
     scene_of_bodies,
+    sides,
     spin_about,
 )
 from contactlab.impact.material import Material
@@ -326,7 +327,7 @@ class Encounter:
             return ""
         one: Any = self.take(index)
         contact = one.meeting()
-        (pressed, coupling), _ = inverse_mass_of(one, contact.normal, contact[:2])
+        (pressed, coupling), _ = inverse_mass_of(sides(one, contact.normal), contact[:2])
         lam = one.friction_coefficient * coupling / pressed
         if lam >= -1.0 or not contact.slip:
             return ""

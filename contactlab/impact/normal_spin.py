@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlab.impact.body_contact import spin_about, turning_compliance
+from contactlab.impact.body_contact import sides, spin_about, turning_compliance
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.impact.table import between_nodes, read_rows
@@ -142,7 +142,8 @@ def normal_spin(scene: Scene, *, answered: Mask = False) -> NormalSpin | None:
         normal = components(scene.frame[..., 0, :])
         omega = spin_about(scene.encounter, normal)
         if np.any(omega):
-            inverse = turning_compliance(scene.encounter, normal, scene.pair.radius)
+            bodies = sides(scene.encounter, normal)
+            inverse = turning_compliance(bodies, normal, scene.pair.radius)
     acts = (np.asarray(omega) != 0.0) & (np.asarray(scene.friction_coefficient) > 0.0)
     acts = acts & ~(answered & np.not_equal(scene.normal_spin, 0.0))
     acts = np.broadcast_to(acts, scene.shape)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from operator import attrgetter
 from typing import Any
 
 import attrs
@@ -191,11 +192,9 @@ class Scene(Batches):
 
     def _shapes(self) -> dict[str, tuple[int, ...]]:
         """Return the batch shape of every number that varies."""
-        shapes = {
-            name: number.shape
-            for name, number in self.numbers().items()
-            if isinstance(number, np.ndarray)
-        }
+        shapes = {}
+        if np.ndarray in map(type, (*self._columns(), *self._yield_stresses().values())):
+            shapes = {name: np.shape(number) for name, number in self.numbers().items()}
         if self.inverse_mass is not None:
             shapes["inverse_mass"] = self.inverse_mass.shape[:-2]
             if not self.planar:
@@ -220,20 +219,27 @@ class Scene(Batches):
         normal, along, across = (entry(W, k, k) for k in range(3))
         tangential = along if self.planar else 0.5 * (along + across)
         masses = {"normal_mass": 1.0 / normal, "tangential_mass": 1.0 / tangential}
+        if not self.shape and [getattr(self.pair, name) for name in masses] == [*masses.values()]:
+            return  # as of any two bodies
         masses = {name: batch.locked(mass) for name, mass in masses.items()}
         object.__setattr__(self, "pair", batch.changed(self.pair, **masses))
 
     def numbers(self) -> dict[str, Real]:
         """Return every number of the scene and of its pair, by name."""
-        pair = self.pair
-        numbers = {name: getattr(pair, name) for name in OF_PAIR}
-        for name in OF_SCENE:
-            numbers[name] = getattr(self, name)
-        for name in ("sphere", "target"):
-            body = getattr(self, name)
+        columns = zip((*OF_PAIR, *OF_SCENE), self._columns(), strict=True)
+        return dict(columns) | self._yield_stresses()
+
+    def _columns(self) -> tuple[Real, ...]:
+        """Return the numbers of the pair and of the scene, in the order of their names."""
+        return (*_of_pair(self.pair), *_of_scene(self))
+
+    def _yield_stresses(self) -> dict[str, Real]:
+        """Return the yield stresses that are known, by name."""
+        stresses = {}
+        for name, body in (("sphere", self.sphere), ("target", self.target)):
             if body is not None and body.material.yield_stress is not None:
-                numbers[f"{name}.material.yield_stress"] = body.material.yield_stress
-        return numbers
+                stresses[f"{name}.material.yield_stress"] = body.material.yield_stress
+        return stresses
 
     def _check_scales(self) -> None:
         """Refuse scenes whose numbers overflow, or lose digits by underflow."""
@@ -482,6 +488,7 @@ class Scene(Batches):
 #: Numbers of a pair and of a scene.
 OF_PAIR = tuple(field.name for field in attrs.fields(Pair))
 OF_SCENE = tuple(field.name for field in attrs.fields(Scene) if "unit" in field.metadata)
+_of_pair, _of_scene = attrgetter(*OF_PAIR), attrgetter(*OF_SCENE)
 #: Units of the entries from which scenes are made.
 UNITS: dict[str, str] = {
     field.name: field.metadata["unit"]
