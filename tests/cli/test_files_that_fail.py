@@ -135,10 +135,10 @@ KHARAZ = EXAMPLES / "kharaz2001.toml"
         ("sweep", "--psi1", "0:1:3", "--chi", 1, "--csv", "--figure", "a.pdf"),
         ("compare", "--psi1", 1, "--chi", 1, "--figure", "a.svg"),
         ("bench", "--quick", "--law", "tangential.coulomb", "--csv", "a.csv"),
-        ("report", EXAMPLES / "steel_ball.toml", "--out", "a.html"),
         ("explore", "--out", "a.html"),
         ("kernel", "--out", "."),
         *longer(
+            (("report", EXAMPLES / "steel_ball.toml", "--out", "a.html"),),
             (("fit", KHARAZ, "--bootstrap", 0, "--csv", "a.csv"),),
             (("stability", "--quick", "--law", "tangential.walton", "--csv", "a.csv"),),
             (("figures", "--only", 2, "--tangential", "coulomb", "--out", "."),),

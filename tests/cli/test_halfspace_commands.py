@@ -13,6 +13,7 @@ from tests.cli.conftest import EXAMPLES
 BALL, MEASURED = EXAMPLES / "steel_ball.toml", EXAMPLES / "kharaz2001.toml"
 
 
+@pytest.mark.slow
 def test_compare(run):
     ran = run("compare", "--psi1", "0:3:4", "--chi", 1.44, "--tangential", "fronts,halfspace")
     assert ran.status == 0

@@ -162,6 +162,7 @@ def test_an_impact_that_fails_in_a_march_takes_no_other_with_it(scene, integrato
     assert result.normal_restitution[[0, 2]] == pytest.approx(1.0, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_one_of_two_thousand_that_raises_in_a_march():
     laws = Simulation(tangential=FailsAtOne(), integrator="symplectic")
     for name in ("planar", "mixed"):

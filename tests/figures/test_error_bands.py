@@ -88,6 +88,7 @@ def test_bands_of_laws_over_a_sweep_lie_around_their_own_curves(compared):
     check_bands(axes, compared, {name: compared.values("psi2", name) for name in ROUGH})
 
 
+@pytest.mark.slow
 def test_bands_of_all_laws_lie_around_values_above_and_differences_below(compared):
     upper, lower = all_laws(*Figure().subplots(2), compared, "psi2")
     check_bands(upper, compared, {name: compared.values("psi2", name) for name in ROUGH})

@@ -41,6 +41,7 @@ def lossy(restitution, angles=WIDE):
     return laws.sweep(at_angles(STEEL, STEEL, 0.12, angles)).check()
 
 
+@pytest.mark.slow
 def test_a_caution_that_both_laws_have_is_told_once():
     unlike = at_angles(STEEL, Material.named("soda-lime glass"), 0.12)
     run = Simulation(normal=create("normal.viscoelastic", restitution=0.9)).sweep(unlike)

@@ -30,6 +30,7 @@ def test_a_spin_without_its_sign_is_found():
     assert fit(spins(1.0), BODIES).notes == ()
 
 
+@pytest.mark.slow
 def test_a_slip_is_told_under_any_law():
     """Tried by the table of the exact law, and judged by the law of the fit."""
     laws = Simulation(tangential="coulomb")
@@ -50,6 +51,7 @@ def test_an_impact_far_from_the_others_is_found():
     assert abs(one.robust - 0.12) < abs(one.value - 0.12)
 
 
+@pytest.mark.slow
 def test_without_the_outliers_the_fit_is_the_one_that_the_sentence_gives():
     values = restitution(0.12) + SCATTER
     values[[2, 7]] += 0.2, -0.1

@@ -171,6 +171,7 @@ def test_tabor_says_which_theory():
     assert "Tabor" not in str(Simulation(normal=jkr(1.0), tangential="springs").plan(scene()))
 
 
+@pytest.mark.slow
 def test_the_books_contain_the_energy_of_the_shear_that_is_lost_as_jkr_breaks():
     """That energy is 0.046 of the energy at the start, beside psi2 of the half-space."""
     scene = Scene.nondimensional(psi1=1.2, chi=3.0)

@@ -70,7 +70,7 @@ def test_pure_spin_of_the_half_space(sigma1, chi_t, sigma2):
     assert pure(sigma1, chi_t, rings=64) == pytest.approx(sigma2, abs=1e-4)
 
 
-@pytest.mark.parametrize("seed", [0, *longer(1, 2, 3)])
+@pytest.mark.parametrize("seed", longer(0, 1, 2, 3))
 def test_pure_spin_of_any_size_is_that_of_the_integrals(seed):
     draw = np.random.default_rng(seed)
     sigma1, chi_t = 10.0 ** draw.uniform(-1.0, 0.5), 10.0 ** draw.uniform(-4.0, -1.0)
@@ -259,7 +259,7 @@ def test_options_that_do_not_answer_spin_say_so(options):
         result.check(cautions=True)
 
 
-@pytest.mark.parametrize("seed", [1, *longer(*range(2, 8))])
+@pytest.mark.parametrize("seed", longer(*range(1, 8)))
 def test_random_impacts_gain_no_energy_and_keep_their_signs(seed):
     draw = np.random.default_rng(seed)
     count = 4

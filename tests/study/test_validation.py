@@ -74,6 +74,7 @@ def test_psi2_that_laws_are_checked_against_is_that_of_the_table():
         assert rebound(validation.REFERENCE_PSI1, chi) == pytest.approx(values, abs=2e-10)
 
 
+@pytest.mark.slow
 def test_only_the_exact_law_has_ten_digits_of_psi2():
     found = {
         name: validation._reference(name, options, integrator, settings, bound)
