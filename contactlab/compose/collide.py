@@ -145,8 +145,6 @@ def _at_speeds(restitution: Callable[..., Numbers], encounter: Encounter) -> Any
     speed = np.where(apart, 1.0, approach)
     found = restitution(speed if shape else float(speed))
     check_place("restitution", found)
-    if hasattr(found, "_mask") and np.ma.is_masked(found):
-        raise refuse("restitution", found, "must have no masked entries", "fill or drop them")
     each = np.array(_spread(found, shape))
     if apart.any():
         each[apart] = 1.0

@@ -151,7 +151,11 @@ def known(library: str, name: str, value: Any, rule: Rule, remedy: str = "") -> 
         raise refuse(name, value, other, "give arrays of one package")
     if not library_of(value):
         return real(name, value, rule=rule, remedy=remedy, empty=True)
-    if (numbers := numbers_of(value)) is not None:
+    try:
+        numbers = numbers_of(value)
+    except TypeError as error:  # of sparse tensors
+        raise refuse(name, value, f"cannot be read: {error}", remedy) from error
+    if numbers is not None:
         return real(name, numbers, rule=rule, remedy=remedy, empty=True)
     if any(word in str(value.dtype) for word in NO_NUMBERS):  # it is traced, its type is not
         raise refuse(name, value, "must be a real number", remedy)

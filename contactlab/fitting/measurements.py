@@ -206,9 +206,6 @@ def _from_columns(
 def column_of(text: str, content: object, *, gaps: bool) -> Array:
     """Return the numbers of a column, shape (n,); NaN only if it may have gaps."""
     check_place(text, content)
-    if hasattr(content, "_mask") and np.ma.is_masked(content):
-        remedy = "drop them, or fill them with NaN where nothing was measured"
-        raise refuse(text, content, "must have no masked entries", remedy)
     try:
         values = np.atleast_1d(np.asarray(content))
     except Exception:  # rows of unequal length, sparse arrays, those of other devices

@@ -34,7 +34,9 @@ class Rule(NamedTuple):
 
 
 #: Classes whose objects have no labels: ``real`` does not look for any.
-UNLABELLED = frozenset({np.ndarray, list, tuple, int})
+UNLABELLED = frozenset({np.ndarray, list, tuple, int, float, np.float64})
+#: Entries of a list whose labels are looked for: rows are few, and of one class.
+FEW_ENTRIES = 8
 
 FINITE = Rule(lambda value: value == value, "must be a finite real number")
 POSITIVE = Rule(lambda value: value > 0.0, "must be positive and finite")
@@ -112,13 +114,16 @@ def real(
         raise refuse(argument, value, "must be a real number", remedy)
     if type(value) not in UNLABELLED:
         check_place(argument, value)
+    elif isinstance(value, list | tuple):
+        for entry in value[:FEW_ENTRIES]:
+            if type(entry) not in UNLABELLED:
+                check_place(argument, entry)
     try:
         array = np.asarray(value)
     except ValueError:
         raise refuse(argument, value, "must be a number or a regular array", remedy) from None
-    # what has no mask is not masked, and numpy.ma takes 8 ms to import
-    if hasattr(value, "_mask") and np.ma.is_masked(value):
-        raise refuse(argument, value, "must have no masked entries", "fill or drop them")
+    except Exception as error:  # of sparse arrays, of other devices, of types that NumPy has not
+        raise refuse(argument, value, f"cannot be read by NumPy: {error}", remedy) from error
     if array.dtype.kind not in "iuf":
         raise refuse(argument, value, "must be a real number", remedy)
     if array.size == 0 and not empty:
@@ -137,8 +142,12 @@ def real(
 
 
 def check_place(argument: str, value: object) -> None:
-    """Refuse an array that has labels, or no numbers yet: it must not be read by position."""
-    if why := misplaced(value):
+    """Refuse an array whose labels, unit or mask would be lost, or that has no numbers yet."""
+    try:
+        why = misplaced(value)
+    except TypeError as error:  # of sparse tensors
+        raise refuse(argument, value, f"cannot be read by NumPy: {error}") from error
+    if why:
         raise refuse(argument, value, *why)
 
 
@@ -204,7 +213,7 @@ def _partly_known(value: object) -> Array | None:
         return None
     try:
         numbers = np.asanyarray(value)  # a mask stays, to be refused
-    except ValueError:  # lists of several lengths, refused as all that are no numbers
+    except Exception:  # lists of several lengths, refused as all that are no numbers
         return None
     some = numbers.ndim > 0 and numbers.dtype.kind == "f" and bool(np.isnan(numbers).any())
     return numbers if some else None

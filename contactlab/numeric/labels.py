@@ -15,8 +15,19 @@ LIBRARIES = {
     "xarray": "xarray", "pandas": "pandas", "dask": "dask", "jax": "jax", "jaxlib": "jax",
     "torch": "torch",
 }  # fmt: skip
+#: Packages of tables, which have columns with names as those of pandas have.
+TABLES = ("polars", "pyarrow")
+#: Attributes of quantities, of astropy and of pint, by the attribute that holds the unit.
+QUANTITIES = {"unit": "to_value", "units": "magnitude"}
+#: Units of numbers without one.
+NO_UNIT = ("", "dimensionless", "None")
 #: Attributes of the arrays of packages that have other classes too.
 ONLY_OF = {"pandas": "iloc", "torch": "detach"}
+#: The refusal of a table.
+OF_COLUMNS = (
+    "has columns with names, but arrays are paired by position here",
+    "give numbers in the order that is meant: .to_numpy()",
+)
 #: The refusal of traced arrays elsewhere.
 ONLY_ARRAYS = "of scenes and laws only rebound and Collision.of_arrays take traced arrays"
 
@@ -61,14 +72,15 @@ def misplaced(value: Any) -> tuple[str, str] | None:
     index counts 0, 1, 2, ... has the same pairs by position and by label.
     """
     library = library_of(value)
+    if not library:
+        return _unread(value)
     if library == "xarray" and getattr(value, "dims", None) != ():
         dimensions = ", ".join(map(str, getattr(value, "dims", ())))
         rule = f"has dimensions with names ({dimensions}), but arrays are paired by position here"
         return rule, "give numbers in the order that is meant: .values"
     if library == "pandas":
         if value.ndim > 1:
-            rule = "has columns with names, but arrays are paired by position here"
-            return rule, "give numbers in the order that is meant: .to_numpy()"
+            return OF_COLUMNS
         if not numbered(value.index):
             rule = "has an index other than 0, 1, 2, ..., but arrays are paired by position here"
             return rule, "give numbers in the order that is meant: .to_numpy()"
@@ -81,4 +93,21 @@ def misplaced(value: Any) -> tuple[str, str] | None:
     if library == "dask":
         remedy = "give its numbers: .compute(); of dask arrays only rebound returns dask arrays"
         return "is not computed yet", remedy
+    return None
+
+
+def _unread(value: Any) -> tuple[str, str] | None:
+    """Return why NumPy must not read an object: a unit, a mask or names would be lost."""
+    for name, of_quantity in QUANTITIES.items():
+        unit = str(getattr(value, name, ""))
+        if unit not in NO_UNIT and (hasattr(value, of_quantity) or isinstance(value, np.ndarray)):
+            remedy = (
+                "give plain numbers in SI units: .to_value(unit) of astropy, .m_as(unit) of pint"
+            )
+            return f"has the unit {unit}, which would be lost here", remedy
+    # what has no mask is not masked, and numpy.ma takes 8 ms to import
+    if hasattr(value, "_mask") and np.ma.is_masked(value):
+        return "must have no masked entries", "fill or drop them"
+    if type(value).__module__.partition(".")[0] in TABLES and hasattr(value, "columns"):
+        return OF_COLUMNS
     return None

@@ -44,6 +44,8 @@ def _checked(value: Numbers, field: attrs.Attribute[object]) -> Array:
     if type(numbers) in (list, tuple) and len(numbers) == 3:  # three plain numbers, the fast path
         x, y, z = numbers
         plain = type(x) in _PLAIN and type(y) in _PLAIN and type(z) in _PLAIN
+        if type(x) is int and type(value) is np.ndarray:
+            plain = value.dtype.kind in "iu"  # dates are whole numbers too
         within = plain and -LARGEST <= x <= LARGEST and -LARGEST <= y <= LARGEST
         if within and -LARGEST <= z <= LARGEST:
             return three(x, y, z)

@@ -50,7 +50,36 @@ OF_PANDAS = {
     "column": lambda pandas: pandas.DataFrame({"a": VALUES})["a"],
 }
 KINDS = [*MANY, *(pytest.param(kind, marks=needs_pandas) for kind in OF_PANDAS)]
+
+
+class WithUnit(np.ndarray):
+    """An array as those of astropy and unyt, which NumPy reads as plain numbers."""
+
+    unit = "mm"
+
+
+class Quantity:
+    """A number as those of pint, which NumPy reads as a plain one."""
+
+    units, magnitude = "millimeter", 1.25
+
+    def __array__(self, *_, **__):
+        return np.array(self.magnitude)
+
+
+class Unreadable:
+    """An array of another device, or of a type that NumPy has not."""
+
+    def __array__(self, *_, **__):
+        raise TypeError("implicit conversion is not allowed")
+
+
 REFUSED = {
+    "with a unit": np.array(VALUES).view(WithUnit),
+    "quantity": Quantity(),
+    "quantities": 3 * [Quantity()],
+    "unreadable": Unreadable(),
+    "rows of masked": 2 * [np.ma.array(VALUES, mask=[0, 1, 0])],
     "masked": np.ma.array(VALUES, mask=[0, 1, 0]),
     "object": np.array(["a", 1.0, None], dtype=object),
     "complex": _PLAIN + 0j,
@@ -222,9 +251,10 @@ def test_a_vector_beyond_the_range_is_refused_in_one_sentence():
             Encounter(BALL, PLATE, 0.2, normal=(0, 0, -1), velocity=given)
     many = np.array([VECTOR, VECTOR], np.float32)
     assert Encounter(BALL, PLATE, 0.2, normal=(0, 0, -1), velocity=many).shape == (2,)
-    masked = np.ma.array(VECTOR, mask=[0, 1, 0])
-    with pytest.raises(ValueError, match="velocity"):
-        Encounter(BALL, PLATE, 0.2, normal=(0, 0, -1), velocity=masked)
+    dates = np.array(3 * ["2020-01-01"], dtype="M8[ns]")
+    for bad in (np.ma.array(VECTOR, mask=[0, 1, 0]), dates, np.array(VECTOR).view(WithUnit)):
+        with pytest.raises(ValueError, match="velocity"):
+            Encounter(BALL, PLATE, 0.2, normal=(0, 0, -1), velocity=bad)
 
 
 @pytest.mark.parametrize("number", ["64", "64.0", "0-d", "int64"])
