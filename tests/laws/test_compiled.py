@@ -82,7 +82,9 @@ def test_heavy_impacts_are_within_the_error_that_is_declared(chi):
 
 
 @needs_library
-def test_one_impact_and_many_have_the_same_bits():
+@pytest.mark.parametrize("at_a_time", [7, 8192])
+def test_one_impact_and_many_have_the_same_bits(monkeypatch, at_a_time):
+    monkeypatch.setattr(compiled, "AT_A_TIME", at_a_time)
     scene = bodies(30, 3)
     many = Simulation().run(scene)
     for place in (0, 7, 29):
@@ -240,8 +242,9 @@ def test_histories_of_bodies_are_those_of_python(both):
         assert column[-1] == pytest.approx(getattr(other, name)[-1], abs=1e-10 * size)
 
 
-def test_what_computes_is_told(monkeypatch, capsys):
-    monkeypatch.setenv(compiled.VARIABLE, "0")
+@pytest.mark.parametrize("word", ["0", " Off"])
+def test_what_computes_is_told(monkeypatch, capsys, word):
+    monkeypatch.setenv(compiled.VARIABLE, word)
     assert main(["plugins", "show", "tangential.fronts"]) == 0
     assert "CONTACTLAB_COMPILED=0 leaves the compiled solver out" in capsys.readouterr().out
     assert compiled.library() is None

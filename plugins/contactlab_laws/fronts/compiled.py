@@ -29,6 +29,8 @@ LINEAR_BELOW = 1e-8
 #: Statuses of impacts without an answer; the last is that of all without a library, and of one
 #: whose memory finds no room: Python's solver follows them.
 UNSETTLED, OUTGROWN, MEMORY = 1, 2, 3
+#: Impacts of one call, a second at most: Ctrl-C is heard between two calls.
+AT_A_TIME = 8192
 #: Steps for which there is room at first.
 ROOM = 64
 #: Begin of words on an installation without the library.
@@ -53,12 +55,17 @@ def digest() -> str:
 
 def library() -> Any:
     """Return the library, or None where there is none or it is left out."""
-    return _library(os.environ.get(VARIABLE, "") != "0")[0]
+    return _library(_wanted())[0]
 
 
 def told() -> str:
     """Return in words whether the library is used, and why not."""
-    return _library(os.environ.get(VARIABLE, "") != "0")[1]
+    return _library(_wanted())[1]
+
+
+def _wanted() -> bool:
+    """Return whether the environment lets the library be used."""
+    return os.environ.get(VARIABLE, "").strip().lower() not in ("0", "false", "no", "off")
 
 
 @cache
@@ -115,6 +122,12 @@ def follow(
         steps; and 0, a place of ``LOST``, or ``MEMORY``, which is that of all without a library.
     """
     count = numbers.shape[1]
+    if count > AT_A_TIME:
+        begins = range(0, count, AT_A_TIME)
+        parts = [follow(numbers[:, k : k + AT_A_TIME], tolerance, most) for k in begins]
+        return np.concatenate([out for out, _ in parts], axis=1), np.concatenate(
+            [s for _, s in parts]
+        )
     rows = np.empty((12, count))  # numbers, ends and statuses: an address takes a microsecond
     rows[:4] = numbers
     out, status = rows[4:11], rows[11].view(np.intc)[:count]
