@@ -28,7 +28,8 @@ class CompiledHook(BuildHookInterface):
         """Compile the library; say so where that is not possible."""
         compiler = shlex.split(os.environ.get("CC") or "cc")  # it may have options, or a wrapper
         found = compiler and shutil.which(compiler[0])
-        if os.environ.get("CONTACTLAB_COMPILED") == "0" or not found:
+        wanted = os.environ.get("CONTACTLAB_COMPILED", "").strip().lower()
+        if wanted in ("0", "false", "no", "off") or not found:
             self.app.display_info("contactlab: no C compiler is used, the exact law is Python's")
             return
         root = Path(self.root)

@@ -124,10 +124,9 @@ def follow(
     count = numbers.shape[1]
     if count > AT_A_TIME:
         begins = range(0, count, AT_A_TIME)
-        parts = [follow(numbers[:, k : k + AT_A_TIME], tolerance, most) for k in begins]
-        return np.concatenate([out for out, _ in parts], axis=1), np.concatenate(
-            [s for _, s in parts]
-        )
+        parts = (follow(numbers[:, k : k + AT_A_TIME], tolerance, most) for k in begins)
+        outs, statuses = zip(*parts, strict=True)
+        return np.concatenate(outs, axis=1), np.concatenate(statuses)
     rows = np.empty((12, count))  # numbers, ends and statuses: an address takes a microsecond
     rows[:4] = numbers
     out, status = rows[4:11], rows[11].view(np.intc)[:count]
