@@ -15,7 +15,7 @@ import numpy as np
 
 from contactlab_laws.fronts.compiled import OUTGROWN, UNSETTLED
 from contactlab_laws.fronts.phases import DRAWN, GROSS, LOCKED, STICK, first_fall, step
-from contactlab_laws.fronts.series import ORDER, Laws, Rows, value
+from contactlab_laws.fronts.series import Laws, Rows, value
 from contactlab_laws.hertz.motion import scaled_motion, velocity_factor
 
 #: Where slip or stick ends with a smaller V, it ends with maximum compression.
@@ -121,7 +121,7 @@ class Impact:
 
     def _stuck(self) -> Part:
         """All sticks; the edge begins to slip where k, or its like of the other sign, is zero."""
-        event, (length,) = self._along(STICK, (0.0,))
+        event, (_, length) = self._along(STICK, (self.radius, 0.0))
         if abs(self.rate) < AT_REST:
             self.rate = 0.0
             event = int(self._at_rest())
@@ -178,7 +178,7 @@ class Impact:
             if rate > 0.0 >= last:
                 self.deepest = max(self.deepest, (left / press) ** 0.2)
         elif depth > 0.0 or rate > 0.0:
-            self._along(GROSS, (), stops)
+            self._along(GROSS, (0.0, 0.0), stops)
         self.radius, self.rate, self.margin = radius, last, margin + rise
         self.change, self.work = change, self.work + work
         self.deepest = max(self.deepest, radius)
@@ -271,9 +271,8 @@ class Impact:
     def _show(self, phase: int, rows: Rows, length: float) -> None:
         """Keep a step, if steps are kept."""
         if self.shown is not None:
-            stick = {STICK: rows[0], GROSS: [0.0] * (ORDER + 1)}.get(phase, rows[4])
             head = (self.phases, phase, self.sign, self.change, self.work, length)
-            self.shown.append([*head, *chain(*rows[:4], stick, rows[-1])])
+            self.shown.append([*head, *chain(*rows[:5], rows[-1])])
 
 
 def _hertz_time(press: float, left: float, *ends: tuple[float, float]) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -14,9 +15,8 @@ from contactlab_laws.fronts.series import (
     Rows,
     Series,
     along_drawn,
-    along_gross,
     along_locked,
-    along_stick,
+    along_whole,
     value,
 )
 
@@ -32,8 +32,8 @@ APART = 4e-15
 CAREFUL, LONGEST = 0.9, 1.0
 #: Error of a step over its velocity that is rounding: a jam may multiply velocities by 1e8.
 ROUNDING = 1e-14
-#: Parts of a step at whose ends events are looked for, and where a root has been found.
-LOOKS, ROOT_VALUE, ROOT_WIDTH, ROOT_CAP = 8, 1e-17, 1e-16, 80
+#: Parts of a step at whose ends events are looked for, and how far off a root may be.
+LOOKS, ROOT_WIDTH = 8, 1e-16
 #: Moves of Newton's method to where a dip is lowest.
 MOVES = 8
 
@@ -60,12 +60,12 @@ def step(
     """
     back = inmost = False
     if phase == STICK:
-        rows = along_stick(laws, state)
+        rows = along_whole(laws, state, sticks=True)
         # k, or its like of the other sign, falls below zero
         other = [rate - (margin - rate) for rate, margin in zip(rows[1], rows[2], strict=True)]
         events = [(rows[2], state[2] == 0.0), (other, False)]
     elif phase == GROSS:
-        rows = along_gross(laws, state)
+        rows = along_whole(laws, state, sticks=False)
         events = [_slip_stops(rows) if end else (rows[0], state[0] == 0.0)]
     else:
         if phase == DRAWN:
@@ -151,15 +151,14 @@ def fall(series: Series, end: float) -> float | None:
         t = width * look
         here = value(series, t)
         if here < 0.0:
-            return _root(series, t - width, t, before, here)
+            return _root(series, t - width, t, before)
         fell, falls = falls, here < before if look < LOOKS else _slopes(series, t)[0] < 0.0
         if (fell and not falls) or (look == LOOKS and here < before and not falls):
             # a dip, perhaps below zero, in this part or the one before
             start = max(t - 2.0 * width, 0.0)
             lowest = _lowest(series, start, t)
-            least = value(series, lowest)
-            if least < 0.0:
-                return _root(series, start, lowest, value(series, start), least)
+            if value(series, lowest) < 0.0:
+                return _root(series, start, lowest, value(series, start))
         before = here
     return None
 
@@ -184,20 +183,8 @@ def _lowest(series: Series, low: float, high: float) -> float:
     return t
 
 
-def _root(series: Series, a: float, b: float, at_a: float, at_b: float) -> float:
-    """Return the root between a and b by the Illinois method."""
-    if at_a <= 0.0:
-        return a
-    side, t = 0, a
-    for _ in range(ROOT_CAP):
-        t = (at_a * b - at_b * a) / (at_a - at_b)
-        here = value(series, t)
-        if abs(here) < ROOT_VALUE or b - a < ROOT_WIDTH:
-            break
-        if here > 0.0:
-            a, at_a, at_b = t, here, 0.5 * at_b if side > 0 else at_b
-            side = 1
-        else:
-            b, at_b, at_a = t, here, 0.5 * at_a if side < 0 else at_a
-            side = -1
-    return t
+def _root(series: Series, a: float, b: float, at_a: float) -> float:
+    """Return the root between a and b, where the series is negative at b."""
+    from scipy.optimize import brentq  # few who have the package have no compiled solver
+
+    return a if at_a <= 0.0 else float(brentq(partial(value, series), a, b, xtol=ROOT_WIDTH))

@@ -104,27 +104,19 @@ class Contact:
         margin[n + 1] = share * product(self.pulls, pace, n)
 
 
-def along_stick(laws: Laws, state: Sequence[float]) -> Rows:
-    """Return u, V, k, J, x and T while all sticks, from their values."""
-    U, V, K, J, X, T = rows = begun(state)
-    X[1] += 1.0
+def along_whole(laws: Laws, state: Sequence[float], *, sticks: bool) -> Rows:
+    """Return u, V, k, J, c, x and T while all sticks, c = u, or all slips, J = c = 0."""
+    U, V, K, J, _, X, T = rows = begun(state)
+    X[1] = 1.0
     contact = Contact(laws, U, V, K, J)
     for n, share in enumerate(SHARES):
         contact.press(n)
         contact.move(n)
-        J[n + 1] = 2.0 * share * product(contact.square, K, n)
         T[n + 1] = 2.0 * share * U[n]
-    return rows
-
-
-def along_gross(laws: Laws, state: Sequence[float]) -> Rows:
-    """Return u, V, k, J = 0 and T while all slips."""
-    *rest, T = rows = begun(state)
-    contact = Contact(laws, *rest)
-    for n, share in enumerate(SHARES):
-        contact.press(n)
-        contact.move(n)
-        T[n + 1] = 2.0 * share * rest[0][n]
+        if sticks:
+            J[n + 1] = 2.0 * share * product(contact.square, K, n)
+    if sticks:
+        rows[4] = U
     return rows
 
 
