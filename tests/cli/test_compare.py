@@ -136,7 +136,6 @@ def test_a_dollar_in_a_label_begins_no_formula(run, measured, tmp_path):
     assert (ran.status, ran.err) == (0, "")
 
 
-@pytest.mark.slow
 def test_every_law_in_one_picture(tmp_path, short_sweep):
     laws = {name: Simulation(tangential=name) for name in ("coulomb", "fronts")}
     draw_all(tmp_path / "all.png", compare(read_scene(short_sweep), laws), "psi2")

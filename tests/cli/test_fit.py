@@ -48,7 +48,6 @@ def test_laws_are_ranked_on_kharaz(run, tmp_path, laws):
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.slow
 def test_tables(run, impacts):
     ran = run("fit", impacts, KHARAZ, "--laws", "exact,coulomb", "--bootstrap", 5)
     assert ran.status == 0

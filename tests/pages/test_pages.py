@@ -194,7 +194,6 @@ def test_a_sweep_is_drawn_for_slides(run, tmp_path):
     assert one.read_bytes() != other.read_bytes()
 
 
-@pytest.mark.slow
 def test_where_the_contact_sticks_is_drawn(run, short_sweep, tmp_path):
     out = tmp_path / "map.png"
     one = ("run", "--psi1", 1.2, "--chi", 1.4, "--no-estimate")
