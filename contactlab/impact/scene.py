@@ -194,7 +194,11 @@ class Scene(Batches):
         """Return the batch shape of every number that varies."""
         shapes = {}
         if np.ndarray in map(type, (*self._columns(), *self._yield_stresses().values())):
-            shapes = {name: np.shape(number) for name, number in self.numbers().items()}
+            shapes = {
+                name: number.shape
+                for name, number in self.numbers().items()
+                if isinstance(number, np.ndarray)
+            }
         if self.inverse_mass is not None:
             shapes["inverse_mass"] = self.inverse_mass.shape[:-2]
             if not self.planar:
