@@ -33,12 +33,8 @@ def shown():
     )
 
 
-#: Scripts of many grains, as ``gas`` is, and one with the options of ``dem05``.
-LIKE_GAS = ("cost", "loss", "dense_flow", "drum", "moments")
-
-
 @pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=[pytest.mark.slow] * (n in LIKE_GAS)) for n in SCRIPTS]
+    "name", [pytest.param(n, marks=[pytest.mark.slow] * (n != "dem05")) for n in SCRIPTS]
 )
 def test_every_option_that_is_shown_exists(name):
     done = subprocess.run(

@@ -350,6 +350,7 @@ def test_numbers_beside_a_file_are_refused(run, short_sweep):
     assert "leave out the file, or both of them" in ran.err
 
 
+@pytest.mark.slow
 def test_loops_of_laws_that_have_steps(run, ball, tmp_path):
     picture = tmp_path / "loops.svg"
     laws = "springs,mindlin_cap,coulomb"

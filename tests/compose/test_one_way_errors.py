@@ -65,6 +65,7 @@ def test_the_normal_restitution_has_an_error_of_its_own(springs, steps):
     assert "numerical error of the normal restitution: not declared" in str(result.plan)
 
 
+@pytest.mark.slow
 def test_estimates_of_a_history_are_those_of_its_march():
     """The march of a batch with one time axis is that of springs, for the central impact too."""
     scene = BATCHES["mixed"]

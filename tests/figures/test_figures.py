@@ -148,6 +148,7 @@ def test_figures_2_and_4_show_the_exact_curve_beside_law_and_rigid_theory(data):
         assert law.get_zorder() <= exact.get_zorder()
 
 
+@pytest.mark.slow
 def test_what_all_curves_of_a_figure_share_is_written_on_it(data):
     solid, oblique = r"$\chi$ = 1.4412", r"$\psi_1$ = 1.2"
     for number, words in {1: solid, 2: solid, 3: oblique, 4: oblique}.items():
