@@ -49,7 +49,6 @@ def _options(building: argparse.ArgumentParser, verifying: argparse.ArgumentPars
     from contactlab_laws.tables.elastic import SHIPPED
 
     building.add_argument("--tolerance", type=float, default=1e-10, help="of psi2/psi1 (1e-10)")
-    verifying.add_argument("--alone", action="store_true", help="solve each impact alone: slow")
     verifying.add_argument("--bound", type=float, default=1e-9, help="largest error (1e-9)")
     for command in (building, verifying):
         command.add_argument(
@@ -87,7 +86,7 @@ def _elastic(asked: argparse.Namespace) -> int:
     stored = read(asked.file)
     print(f"{asked.file}: contactlab {stored.version}, {stored.built}")
     table = Table.of(stored)
-    rows = verify(table, count=asked.count, seed=asked.seed, workers=workers, alone=asked.alone)
+    rows = verify(table, count=asked.count, seed=asked.seed, workers=workers)
     print(f"{'errors of max(1, psi1)':30} {'count':>7} {'largest':>8} {'rms':>8}  at psi1, chi")
     for row in rows:
         print(

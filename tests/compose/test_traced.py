@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 from contactlab import Encounter, HalfSpace, Material, Scene, Sphere, rebound
-from contactlab_laws.tables import traced
+from contactlab_laws.fronts import compiled
+from contactlab_laws.tables import elastic, regions, traced
+
+pytest.importorskip("table_builders", reason="table_builders is not in the wheel")
+
+from table_builders.elastic.exact import exact
 
 #: Corners of the regions, where conditions choose: psi1 = 1, 4 chi - 1, 0; chi = 1/2.
 CORNERS = [(p, x) for x in (1e-3, 0.25, 0.5, 0.6, 0.75, 1.44, 2.5)
@@ -145,6 +150,44 @@ def test_second_derivatives_are_differences_of_first(jax):
     for mine, one in zip(np.array(found), (1, 0), strict=True):
         near, far = (slopes(k, one) - slopes(-k, one) for k in (1, 2))
         assert np.abs(mine - (8.0 * near - far) / (12.0 * step)).max() < 1e-6
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(compiled.library() is None, reason="Python's solver takes some minutes")
+def test_second_derivatives_are_those_of_the_exact_law(jax):
+    """Within 1e-6, away from psi1 = 0, 1, 4 chi - 1 and chi = 1/2; 5e-3 from cuts and seam."""
+    draw = np.random.default_rng(10)
+    psi1, chi = draw.uniform(0.01, 7.0, 4000), draw.uniform(0.05, 2.45, 4000)
+    away = np.minimum(np.abs(psi1 - 1.0), np.abs(psi1 - 4.0 * chi + 1.0)) > 0.02
+    away &= (np.abs(chi - 0.5) > 0.02) & (psi1 < np.maximum(1.0, 4.0 * chi - 1.0))
+    psi1, chi, step = psi1[away], chi[away], 4e-4
+    weights = np.array([2.0, -27.0, 270.0, -490.0, 270.0, -27.0, 2.0]) / (180.0 * step**2)
+    same = np.ones(psi1.size, dtype=bool)
+
+    def second(along_psi1, along_chi):
+        """Return the sixth-order second difference of the exact law along a direction."""
+        shifts = np.arange(-3, 4)[:, None] * step
+        moved = psi1 + along_psi1 * shifts, chi + along_chi * shifts
+        for far in (-5e-3, 5e-3):
+            there = sides(psi1 + along_psi1 * far, chi + along_chi * far)
+            same[there != sides(psi1, chi)] = False
+        return weights @ exact(*(each.ravel() for each in moved)).reshape(7, -1)
+
+    def sides(psi1, chi):
+        """Return the region of each impact, and the side of the seam within SLIP_ON."""
+        here = regions.places(psi1, chi, elastic.shipped().cuts)
+        side = np.empty(psi1.size, dtype=int)
+        side[here.who] = 2 * here.region + ((here.region == regions.SLIP_ON) & (here.a > 0.5))
+        return side
+
+    twice, both, chi_twice = second(1, 0), second(1, 1), second(0, 1)
+    mixed = 0.5 * (both - twice - chi_twice)
+    found = np.array(jax.jit(jax.vmap(jax.hessian(rebound, argnums=(0, 1))))(psi1, chi))
+    for mine, theirs in zip(
+        (found[0, 0], found[0, 1], found[1, 1]), (twice, mixed, chi_twice), strict=True
+    ):
+        assert np.abs(mine - theirs)[same].max() < 1e-6
+    assert same.sum() > 0.95 * same.size > 1500
 
 
 def test_float32_keeps_its_digits(jax):

@@ -8,7 +8,6 @@ from numpy.polynomial.chebyshev import chebval3d
 
 from contactlab.impact.coupling import FILE
 from contactlab_laws.tables import regions
-from contactlab_laws.tables.elastic import NODES
 from contactlab_laws.tables.patches import nodes
 from contactlab_laws.tables.regions import (
     SLIP_BACK,
@@ -28,11 +27,13 @@ from table_builders import __main__ as command
 from table_builders.coupling import build as unlike
 from table_builders.elastic import exact
 from table_builders.elastic.coordinates import impact, measure
-from table_builders.elastic.fit import Cell, slope_at_one
+from table_builders.elastic.fit import FINE, Cell, slope_at_one
 from table_builders.restituted import build
 
-#: Cuts at chi = 1.5 + psi1/10 and chi = 2 + t^5.
-CUTS = Cuts(np.array([1.5, 0.1]), np.array([2.0, 0, 0, 0, 0, 1.0]))
+#: Cuts at chi = 1.5 + psi1/10 and chi = 2 + t^5, and the seam at t/CUT_END = 0.3 + b/5.
+CUTS = Cuts(np.array([1.5, 0.1]), np.array([2.0, 1.0]), np.array([0.3, 0.2]))
+#: 2 chi - 1 a quarter of the way from the cut at t = 0.32, on the seam, up to 2.7.
+PAST_SEAM = 2.0 * (0.75 * (2.0 + 0.32**5) + 0.25 * 2.7) - 1.0
 
 
 @pytest.mark.parametrize(
@@ -43,7 +44,7 @@ CUTS = Cuts(np.array([1.5, 0.1]), np.array([2.0, 0, 0, 0, 0, 1.0]))
         (STUCK_BACK, 0.5, 0.5, 0.5, 1.025),  # half between 1/2 and 1.55
         (STUCK_ON, 0.5, 0.5, 0.5, 1.7875),  # a quarter between 1.55 and 5/2
         (SLIP_BACK, 0.5, 0.5, 1.0 + 0.4**5 * 1.51024, 1.25512),  # the cut at 2.01024
-        (SLIP_ON, 0.5, 0.5, 1.0 + 0.4**5 * 3.29536, 2.14768),  # a quarter up to 2.56
+        (SLIP_ON, 0.5, 0.5, 1.0 + 0.32**5 * PAST_SEAM, 0.5 + 0.5 * PAST_SEAM),
         (SLIP_LONG, 0.5, 0.5, 1.0 + 0.9**5 * 2.0, 1.5),
         (SLIP_LATE, 0.5, 0.25, 2.5, 1.0),
     ],
@@ -53,10 +54,13 @@ def test_the_impact_of_a_place(region, a, b, psi1, chi):
     assert np.concatenate(found) == pytest.approx([psi1, chi], abs=1e-12)
     expected = 1.0 - psi1 if region == SMALL_FAR else abs(2.0 * chi - 1.0)
     assert measure(region, *found) == pytest.approx([expected], abs=1e-12)
-    if region not in (SLIP_BACK, SLIP_ON):  # those whose cut has a power less than those of slip
-        single = regions.SingleCuts(lambda at: 1.5 + 0.1 * at, lambda t: 2.0 + t**5)
-        found = regions.place(psi1, chi, single)
-        assert found == pytest.approx((region, a, b, expected), abs=1e-12)
+    single = regions.SingleCuts(
+        lambda at: 1.5 + 0.1 * at, (2.0, lambda _: 1.0), lambda b: 0.3 + 0.2 * b
+    )
+    found = regions.place(psi1, chi, single)
+    assert found == pytest.approx((region, a, b, expected), abs=1e-12)
+    here = regions.places(*(np.full(1, each) for each in (psi1, chi)), CUTS)
+    assert (here.region[0], here.a[0], here.b[0]) == pytest.approx((region, a, b), abs=1e-12)
 
 
 def test_the_slope_along_a_cut_that_climbs():
@@ -65,8 +69,8 @@ def test_the_slope_along_a_cut_that_climbs():
         found = slope_at_one(
             Cell(region, 0, 1, 0, 1), CUTS, lambda psi1, chi: chi**2 + 3.0 * (psi1 - 1.0)
         )
-        b = (1.0 + nodes(NODES)) / 2.0
-        chi = 2.0 + 0.56 * b * b if up else 0.5 + 1.5 * b
+        b = (1.0 + nodes(FINE)) / 2.0
+        chi = 2.0 + 0.7 * b * b if up else 0.5 + 1.5 * b
         by_cut = 1.0 - b * b if up else b
         g_by_chi = (2 * chi * (2 * chi - 1) - 2 * (chi**2 + 1)) / (2 * chi - 1) ** 2
         assert found == pytest.approx(3.0 - chi**2 + g_by_chi * by_cut, abs=1e-6)
@@ -106,9 +110,9 @@ def test_the_sign_of_the_last_slip(psi1, sign):
     assert exact.last_slip(psi1, 1.0) == sign
 
 
-def test_impacts_alone_of_two_closed_forms():
-    found = exact.alone(np.array([8.0, 0.6]), np.array([1.5, 0.5]))
-    assert found == pytest.approx([2.0, -0.6], abs=1e-12)
+def test_exact_impacts_of_two_closed_forms():
+    found = exact.exact(np.array([8.0, 0.6, 1.0]), np.array([1.5, 0.5, 0.5]))
+    assert found == pytest.approx([2.0, -0.6, -1.0], abs=1e-14)
 
 
 def test_the_shipped_sizes_of_coupling_are_of_the_nodes_of_the_builder():

@@ -73,7 +73,7 @@ class Table:
         g by powers of the local coordinates in [0, 1].
         """
         cells, terms = stored.arrays["cells"], stored.arrays["terms"]
-        cuts = Cuts(stored.arrays["stuck"], stored.arrays["slip"])
+        cuts = Cuts(*(stored.arrays[name] for name in Cuts._fields))
         forth = chebyshev_of_values(NODES) @ nodes(NODES)[:, None] ** np.arange(NODES)
         back = powers_of_chebyshev(NODES, stretch=2.0, shift=1.0)
         chebyshev = forth @ terms @ forth.T
@@ -157,7 +157,12 @@ def rebound(psi1: Any, chi: Any, *, derivatives: bool = False) -> Any:
 def _single() -> Callable[[float, float], float]:
     """Return the function of psi1 and chi that gives psi2 of one impact in plain floats."""
     table = shipped()
-    cuts = SingleCuts(*map(compiled_polynomial, table.cuts))
+    stuck, slip, seam = table.cuts
+    cuts = SingleCuts(
+        compiled_polynomial(stuck),
+        (float(slip[0]), compiled_polynomial(slip[1:])),
+        compiled_polynomial(seam),
+    )
     grid, patches, last = table.grid.tolist(), table.patches.single, SIZE - 1
 
     def single(psi1: float, chi: float) -> float:

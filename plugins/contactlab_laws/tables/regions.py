@@ -6,7 +6,9 @@ is tabulated (theory §10); measure is epsilon, but far from psi1 = 1 at chi < 1
 Where gross slip comes first, or nearly so, it ends at V = 1 - delta/epsilon (theory §2), and the
 radius that sticks then is about t = (delta/epsilon)^(1/5): there g is smooth in t and chi. Two
 regions are divided by a cut, on which the sign of the last slip changes: below it g is analytic,
-above it g is smooth in the square root of the distance.
+above it g is smooth in the square root of the distance. Within SLIP_ON the fourth derivative of
+psi2 jumps at a seam, where the slip back just reaches the disk that stuck first: the first
+coordinate is 1/2 there.
 """
 
 from __future__ import annotations
@@ -38,8 +40,14 @@ REGIONS = 8
 LARGEST_CHI = TABULATED_CHI
 #: Largest t at which the slip regions are cut: beyond it the cut runs above LARGEST_CHI.
 CUT_END = 0.8
+SLIP_MIDDLE = 0.5
 #: Upper end of SLIP_ON, above the cut's largest chi: it keeps the square from degenerating.
-CUT_TOP = 2.56
+CUT_TOP = 2.7
+#: 1 over the heights and lengths of coordinates.
+PER_HEIGHT, PER_SHORT, PER_LONG = 1.0 / (LARGEST_CHI - 0.5), 1.0 / CUT_END, 1.0 / (1.0 - CUT_END)
+#: Second coordinate from which the first follows the seam. Below it the seam runs on to psi1 = 1,
+#: so near to it that its jump does no harm.
+SEAM_FROM = 0.5
 #: First power of t in g after the constant: psi2 is C¹ at psi1 = 1 (theory §10).
 FIRST_POWER = 5
 
@@ -50,17 +58,29 @@ NEAR, FAR, STUCK, EARLY, LATE, FULL = range(6)
 
 
 class Cuts(NamedTuple):
-    """chi of both cuts by increasing powers: of abs(psi1) and of t, zeros included."""
+    """Curves by increasing powers.
+
+    Attributes
+    ----------
+    stuck : array
+        chi of the cut by powers of abs(psi1).
+    slip : array
+        chi of the cut at t = 0, and what t^5 is multiplied with by powers of t - SLIP_MIDDLE.
+    seam : array
+        t/CUT_END of the seam, by powers of SLIP_ON's second coordinate.
+    """
 
     stuck: Array
     slip: Array
+    seam: Array
 
 
 class SingleCuts(NamedTuple):
-    """The same as functions of plain floats."""
+    """The same as functions of plain floats; ``slip`` is a number and the function beside t^5."""
 
     stuck: Callable[[float], float]
-    slip: Callable[[float], float]
+    slip: tuple[float, Callable[[float], float]]
+    seam: Callable[[float], float]
 
 
 class Places(NamedTuple):
@@ -87,12 +107,12 @@ class Places(NamedTuple):
 
 
 def slip_cut(terms: Array, t: Array) -> Array:
-    """Return chi of the cut of the slip regions, of which some powers are missing."""
-    cut = polynomial(terms[FIRST_POWER:], t)
-    square = t * t
-    square *= square
-    square *= t
-    cut *= square
+    """Return chi of the cut of the slip regions."""
+    cut = polynomial(terms[1:], t - SLIP_MIDDLE)
+    power = t * t
+    power *= power
+    power *= t
+    cut *= power
     cut += terms[0]
     return cut
 
@@ -103,16 +123,20 @@ def place(speed: float, chi: float, cuts: SingleCuts) -> tuple[int, float, float
         if speed >= 4.0 * chi - 1.0:
             return None
         measure = 2.0 * chi - 1.0
-        ratio, height = (speed - 1.0) / measure, (chi - 0.5) * (1.0 / (LARGEST_CHI - 0.5))
+        ratio, height = (speed - 1.0) / measure, (chi - 0.5) * PER_HEIGHT
         if ratio > 1.0:
             return SLIP_LATE, ratio - 1.0, height, measure
         t = ratio**0.2
         if t > CUT_END:
-            return SLIP_LONG, (t - CUT_END) * (1.0 / (1.0 - CUT_END)), height, measure
-        cut = cuts.slip(t)
-        t *= 1.0 / CUT_END
+            return SLIP_LONG, (t - CUT_END) * PER_LONG, height, measure
+        start, rest = cuts.slip
+        cut = start + ratio * rest(t - SLIP_MIDDLE)
+        t *= PER_SHORT
         if chi >= cut:
-            return SLIP_ON, t, math.sqrt((chi - cut) / (CUT_TOP - cut)), measure
+            b = math.sqrt((chi - cut) / (CUT_TOP - cut))
+            seam = cuts.seam(b if b > SEAM_FROM else SEAM_FROM)
+            a = 0.5 * t / seam if t < seam else 0.5 + 0.5 * (t - seam) / (1.0 - seam)
+            return SLIP_ON, a, b, measure
         return SLIP_BACK, t, (chi - 0.5) / (cut - 0.5), measure
     if chi >= 0.5:
         measure, cut = 2.0 * chi - 1.0, cuts.stuck(speed)
@@ -155,18 +179,20 @@ def places(speed: Array, chi: Array, cuts: Cuts) -> Places:
     region[stuck] = STUCK_BACK
     region[stuck][above] = STUCK_ON
     ends = slice(early.start, late.stop)
-    np.multiply(measure[ends], 0.5 / (LARGEST_CHI - 0.5), out=b[ends])
+    np.multiply(measure[ends], 0.5 * PER_HEIGHT, out=b[ends])
     np.divide(p[ends] - 1.0, measure[ends], out=a[ends])
     region[early], region[late] = SLIP_LONG, SLIP_LATE
     a[late] -= 1.0
     t = a[early] ** 0.2
-    np.multiply(t - CUT_END, 1.0 / (1.0 - CUT_END), out=a[early])
+    np.multiply(t - CUT_END, PER_LONG, out=a[early])
     rows = (t <= CUT_END).nonzero()[0]
     t, rows = t[rows], rows + early.start
-    a[rows] = t * (1.0 / CUT_END)
+    a[rows] = t * PER_SHORT
     b[rows], above = _across(x[rows], slip_cut(cuts.slip, t), CUT_TOP)
     region[rows] = SLIP_BACK
-    region[rows[above]] = SLIP_ON
+    on = rows[above]
+    region[on] = SLIP_ON
+    a[on] = _beside_seam(a[on], b[on], cuts.seam)
     return Places(who, region, a, b, p, x, measure)
 
 
@@ -183,6 +209,17 @@ def _kinds(speed: Array, chi: Array) -> NDArray[np.int8]:
     slow *= STUCK
     beyond ^= 1
     return np.maximum(fast, np.maximum(slow, beyond, out=slow), out=fast)
+
+
+def _beside_seam(t: Array, b: Array, seam: Array) -> Array:
+    """Return the first coordinate in SLIP_ON, of t/CUT_END."""
+    at = polynomial(seam, np.where(b.real > SEAM_FROM, b, SEAM_FROM))
+    a = t / at
+    a *= 0.5
+    late = (a.real > 0.5).nonzero()[0]
+    at = at[late]
+    a[late] = 0.5 + 0.5 * (t[late] - at) / (1.0 - at)
+    return a
 
 
 def _across(chi: Array, cut: Array, top: float) -> tuple[Array, Rows]:

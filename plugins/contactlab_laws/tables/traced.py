@@ -48,8 +48,7 @@ def elastic_constants() -> dict[str, Any]:
         "terms": (shifts[0].swapaxes(1, 2) @ terms @ shifts[1]).reshape(-1),
         "scales": np.exp2(cells[:, 1:3].T.astype(np.float64)),
         "starts": begins + middles,
-        "stuck": stored["stuck"],
-        "slip": stored["slip"],
+        **{name: stored[name] for name in of.Cuts._fields},
     }
 
 
@@ -153,11 +152,13 @@ def _elastic(xp: Library, constants: Mapping[str, Traced], p: Traced, x: Traced)
     through = slips & (p >= 4.0 * x - 1.0)
     epsilon, delta = abs(2.0 * x - 1.0), abs(p - 1.0)
     narrow = xp.where(epsilon > 0.0, epsilon, 1.0)
-    ratio, height = delta / narrow, (x - 0.5) * (1.0 / (of.LARGEST_CHI - 0.5))
+    ratio, height = delta / narrow, (x - 0.5) * of.PER_HEIGHT
     early = slips & ~through & (ratio > 0.0) & (ratio <= 1.0)
     t = xp.where(early, ratio, HARMLESS) ** 0.2
     late, long = ratio > 1.0, t > of.CUT_END
-    above_slip, b_slip = _across(xp, x, _polynomial(constants["slip"], t), of.CUT_TOP)
+    steep = _polynomial(constants["slip"][1:, ...], t - of.SLIP_MIDDLE)
+    cut = constants["slip"][0, ...] + xp.where(early, ratio, HARMLESS) * steep
+    above_slip, b_slip = _across(xp, x, cut, of.CUT_TOP)
     stuck = xp.where(slips, 1.0, p)
     above_stuck, b_stuck = _across(xp, x, _polynomial(constants["stuck"], stuck), of.LARGEST_CHI)
     near = delta < epsilon
@@ -184,9 +185,12 @@ def _elastic(xp: Library, constants: Mapping[str, Traced], p: Traced, x: Traced)
             )
         )
     )  # fmt: skip
-    short, far = t * (1.0 / of.CUT_END), (t - of.CUT_END) * (1.0 / (1.0 - of.CUT_END))
+    short, far = t * of.PER_SHORT, (t - of.CUT_END) * of.PER_LONG
+    seam = _polynomial(constants["seam"], xp.where(b_slip > of.SEAM_FROM, b_slip, of.SEAM_FROM))
+    seam = xp.where(seam < 1.0, seam, HARMLESS)  # below the cut b may be of any size
+    on = xp.where(short < seam, 0.5 * short / seam, 0.5 + 0.5 * (short - seam) / (1.0 - seam))
     at_one = xp.where(delta > 0.0, tiny, 0.0)
-    a = chosen(ratio - 1.0, far, short, short, p, p, at_one, epsilon / wide)
+    a = chosen(ratio - 1.0, far, on, short, p, p, at_one, epsilon / wide)
     b = chosen(height, height, b_slip, b_slip, b_stuck, b_stuck, epsilon, delta)
     measure = xp.where(slips | big | near, epsilon, delta)
     a, b = xp.where(through, HARMLESS, a), xp.where(through, HARMLESS, b)

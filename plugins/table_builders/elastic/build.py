@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from contactlab.numeric.types import Array
 from contactlab_laws.tables.elastic import DEEPEST, NODES
 from contactlab_laws.tables.file import Stored, write
-from contactlab_laws.tables.regions import REGIONS, Cuts
+from contactlab_laws.tables.regions import REGIONS, SLIP_BACK, SLIP_ON, Cuts
 from table_builders.elastic import cuts as curves
 from table_builders.elastic.exact import exact
 from table_builders.elastic.fit import Cell, begins_at_one, fit, slope_at_one
@@ -26,6 +26,9 @@ Solve = Callable[[Array, Array], Array]
 
 #: Error of psi2/psi1 that a cell may show; what it hides is a few times more.
 TOLERANCE = 1e-10
+#: Least level along a of SLIP_BACK's cells at psi1 = 1, and of those far above the cut: in longer
+#: ones the high powers of t in the cut would be seen in d psi2/d psi1 there.
+SHORT = 3
 #: Cells between two saves.
 BATCH = 16
 #: An error this much smaller than the other is no reason to split along its coordinate.
@@ -47,22 +50,27 @@ class Progress:
         if path.exists():
             with np.load(path) as kept:
                 return cls(
-                    Cuts(kept["stuck"], kept["slip"]),
+                    Cuts(*(kept[name] for name in Cuts._fields)),
                     [Cell(*row) for row in kept["todo"].tolist()],
                     [Cell(*row) for row in kept["done"].tolist()],
                     list(kept["terms"]),
                 )
         print("finding the cuts", file=sys.stderr, flush=True)
-        whole = [Cell(region, 0, 0, 0, 0) for region in range(REGIONS)]
-        return cls(curves.find(), whole, [], [])
+        cells = [Cell(region, 0, 0, 0, 0) for region in range(REGIONS) if region != SLIP_ON]
+        cells += Cell(SLIP_ON, 0, 0, 0, 0).split(True, True)  # none crosses the seam
+        for level in range(SHORT):
+            for first in (Cell(SLIP_BACK, level, 0, 0, 0), Cell(SLIP_ON, level, 1, 0, 1)):
+                if first in cells:
+                    cells.remove(first)
+                    cells += first.split(True, False)
+        return cls(curves.find(), cells, [], [])
 
     def keep(self, path: Path) -> None:
         """Write this progress to ``path``."""
         with path.open("wb") as file:
             np.savez(
                 file,
-                stuck=self.cuts.stuck,
-                slip=self.cuts.slip,
+                **self.cuts._asdict(),
                 todo=np.array(self.todo, dtype=np.int64).reshape(-1, 5),
                 done=np.array(self.done, dtype=np.int64).reshape(-1, 5),
                 terms=np.array(self.terms).reshape(-1, NODES, NODES),
@@ -107,8 +115,7 @@ def build(path: Path, *, tolerance: float = TOLERANCE, workers: int = 1) -> None
     order = sorted(range(len(progress.done)), key=progress.done.__getitem__)
     cells = np.array([progress.done[k] for k in order], dtype=np.int16)
     terms = np.array([progress.terms[k] for k in order])
-    stuck, slip = progress.cuts
-    arrays: dict[str, ArrayLike] = {"stuck": stuck, "slip": slip, "cells": cells, "terms": terms}
+    arrays: dict[str, ArrayLike] = {**progress.cuts._asdict(), "cells": cells, "terms": terms}
     write(path, Stored.today(tolerance=tolerance, **arrays))
     kept.unlink()
 
@@ -123,12 +130,13 @@ def _batch(progress: Progress, tolerance: float, solve: Solve) -> None:
     psi2 = solve(psi1.ravel(), chi.ravel()).reshape(psi1.shape)
     for cell, p, x, answers in zip(cells, psi1, chi, psi2, strict=True):
         slope = slope_at_one(cell, progress.cuts, solve) if begins_at_one(cell) else None
-        patch = fit(cell, p, x, answers, slope)
+        patch = fit(cell, progress.cuts, p, x, answers, slope)
         most = max(patch.error_a, patch.error_b)
         along_a = patch.error_a > max(tolerance, MINOR * most) and cell.level_a < DEEPEST
         along_b = patch.error_b > max(tolerance, MINOR * most) and cell.level_b < DEEPEST
         if along_a or along_b:
-            progress.todo.extend(cell.split(bool(along_a), bool(along_b)))
+            parts = cell.split(bool(along_a), bool(along_b))
+            progress.todo.extend(part for part in parts if part.needed(progress.cuts))
         else:
             if most > tolerance:
                 print(f"{cell} is left at {most:.1e}", file=sys.stderr)

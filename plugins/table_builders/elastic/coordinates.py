@@ -10,6 +10,7 @@ from contactlab_laws.tables.regions import (
     CUT_END,
     CUT_TOP,
     LARGEST_CHI,
+    SEAM_FROM,
     SLIP_LATE,
     SLIP_LONG,
     SLIP_ON,
@@ -31,9 +32,8 @@ NAMES = (
     "slip first, longer",
     "slip first, past compression",
 )
-#: Powers of t in the cut of the slip regions; t^5 is the distance from psi1 = 1.
-SLIP_POWERS = (0, 5, 6, 7, 8, 9, 10, 11, 12)
-STUCK_POWERS = tuple(range(9))
+#: Terms of the cuts and of the seam. A cut that is wrong by 4e-6 is seen in second derivatives.
+STUCK_TERMS, SLIP_TERMS, SEAM_TERMS = 9, 11, 5
 
 
 def impact(region: int, a: Array, b: Array, cuts: Cuts) -> tuple[Array, Array]:
@@ -66,6 +66,9 @@ def impact(region: int, a: Array, b: Array, cuts: Cuts) -> tuple[Array, Array]:
     if region == SLIP_LONG:
         t = CUT_END + a * (1.0 - CUT_END)
     else:
+        if region == SLIP_ON:
+            seam = polynomial(cuts.seam, np.maximum(b, SEAM_FROM))
+            a = np.where(a < 0.5, 2.0 * a * seam, seam + (2.0 * a - 1.0) * (1.0 - seam))
         t = a * CUT_END
         cut = slip_cut(cuts.slip, t)
         chi = cut + b * b * (CUT_TOP - cut) if region == SLIP_ON else 0.5 + b * (cut - 0.5)

@@ -14,7 +14,7 @@ from contactlab_laws.tables.elastic import NODES, SHIPPED
 from contactlab_laws.tables.file import read
 from contactlab_laws.tables.patches import chebyshev_of_values, nodes
 from contactlab_laws.tables.regions import STUCK_BACK, Cuts
-from table_builders.elastic.coordinates import SLIP_POWERS, impact, measure
+from table_builders.elastic.coordinates import impact, measure
 
 #: The kernels, and how the table begins in each.
 FILES = {"contactlab_bounce.mjs": "const TABLE = [", "contactlab_bounce.h": "_table[] = {"}
@@ -27,13 +27,14 @@ WIDTH = 1000
 def thinned() -> list[str]:
     """Return the numbers of the thinned table.
 
-    First the terms of both cuts. Then for each patch with chi > 1/2 how many numbers follow; its
-    region from 0, levels and indices along a and b; how many powers of a it has; and for each of
-    these how many of b, and the terms by Chebyshev polynomials of 2x - 1, in units of UNIT.
+    First the terms of both cuts and of the seam. Then for each patch with chi > 1/2 how many
+    numbers follow; its region from 0, levels and indices along a and b; how many powers of a it
+    has; and for each of these how many of b, and the terms by Chebyshev polynomials of 2x - 1, in
+    units of UNIT.
     """
     stored = read(SHIPPED)
-    cuts = Cuts(stored.arrays["stuck"], stored.arrays["slip"])
-    numbers = [repr(each) for each in (*cuts.stuck.tolist(), *cuts.slip[[*SLIP_POWERS]].tolist())]
+    cuts = Cuts(*(stored.arrays[name] for name in Cuts._fields))
+    numbers = [repr(each) for curve in cuts for each in curve.tolist()]
     forth = chebyshev_of_values(NODES) @ nodes(NODES)[:, None] ** np.arange(NODES)
     for cell, terms in zip(stored.arrays["cells"], stored.arrays["terms"], strict=True):
         if cell[0] < STUCK_BACK:

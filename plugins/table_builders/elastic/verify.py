@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from contactlab.numeric.types import Array
 from contactlab_laws.tables.elastic import Table, values
 from contactlab_laws.tables.patches import polynomial
-from contactlab_laws.tables.regions import CUT_END, LARGEST_CHI, Cuts, places
+from contactlab_laws.tables.regions import CUT_END, LARGEST_CHI, Cuts, places, slip_cut
 from table_builders.elastic.coordinates import NAMES
-from table_builders.elastic.exact import exact, together
+from table_builders.elastic.exact import exact
 
 #: Impacts between two reports of progress.
 BATCH = 2000
@@ -79,7 +79,7 @@ def draw(count: int, seed: int, cuts: Cuts) -> Draws:
             (unit, 0.5 + here),
             (1.0 + beside, 0.5 + here),
             (unit, polynomial(cuts.stuck, unit) + here),
-            (None, polynomial(cuts.slip, t) + here),
+            (None, slip_cut(cuts.slip, t) + here),
             (2.0 * chi + here, chi),
             (np.abs(here), chi),
             (psi1, LARGEST_CHI - np.abs(here)),
@@ -94,9 +94,7 @@ def draw(count: int, seed: int, cuts: Cuts) -> Draws:
     return Draws(psi1, chi, kind)
 
 
-def verify(
-    table: Table, *, count: int, seed: int, workers: int = 1, alone: bool = False
-) -> list[Errors]:
+def verify(table: Table, *, count: int, seed: int, workers: int = 1) -> list[Errors]:
     """Return the errors over ``count`` fresh impacts: by region, by curve, and of all.
 
     Parameters
@@ -106,9 +104,6 @@ def verify(
         Impacts, and the seed that they are drawn with.
     workers : int
         Processes.
-    alone : bool
-        Whether all are solved alone, some 3 ms each; else those for which 1e-10 is enough
-        together, 0.1 ms each.
     """
     draws = draw(count, seed, table.cuts)
     truth = np.empty(count)
@@ -119,9 +114,7 @@ def verify(
         share = map
         if workers > 1:
             share = stack.enter_context(ProcessPoolExecutor(workers)).map  # type: ignore[assignment]
-        for done, (part, answers) in enumerate(
-            zip(parts, share(exact if alone else together, *given), strict=True), 1
-        ):
+        for done, (part, answers) in enumerate(zip(parts, share(exact, *given), strict=True), 1):
             truth[part] = answers
             left = (time.monotonic() - began) * (len(parts) - done) / done
             print(f"{min(done * BATCH, count)} impacts, {left:.0f} s left", file=sys.stderr)
