@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from numpy.polynomial import Chebyshev
 from numpy.polynomial.polynomial import polyder, polygrid2d, polyval
 
 import contactlab
@@ -26,7 +27,7 @@ pytest.importorskip("table_builders", reason="table_builders is not in the wheel
 
 from table_builders.elastic import cuts
 from table_builders.elastic.coordinates import NAMES, impact
-from table_builders.elastic.exact import exact
+from table_builders.elastic.exact import exact, last_slip, reaches_disk
 from table_builders.elastic.fit import FINE, Cell, begins_at_one, fit, slope_at_one
 from table_builders.elastic.verify import draw, verify
 from tests.laws.reference import TABLE
@@ -259,6 +260,22 @@ def test_a_patch_is_made_again_from_exact_impacts(row):
     x = np.linspace(0.0, 1.0, 33)
     for one, other in ((patch.terms, known), (polyder(patch.terms), polyder(known))):
         assert polygrid2d(x, x, one) == pytest.approx(polygrid2d(x, x, other), abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("beyond", "low", "high", "power"),
+    [(reaches_disk, 1.03, 1.04, 4.0), (lambda *impact: last_slip(*impact) < 0, 1.8, 1.95, 2.5)],
+    ids=["seam", "cut"],
+)
+def test_the_exact_law_leaves_its_continuation_by_a_power(beyond, low, high, power):
+    """At chi = 2.3, from above a curve of theory §10; the law alone, without the table."""
+    for _ in range(45):
+        psi1 = 0.5 * (low + high)
+        low, high = (low, psi1) if beyond(psi1, 2.3) else (psi1, high)
+    above, below = 4e-3 * nodes(8), -2e-3 / np.array([1.0, 2.0, 4.0])
+    values = exact(high + np.concatenate((above, below)), np.full(11, 2.3))
+    left = values[8:] - Chebyshev.fit(above, values[:8], 7)(below)
+    assert np.log2(left[:-1] / left[1:]) == pytest.approx([power] * 2, abs=0.05)
 
 
 def test_beyond_the_table():
