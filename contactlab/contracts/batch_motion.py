@@ -20,7 +20,7 @@ from contactlab.numeric.types import AnyArray, Mask, Real
 NO_NUMBERS = ("status", "detail", "counters", "normal")
 
 
-@attrs.frozen(kw_only=True, eq=False, slots=False)
+@attrs.frozen(kw_only=True, eq=False, slots=False)  # frozen slots are slow to fill
 class BatchMotion:
     """Base of the motions of one impact or of a batch: numbers, and how the runs ended.
 

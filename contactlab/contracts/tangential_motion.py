@@ -52,7 +52,7 @@ class Sample(NamedTuple):
 Observer: TypeAlias = Callable[[Sample], None]
 
 
-@attrs.frozen(kw_only=True, eq=False, slots=False)
+@attrs.frozen(kw_only=True, eq=False, slots=False)  # frozen slots are slow to fill
 class TangentialMotion(BatchMotion):
     """The tangential motion of an impact or a batch; entries have the batch shape.
 

@@ -18,7 +18,7 @@ from contactlab.numeric.arrays import chosen
 from contactlab.numeric.types import Array, Mask, Real
 
 
-@attrs.frozen(kw_only=True, eq=False, slots=False)
+@attrs.frozen(kw_only=True, eq=False, slots=False)  # frozen slots are slow to fill
 class WholeImpact:
     """Whole-impact answer of a law for some impacts of a batch.
 

@@ -28,7 +28,7 @@ ENDS = {
 }
 
 
-@attrs.frozen(kw_only=True, eq=False, slots=False)
+@attrs.frozen(kw_only=True, eq=False, slots=False)  # frozen slots are slow to fill
 class Motion(TangentialMotion):
     """A tangential motion with the duration, the maxima and the end of its normal motion.
 

@@ -179,7 +179,7 @@ Words = tuple[Clauses, Clauses, Clauses]
 KINDS = ("computed", "left_out", "cautions")
 
 
-@attrs.frozen(eq=False, slots=False)
+@attrs.frozen(eq=False, slots=False)  # frozen slots are slow to fill
 class Plan:
     """What will be computed, what is left out, and what to be wary of.
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 @attributes_told
-@attrs.frozen(kw_only=True, eq=False, repr=False, slots=False)
+@attrs.frozen(kw_only=True, eq=False, repr=False, slots=False)  # frozen slots are slow to fill
 class ImpactResult(Answer, Generic[Each]):
     """Result of one impact, or of a batch: every quantity has the scene's shape.
 

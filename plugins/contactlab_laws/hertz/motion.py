@@ -95,7 +95,7 @@ def _shared(*_: float) -> dict[Any, Any]:
     return {}
 
 
-@attrs.frozen(kw_only=True, eq=False, repr=False, slots=False)
+@attrs.frozen(kw_only=True, eq=False, repr=False, slots=False)  # frozen slots are slow to fill
 class HertzMotion(ClosedFormMotion):
     """Elastic impact: V² + zeta^2.5 = 1 in scaled variables, theory §§1 and 3.
 
