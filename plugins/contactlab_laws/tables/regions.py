@@ -191,8 +191,9 @@ def places(speed: Array, chi: Array, cuts: Cuts) -> Places:
     b[rows], above = _across(x[rows], slip_cut(cuts.slip, t), CUT_TOP)
     region[rows] = SLIP_BACK
     on = rows[above]
-    region[on] = SLIP_ON
-    a[on] = _beside_seam(a[on], b[on], cuts.seam)
+    if on.size:
+        region[on] = SLIP_ON
+        a[on] = _beside_seam(a[on], b[on], cuts.seam)
     return Places(who, region, a, b, p, x, measure)
 
 
