@@ -57,9 +57,9 @@ class Along(Way):
         if history:
             self.refuse_history(history, common_instants=laws.integrator.common_instants)
         normal = normal_or_failed(laws.normal, scene)
-        size, accuracy = psi_magnitude(scene), laws.integrator.accuracy
-        most = math.inf if accuracy is None else accuracy * (1.0 + ROUNDING) * size
         try:
+            size, accuracy = psi_magnitude(scene), laws.integrator.accuracy
+            most = math.inf if accuracy is None else accuracy * (1.0 + ROUNDING) * size
             answered = answers(normal, laws.tangential, history=history, largest_error=most)
             bound = books_bound(laws.tangential, scene)
             return Prepared(normal, answered, self._columns(normal, answered, size), bound)
@@ -93,7 +93,7 @@ class Along(Way):
                 code[one.where] = place
             marched = code == MARCHED
         reasons = tuple(
-            [Reason(each.reason, each.balanced, each.fields is not None) for _, each in answered]
+            Reason(each.reason, each.balanced, each.fields is not None) for _, each in answered
         )
         # the load impulse of a frictionless impact is M_n v1 (1 + e), at most twice M_n v1
         restitution: Any = CLOSED_FORM + 2.0 * normal.accuracy

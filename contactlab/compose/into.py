@@ -170,8 +170,7 @@ def swept_into(
     def parts() -> Iterator[Part]:
         nonlocal done, stop
         for scene in itertools.chain([begin], batches):
-            if scene is not begin:
-                accepted(laws, scene)
+            accepted(laws, scene)
             before, block = stop, block_for(laws, scene)
             usual = IMPACTS_AT_A_TIME if block == WHOLE_IMPACTS else MARCHED_AT_A_TIME
             step = math.ceil((size or usual) / block) * block

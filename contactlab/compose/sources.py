@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 from zlib import crc32
 
 from contactlab.compose.names import PROJECT
+from contactlab.outcome.files import stamp
 
 STANDARD = os.path.realpath(sysconfig.get_path("stdlib")) + os.sep
 INSTALLED = ("site-packages", "dist-packages")
@@ -39,7 +40,7 @@ class Source(NamedTuple):
     spec: Any
     path: str
     root: str
-    stamp: tuple[int, int]
+    stamp: tuple[int, ...]
     checksum: str
     imports: frozenset[str]
 
@@ -74,15 +75,6 @@ def code_of(names: Iterable[str]) -> dict[str, str]:
 def checksum(content: bytes) -> str:
     """Return the checksum of a text, eight hexadecimal digits."""
     return f"{crc32(content):08x}"
-
-
-def stamp(path: str) -> tuple[int, int]:
-    """Return time and size of a file; zeros without one."""
-    try:
-        status = os.stat(path)
-    except OSError:
-        return 0, 0
-    return status.st_mtime_ns, status.st_size
 
 
 def without_file(names: Iterable[str]) -> list[str]:

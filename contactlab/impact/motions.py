@@ -239,7 +239,7 @@ class Motions:
         if self.inverse_mass is None:
             return 0.0
         W = self.inverse_mass
-        if self.planar and not self.shape:
+        if self.planar and not self.shape:  # plain numbers warn of nothing
             return factor * entry(W, 0, 1) / entry(W, 0, 0)
         with np.errstate(all="ignore"):
             if self.planar:

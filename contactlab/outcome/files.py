@@ -24,6 +24,15 @@ TEXT: dict[str, Any] = {
 LARGEST = 32_000_000
 
 
+def stamp(path: str | Path) -> tuple[int, ...]:
+    """Return what changes when a file is written; nothing of one that is not there."""
+    try:
+        status = os.stat(path)
+    except OSError:
+        return ()
+    return status.st_ino, status.st_size, status.st_mtime_ns
+
+
 def content(path: Path, *, kind: str, remedy: str) -> bytes:
     """Return the bytes of a regular file; messages name its ``kind``, such as ``"a scene"``."""
     try:

@@ -27,6 +27,7 @@ from contactlab.outcome.chunk_files import (
     refuse_file,
 )
 from contactlab.outcome.chunk_forms import COLUMN_OF_STATUS, FORMS, NPZ, About
+from contactlab.outcome.files import stamp
 from contactlab.outcome.result import ImpactResult
 
 #: What ``sweep.json`` says of a folder of this kind, and of the codes of its statuses.
@@ -77,15 +78,6 @@ def _told(same: list[tuple[list[float], str, About]], total: int) -> str:
     return f"impacts {about.first} to {about.stop}: {sentence}{others}"
 
 
-def _stamp(path: Path) -> tuple[int, ...]:
-    """Return what changes when a file is written; nothing of one that is not there."""
-    try:
-        status = os.stat(path)
-    except OSError:
-        return ()
-    return status.st_ino, status.st_size, status.st_mtime_ns
-
-
 @attributes_told
 class SweepFolder(Checked):
     """The finished chunks of ``sweep(..., into=folder)``, read by columns and chunks.
@@ -131,7 +123,7 @@ class SweepFolder(Checked):
     def _abouts(self) -> list[tuple[Path, About]]:
         """The finished chunks in order."""
         found = abouts_in(self.path, self._form)
-        self._stamps = {path: _stamp(path) for path, _ in found}
+        self._stamps = {path: stamp(path) for path, _ in found}
         return found
 
     @cached_property
@@ -192,7 +184,7 @@ class SweepFolder(Checked):
                 remedy = f"{nearest(name, self.units)}known: {known}"
                 raise refuse("column", name, "is not a column of the sweep", remedy)
         for path, about in self._abouts:
-            if _stamp(path) != self._stamps[path]:  # by another sweep, maybe
+            if stamp(path) != self._stamps[path]:  # by another sweep, maybe
                 rule = "was written or removed after this folder was opened"
                 raise refuse_file("path", path, rule, f"open {self.path} again")
             with columns_of(path, self._form, self._names) as content:

@@ -40,6 +40,7 @@ REGIONS = 8
 LARGEST_CHI = TABULATED_CHI
 #: Largest t at which the slip regions are cut: beyond it the cut runs above LARGEST_CHI.
 CUT_END = 0.8
+#: t from which the powers in the slip cut are counted: about the middle of its range, for rounding.
 SLIP_MIDDLE = 0.5
 #: Upper end of SLIP_ON, above the cut's largest chi: it keeps the square from degenerating.
 CUT_TOP = 2.7

@@ -154,10 +154,11 @@ def _elastic(xp: Library, constants: Mapping[str, Traced], p: Traced, x: Traced)
     narrow = xp.where(epsilon > 0.0, epsilon, 1.0)
     ratio, height = delta / narrow, (x - 0.5) * of.PER_HEIGHT
     early = slips & ~through & (ratio > 0.0) & (ratio <= 1.0)
-    t = xp.where(early, ratio, HARMLESS) ** 0.2
+    share = xp.where(early, ratio, HARMLESS)
+    t = share**0.2
     late, long = ratio > 1.0, t > of.CUT_END
     steep = _polynomial(constants["slip"][1:, ...], t - of.SLIP_MIDDLE)
-    cut = constants["slip"][0, ...] + xp.where(early, ratio, HARMLESS) * steep
+    cut = constants["slip"][0, ...] + share * steep
     above_slip, b_slip = _across(xp, x, cut, of.CUT_TOP)
     stuck = xp.where(slips, 1.0, p)
     above_stuck, b_stuck = _across(xp, x, _polynomial(constants["stuck"], stuck), of.LARGEST_CHI)

@@ -165,11 +165,13 @@ def _local(psi1: Array, chi: Array, slope: Array | None) -> Array | None:
 
 
 def _t(psi1: Array, chi: Array) -> Array:
+    """Return t, the fifth root of the distance from psi1 = 1 over that from chi = 1/2."""
     return np.asarray(np.abs((psi1 - 1.0) / (2.0 * chi - 1.0)) ** 0.2)
 
 
 @cache
 def _basis() -> Array:
+    """Return the powers of the nodes, shape (FINE, NODES)."""
     return np.asarray(nodes(FINE)[:, None] ** np.arange(NODES))
 
 
@@ -190,6 +192,7 @@ def _solve(
 
 @cache
 def _ends() -> Array:
+    """Return weights of the nodes, which grow towards the ends of a cell."""
     x = nodes(FINE)
     return 0.25 / (x * (1.0 - x))
 
