@@ -35,7 +35,7 @@ from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.compose.names import KINDS, full_name, kind_of
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
-from contactlab.compose.solve import accepted
+from contactlab.compose.solve import accept_scene
 from contactlab.impact.scene import Scene
 from contactlab.numeric.names import nearest
 from contactlab.outcome.columns import json_value, quantity_named
@@ -149,7 +149,7 @@ def _answering(
     reasons: dict[str, list[str]] = {}
     for name, simulation in compared.items():
         try:
-            accepted(simulation.laws, scene)
+            accept_scene(simulation.laws, scene)
             answering[name] = simulation
         except ValueError as error:
             refused = error

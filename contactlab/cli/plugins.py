@@ -20,7 +20,7 @@ from contactlab.cli.arguments import FAILED, OK, add_progress, finite, print_jso
 from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.compose.options import Option, options
 from contactlab.compose.registry import REGISTRY, PluginInfo
-from contactlab.contracts import Integrator, TangentialLaw
+from contactlab.contracts import Integrator, PathTangentialLaw, Scene, TangentialLaw
 from contactlab.numeric.checks import POSITIVE, real
 from contactlab.outcome.text_table import WIDTH, table
 
@@ -80,12 +80,16 @@ def _show(arguments: argparse.Namespace) -> int:
     law = REGISTRY.law_class(arguments.name)
     entry["summary"] = (inspect.getdoc(law) or "").partition("\n")[0]
     if issubclass(law, Integrator):
-        entry["runs"] = law.tangential_contract.__name__
+        entry["runs"] = ", ".join(sorted(each.__name__ for each in law.needs))
     if issubclass(law, TangentialLaw):
         entry["is a"] = [way.__name__ for way in WAYS if issubclass(law, way)]
-        if solver := law.solver():
+    made = REGISTRY.create(arguments.name)  # claims may depend on parameters
+    if isinstance(made, PathTangentialLaw):
+        scene = Scene.nondimensional(psi1=1.0, chi=1.0)
+        if solver := made.cost(scene, None).solver:
             entry["solver"] = solver
-    entry["needs"], entry["offers"] = sorted(law.needs), sorted(law.offers)
+    needed = {each for each in made.needs if isinstance(each, str)}
+    entry["needs"], entry["offers"] = sorted(needed), sorted(made.offers)
     accepted, sources = options(law), references(law)
     if arguments.json:
         details = {"options": [option.to_dict() for option in accepted], "references": sources}

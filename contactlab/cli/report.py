@@ -18,7 +18,7 @@ from contactlab.cli.measured import add_measured, beside_measured
 from contactlab.cli.scene import add_file
 from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.compose.names import full_name, short_name
-from contactlab.compose.solve import accepted
+from contactlab.compose.solve import accept_scene
 from contactlab.outcome.files import written
 from contactlab.scene_file import read_scene
 from contactlab.study.comparison import compare
@@ -60,7 +60,7 @@ def execute(arguments: argparse.Namespace) -> int:
         try:
             chosen = laws.choose(tangential=name)
             simulation = (chosen if arguments.integrator else chosen.suited()).simulation()
-            accepted(simulation.laws, file.scene)
+            accept_scene(simulation.laws, file.scene)
             simulations[name] = simulation
         except ValueError:  # a default that does not fit the file's normal law, or its bodies
             if arguments.tangential:

@@ -14,7 +14,7 @@ from contactlab.contracts import faults
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status, succeeded
-from contactlab.contracts.tangential import TangentialLaw
+from contactlab.contracts.tangential import TangentialLaw, WholeImpactTangentialLaw
 from contactlab.contracts.tangential_motion import Observer, Sample, TangentialMotion
 from contactlab.contracts.whole_impact import WholeImpact
 from contactlab.numeric.arrays import locked
@@ -52,7 +52,7 @@ def answers(
     """
     scene = normal.scene
     shape = scene.shape
-    always = tangential.whole
+    always = WholeImpactTangentialLaw in type(tangential).__mro__  # isinstance is slow
     if history == "fields" and not always:
         return []
     if not shape:
@@ -159,7 +159,7 @@ def _checked(answer: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) ->
         If it is not.
     """
     entries: tuple[Any, ...] = answer.slip_velocity_change, answer.friction_work
-    if law.normal_spin:
+    if "normal_spin" in law.offers:
         entries = (*entries, answer.normal_spin_change)
     for entry in entries:
         if faults.malformed(entry, shape):
@@ -174,7 +174,7 @@ def _unanswered(law: TangentialLaw) -> faults.LawFaultError:
     return faults.LawFaultError(Status.MALFORMED, sentence)
 
 
-def followed(
+def check_motion(
     motion: object, shape: tuple[int, ...], axes: tuple[int, ...] = ()
 ) -> TangentialMotion:
     """Return the motion that a law or an integrator gave, or raise what is wrong with it.

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.compose.rebound import RESTITUTED_CHI, restituted_error
+from contactlab.compose.rebound import restituted_error
 from contactlab.impact.cautions import contact_vectors
 from contactlab.impact.encounter import Encounter
 from contactlab.numeric.arrays import plain, some
@@ -17,7 +17,6 @@ from contactlab.outcome.plan import PSI2_ERROR, TANGENTIAL_MOTION, Clause, Plan
 PARTED = "collision: the bodies separate, they pass through untouched"
 #: Seconds that springs take for impacts with a restitution beyond the table: the first, and each at
 #: chi = 3; they grow as chi^0.75.
-FIRST, EACH = 0.1, 6e-4
 
 
 def collision_plan(plan: Plan, met: Encounter | None, passed: NDArray[np.bool_]) -> Plan:
@@ -44,7 +43,7 @@ def by_rebound(plan: Plan, chi: Real, restitution: Real) -> Plan:
     said: dict[str, tuple[str, tuple[Any, ...] | None]] = {
         TANGENTIAL_MOTION: (
             f"tangential motion: contactlab.rebound with restitution={told}, one loss for pressure "
-            f"and shear, by springs beyond its table: {_lasting(chi, marched)}",
+            f"and shear, by springs beyond its table",
             None,
         ),
         PSI2_ERROR: ("numerical error of psi2: at most {:.2g}, of contactlab.rebound", (error,)),
@@ -56,10 +55,3 @@ def by_rebound(plan: Plan, chi: Real, restitution: Real) -> Plan:
             clause = clause._replace(text=text, values=values)
         computed.append(clause)
     return plan.changed(computed=tuple(computed), psi2_error=plain(error))
-
-
-def _lasting(chi: Real, marched: NDArray[np.bool_]) -> str:
-    """Return about how long the springs of ``rebound`` take, on a computer of the year 2026."""
-    far = np.maximum(np.broadcast_to(chi, np.shape(marched))[marched] / RESTITUTED_CHI[1], 1.0)
-    seconds = FIRST + EACH * float(np.sum(far**0.75))
-    return f"about {seconds:.1g} s"

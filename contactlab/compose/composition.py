@@ -11,7 +11,6 @@ import attrs
 from contactlab.compose.loading import outdated
 from contactlab.compose.names import KINDS, full_name
 from contactlab.compose.registry import REGISTRY, PluginError
-from contactlab.contracts import faults
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.law import Law
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
@@ -152,7 +151,7 @@ def _preferred(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> tuple[st
     which = kind
     if kind == "tangential" and "elastic_hertz" in before[0].offers:
         which = "elastic"
-    elif kind == "tangential" and getattr(before[0], "viscous", False):
+    elif kind == "tangential" and "viscous" in before[0].offers:
         which = "viscous"
     elif kind == "integrator" and {way for way in WAYS if isinstance(before[-1], way)} == STEPS:
         which = "steps"  # no other integrator is imported
@@ -185,39 +184,27 @@ def misfit(normal: Law, tangential: Any, integrator: Any = None) -> str | None:
     if not isinstance(tangential, WAYS):
         ways = ", ".join(way.__name__ for way in WAYS)
         return f"tangential = {_name(tangential)}: must be derived from one of {ways}"
-    if missing := sorted(tangential.needs - normal.offers):
-        word = missing[0]
-        return (
-            f"tangential = {_name(tangential)}: needs {word!r} of the normal law, which "
-            f"{_name(normal)} does not offer"
-        )
-    if (complaint := _refused(normal, tangential)) is not None:
+    if (complaint := _lacking(tangential, normal)) is not None or integrator is None:
         return complaint
-    if integrator is None or tangential.whole:
+    if isinstance(tangential, WholeImpactTangentialLaw):
         return None
-    if not isinstance(tangential, integrator.tangential_contract):
-        return (
-            f"integrator = {_name(integrator)}: runs a {integrator.tangential_contract.__name__}, "
-            f"and tangential = {_name(tangential)} is not one"
-        )
-    if not isinstance(normal, integrator.normal_contract):
-        return (
-            f"integrator = {_name(integrator)}: needs a {integrator.normal_contract.__name__}, "
-            f"and normal = {_name(normal)} is not one"
-        )
-    return _refused(normal, integrator) or _refused(tangential, integrator)
+    return _lacking(integrator, tangential) or _lacking(integrator, normal)
 
 
-def _refused(first: Law, second: Law) -> str | None:
-    """Return why one of two laws refuses the other, with the names of both; or None."""
-    for law, other in ((first, second), (second, first)):
-        try:
-            reason = law.refuses(other)
-        except Exception as error:  # a law that cannot say whether it runs does not run
-            reason = f"its refuses raised {faults.raised(error)}"
-        if reason is not None:
-            both = f"{law.kind} = {_name(law)}: does not run beside {other.kind} = {_name(other)}"
-            return f"{both}: {reason}"
+def _lacking(law: Law, other: Law) -> str | None:
+    """Return what a law needs and another has not, with the names of both; or None."""
+    for need in sorted(law.needs, key=str):
+        if isinstance(need, str):
+            if other.kind == "normal" and need not in other.offers:
+                return (
+                    f"{law.kind} = {_name(law)}: needs {need!r} of the normal law, which "
+                    f"{_name(other)} does not offer"
+                )
+        elif need.kind == other.kind and not isinstance(other, need):
+            return (
+                f"{law.kind} = {_name(law)}: runs a {need.__name__}, and {other.kind} = "
+                f"{_name(other)} is not one"
+            )
     return None
 
 

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose import solve
-from contactlab.compose.along import CLOSED_FORM
 from contactlab.compose.composition import Laws
+from contactlab.compose.decoupled import CLOSED_FORM
 from contactlab.compose.normal_motion import normal_or_failed
-from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.status import Status, Statuses
+from contactlab.impact.error_model import psi_magnitude
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import plain
 from contactlab.numeric.types import Array, Mask, Real

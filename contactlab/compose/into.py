@@ -16,8 +16,8 @@ from contactlab.compose.composition import Laws
 from contactlab.compose.fingerprints import fingerprint
 from contactlab.compose.kept import TRIED_AGAIN, checked_folder, opened, written_piece
 from contactlab.compose.pieces import Part, Piece
-from contactlab.compose.solve import accepted
-from contactlab.compose.sweep import WHOLE_IMPACTS, block_for, cut, one_axis, solved_parts
+from contactlab.compose.solve import accept_scene
+from contactlab.compose.sweep import WHOLE_IMPACTS, block_for, cut, one_axis, solve_parts
 from contactlab.contracts.status import Status, succeeded
 from contactlab.impact.grid import GridParts
 from contactlab.impact.scene import IMPACTS_AT_A_TIME, Scene
@@ -154,7 +154,7 @@ def swept_into(
     if (begin := next(batches, None)) is None:
         remedy = "make the generator anew: it gives its scenes once"
         raise refuse("scenes", scenes, "must hold at least one Scene", remedy)
-    accepted(laws, begin)
+    accept_scene(laws, begin)
     target = _Into(folder, laws)  # of scenes that are refused there is no folder
     waiting: dict[Chunk, tuple[Scene, str]] = {}
     done = stop = 0
@@ -170,7 +170,7 @@ def swept_into(
     def parts() -> Iterator[Part]:
         nonlocal done, stop
         for scene in itertools.chain([begin], batches):
-            accepted(laws, scene)
+            accept_scene(laws, scene)
             before, block = stop, block_for(laws, scene)
             usual = IMPACTS_AT_A_TIME if block == WHOLE_IMPACTS else MARCHED_AT_A_TIME
             step = math.ceil((size or usual) / block) * block
@@ -187,7 +187,7 @@ def swept_into(
                 waiting[where] = part, mark
                 yield Part(where, part, block)
 
-    pieces = solved_parts(laws, unsolved(), executor, ahead=AHEAD)
+    pieces = solve_parts(laws, unsolved(), executor, ahead=AHEAD)
     try:
         for piece in pieces:
             part, mark = waiting.pop(piece.chunk)

@@ -86,11 +86,11 @@ class LoadPath(Answer):
     def cautions(self) -> list[str]:
         """Doubts about the model: of the friction law on such paths, and of the bodies."""
         deepest = float(np.nanmax(self.approach, initial=0.0))
-        round_ = [law for law in (self.normal, self.tangential) if not law.elliptic]
+        round_ = [law for law in (self.normal, self.tangential) if "elliptic" not in law.offers]
         return [
             *self.tangential.path_cautions(),
             *(text for law in round_ for text in of_ellipse(self.scene, type(law).__name__)),
-            *path_cautions(self.scene, deepest, plastic=self.normal.plastic),
+            *path_cautions(self.scene, deepest, plastic="plastic" in self.normal.offers),
         ]
 
     def __repr__(self) -> str:

@@ -12,7 +12,7 @@ from contactlab.compose.motion_solver_alone import Alone
 from contactlab.compose.solved_motion import FailedMotion, MotionTable, SolvedMotion, Units
 from contactlab.contracts import faults
 from contactlab.contracts.motion import NormalMotion
-from contactlab.contracts.normal import NormalLaw
+from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.batches import NoIndexError
 from contactlab.impact.scene import Scene
@@ -21,9 +21,9 @@ from contactlab.numeric.checks import shown
 
 def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
     """Return the motion from first touch to separation, or raise LawFaultError for a bad law."""
-    if law.closed_form:
-        closed: Any = law
+    if ClosedFormNormalLaw in type(law).__mro__:  # isinstance of an abstract class is slow
         try:
+            closed: Any = law
             motion = closed.motion(scene)
             if NormalMotion not in type(motion).__mro__:  # isinstance of an abstract class is slow
                 raise TypeError(f"motion returned {shown(motion)}, which is no NormalMotion")
@@ -34,7 +34,7 @@ def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
             raise
         found: NormalMotion = motion
         return found
-    if law.similar:
+    if "similar" in law.offers:
         one = Scene.nondimensional(psi1=0.0, chi=1.0)
         alone = _common(law, one)
         if alone is not None and alone.status[0] is Status.SUCCESS:

@@ -6,20 +6,20 @@ import math
 from functools import cached_property
 from typing import Any, NamedTuple
 
-import attrs
 import numpy as np
 
 from contactlab.compose.answers import Mask
 from contactlab.compose.composition import Laws
+from contactlab.compose.coupled import WHOLE
 from contactlab.compose.normal_motion import normal_motion, normal_or_failed
 from contactlab.compose.normal_spin_words import with_normal_spin
 from contactlab.compose.solve import ways
-from contactlab.compose.together import WHOLE
-from contactlab.compose.way import Masks, Way, asked
-from contactlab.contracts.law import Law
+from contactlab.compose.way import Masks, Way, ask
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
+from contactlab.contracts.path import PathTangentialLaw
 from contactlab.contracts.status import Status
+from contactlab.contracts.tangential import shares_loss
 from contactlab.impact.cautions import (
     of_ellipse,
     rigid_bodies,
@@ -74,7 +74,9 @@ def plan_of(
     asked_for = _Asked(history, estimated)
 
     def words() -> Words:
-        answered = ~columns.marched & laws.tangential.normal_spin  # no march takes spin
+        answered = ~columns.marched & (
+            "normal_spin" in laws.tangential.offers
+        )  # no march takes spin
         return with_normal_spin(of_impacts(), scene, answered=answered)
 
     def of_impacts() -> Words:
@@ -105,7 +107,7 @@ def _words(
     if not some(masks.known):
         return (), (), ()
     used = way.laws
-    law = f"{type(used.normal).__name__}, {way.how()}{_defaults(used.normal)}"
+    law = f"{used.normal!r}, {way.how()}"
     computed = [Clause(f"normal motion: {law}", masks.known)]
     elongation = elongation_of(way.scene.pair)
     if some(elliptic := masks.known & (elongation > 1.0)):
@@ -115,11 +117,12 @@ def _words(
         computed.append(Clause(_in_place(laws, used), masks.known))
     if some(masks.marched):
         text = f"tangential motion: {used.integrator!r} over {used.tangential!r}"
-        text += way.lasting(masks.marched)
         computed.append(Clause(text, masks.marched, code=TANGENTIAL_MOTION))
-    slow, alone = used.tangential.one_by_one(), way.one_by_one(masks)
-    if slow and scene.shape and some(alone):
-        computed.append(Clause(f"run time: impacts one by one, by {slow}", alone))
+    alone = way.one_by_one(masks)
+    if scene.shape and some(alone) and isinstance(used.tangential, PathTangentialLaw):
+        cost = used.tangential.cost(way.scene.central, used.integrator.accuracy)
+        if cost.one_by_one:
+            computed.append(Clause(f"run time: impacts one by one, by {cost.solver}", alone))
     computed += way.remarks(masks)
     advice = "" if asked_for.estimate else ADVICE
     for what, error in way.errors(columns).items():
@@ -130,7 +133,7 @@ def _words(
         left_out.append(Clause(f"loss in shear: {name} has none beside this law", masks.known))
     left_out += way.left_out(masks)
     words, unknown, pressure = yield_unknown(scene)
-    if words and not used.normal.plastic:
+    if words and "plastic" not in used.normal.offers:
         left_out.append(Clause(words, masks.known & unknown, (pressure,)))
     if reason := _no_history(asked_for.history, columns, masks.marched):
         left_out.append(Clause(reason, masks.known))
@@ -142,9 +145,9 @@ def _words(
 def _loses_in_pressure_alone(way: Way) -> bool:
     """Return whether the normal law is viscous, and the tangential law does not share its loss."""
     normal, tangential = way.laws.normal, way.laws.tangential
-    if not normal.viscous or "partial_slip" not in tangential.offers:
+    if "viscous" not in normal.offers or "partial_slip" not in tangential.offers:
         return False
-    return not tangential.shares_loss(normal) and way.judged.rubs
+    return not shares_loss(tangential, normal) and way.scene_of_cautions.rubs
 
 
 def _in_place(laws: Laws, used: Laws) -> str:
@@ -166,11 +169,11 @@ class _Asked(NamedTuple):
 
 def _cautions(way: Way, scene: Scene, motion: Motion | None, masks: Masks) -> Clauses:
     """Return the cautions about numbers of the scene, of the laws, and of the energy books."""
-    laws, part, central, known = way.laws, way.scene, way.judged, masks.known
+    laws, part, central, known = way.laws, way.scene, way.scene_of_cautions, masks.known
     whole = central if every(known) else central.take(known)
     said = [*unit_slips(whole), *unlikely(whole), *rigid_bodies(whole)]
     of_laws: list[str] = []
-    moved = way.reused(motion)
+    moved = way.motion_of_cautions(motion)
     if some(masks.ended):
         normal = _motion_of(laws.normal, central, moved, known)
         of_laws += way.cautions_of_laws(whole, normal, known)
@@ -178,13 +181,13 @@ def _cautions(way: Way, scene: Scene, motion: Motion | None, masks: Masks) -> Cl
     if some(masks.marched):
         marched = part if every(masks.marched) else part.take(masks.marched)
         normal = _motion_of(laws.normal, central, moved, masks.marched)
-        remarks = laws.integrator.remarks
-        of_laws += asked(laws.integrator, remarks, normal, laws.tangential, marched)
+        remarks = laws.integrator.cautions
+        of_laws += ask(laws.integrator, remarks, normal, laws.tangential, marched)
     for law in (laws.normal, laws.tangential):
-        if not law.elliptic:
+        if "elliptic" not in law.offers:
             said += of_ellipse(whole, type(law).__name__)
     own = [text for text in dict.fromkeys(of_laws) if text not in said]
-    said += [*own, *way.own_cautions(bool(own)), *_by_default(laws.normal)]
+    said += [*own, *way.own_cautions(bool(own))]
     clauses = [Clause(text, known) for text in said]
     if motion is not None:
         clauses += _books(laws, scene, motion)
@@ -234,38 +237,6 @@ class _AfterRun:
     def _course(self) -> NormalMotion:
         """The normal motion, made again."""
         return normal_motion(self.law, self.scene)
-
-
-def _by_default(law: Law) -> tuple[str, ...]:
-    """Return the caution of a restitution that nobody gave."""
-    value = _kept_defaults(law).get("restitution")
-    if value is None:
-        return ()
-    name = type(law).__name__
-    return (f"restitution = {value:g} was taken by default: give {name} one of your own",)
-
-
-def _defaults(law: Law) -> str:
-    """Return which options of a law have their default value, with a semicolon before."""
-    kept = ", ".join(f"{name} = {value:g}" for name, value in _kept_defaults(law).items())
-    return f"; {kept} by default" if kept else ""
-
-
-def _kept_defaults(law: Any) -> dict[str, float]:
-    """Return the numbers of a law that nobody gave, by name."""
-    if not (attrs.has(type(law)) and attrs.fields(type(law))):
-        return {}
-    try:
-        usual = type(law)()
-    except (TypeError, ValueError):  # it has no defaults, or not for all options
-        return {}
-    values = {item.name: getattr(law, item.name) for item in attrs.fields(type(law))}
-    # The default is one object, which a number that somebody gave is not, even if it is equal.
-    return {
-        name: value
-        for name, value in values.items()
-        if isinstance(value, float) and value is getattr(usual, name)
-    }
 
 
 def _not_marched(columns: PlanColumns, masks: Masks) -> list[Clause]:

@@ -24,15 +24,10 @@ if TYPE_CHECKING:
 Yes: TypeAlias = Literal[True]
 No: TypeAlias = Literal[False]
 
-#: Range of chi in the table of restitutions below 1. Largest errors of psi2: in the table up to chi
-#: ``NEARER``, and up to its end; and of springs beyond it over sqrt(chi/3):
-#: ``tests/laws/test_restituted_table.py``.
-RESTITUTED_CHI, NEARER = (0.3, 3.0), 2.0
-RESTITUTED_ERROR, WIDER_ERROR, BEYOND_ERROR = 5e-5, 1.5e-4, 3e-4
 #: Springs of the laws for a restitution; the steps are four times as many.
 SPRINGS = 100
-#: The table answers up to this chi and for tolerances above this: it holds psi2 to 1e-9.
-TABULATED_CHI, TABULATED = 2.5, 1e-9
+#: The table of elastic impacts answers for tolerances above this: it holds psi2 to 1e-9.
+TABULATED = 1e-9
 #: Tolerance of every solution: an answer in an array then equals a single one to 1e-10.
 EXACT = 1e-9
 TOLERANCE = Rule(
@@ -43,8 +38,6 @@ CHI = Rule(
     lambda value: POSITIVE.holds(value) & (value <= LARGEST_CHI),
     "must be positive and at most 1e4, the range over which answers were checked",
 )
-#: Range of chi in the table of elastic impacts.
-ELASTIC_CHI = (math.ulp(0.0), TABULATED_CHI)
 #: Two single numbers are probably exchanged if the first is a chi of solid spheres, and the second
 #: a psi1 that is common and a chi that only a dense core makes.
 LIKE_CHI, LIKE_PSI1 = (0.8, 1.75), (4.0, 20.0)
@@ -223,10 +216,13 @@ def rebound(
     usual = tolerance is USUAL or (isinstance(tolerance, float) and TABULATED < tolerance < 1.0)
     if usual and not derivatives:
         if restitution is ELASTIC or (type(restitution) is float and restitution == 1.0):
-            if _within(psi1, chi, ELASTIC_CHI):
-                return _table("tangential")(psi1, chi)
-        elif _below_one(restitution, psi1) and _within(psi1, chi, RESTITUTED_CHI):
-            return _by_table(psi1, chi, restitution)
+            table, span = _table("tangential")
+            if _within(psi1, chi, span):
+                return table(psi1, chi)
+        elif _below_one(restitution, psi1):
+            table, span = _table("normal")
+            if _within(psi1, chi, span):
+                return _by_table(table, psi1, chi, restitution)
     if library_of(psi1) or library_of(chi) or library_of(restitution):
         return _labelled(psi1, chi, tolerance, derivatives, restitution)
     incidence = real(
@@ -263,7 +259,7 @@ def rebound(
         e = np.broadcast_to(each, velocity.shape).ravel()
         psi2 = _each(flat, ratios, e, aim)
     elif e != 1.0:
-        psi2 = np.asarray(_table("normal")(flat, ratios, e))
+        psi2 = np.asarray(_law("normal").rebound(flat, ratios, e))
     else:
         psi2 = _solve(flat, ratios, aim)
     slopes = _slopes(flat, ratios, e if three else None) if derivatives else ()
@@ -323,7 +319,8 @@ def _by_standard(library: str, arguments: dict[str, object], derivatives: bool) 
     if type(e) in (int, float) and e == 1.0:
         e = arguments.pop("restitution")
     lossy = "restitution" in arguments
-    low, high = RESTITUTED_CHI if lossy else (0.0, TABULATED_CHI)
+    law = _law("normal" if lossy else "tangential")
+    low, high = law.chi_range
     span = f"lie from {low} to" if lossy else "be positive and at most"
     rules = {
         "psi1": FINITE,
@@ -334,32 +331,33 @@ def _by_standard(library: str, arguments: dict[str, object], derivatives: bool) 
         "restitution": RESTITUTIONS,
     }
     joined = not (isinstance(e, float) and e <= NO_JOIN)
-    law = _law("normal" if lossy else "tangential")
     return by_standard(library, law, arguments, rules, joined=joined)
 
 
 def _slopes(psi1: Array, chi: Array, restitution: Real | None) -> tuple[Array, ...]:
     """Return d psi2/d psi1, d psi2/d chi, and d psi2/d e unless the restitution is left out."""
     if restitution is None:
-        _tabulated(chi, *ELASTIC_CHI)
-        return _table("tangential")(psi1, chi, derivatives=True)[1:]  # type: ignore[no-any-return]
-    _tabulated(chi, *RESTITUTED_CHI)
-    _tabulated(chi[np.broadcast_to(np.equal(restitution, 1.0), chi.shape)], *ELASTIC_CHI)
-    return _table("normal")(psi1, chi, restitution, derivatives=True)[1:]  # type: ignore[no-any-return]
+        law = _law("tangential")
+        _tabulated(chi, *law.chi_range)
+        return law.rebound(psi1, chi, derivatives=True)[1:]  # type: ignore[no-any-return]
+    law = _law("normal")
+    _tabulated(chi, *law.chi_range)
+    elastic = np.broadcast_to(np.equal(restitution, 1.0), chi.shape)
+    _tabulated(chi[elastic], *_law("tangential").chi_range)
+    return law.rebound(psi1, chi, restitution, derivatives=True)[1:]  # type: ignore[no-any-return]
 
 
 def _tabulated(chi: Array, low: float, high: float) -> None:
     """Refuse chi out of the range of a table of derivatives."""
     out = chi[(chi < low) | (chi > high)]
     if out.size:
-        least = f"from {low} " if low > ELASTIC_CHI[0] else ""
+        least = f"from {low} " if low > math.ulp(0.0) else ""
         rule = f"derivatives are tabulated {least}up to chi = {high}"
         raise refuse("chi", float(out[0]), rule, "take differences of psi2 beyond")
 
 
-def _by_table(psi1: Any, chi: Any, restitution: Real) -> Any:
+def _by_table(table: Callable[..., Any], psi1: Any, chi: Any, restitution: Real) -> Any:
     """Return psi2 of checked floats or arrays in the table of restitutions."""
-    table = _table("normal")
     if isinstance(psi1, float):
         return table(float(psi1), float(chi), restitution)  # NumPy's floats are slow
     e = restitution if isinstance(restitution, float) else restitution.ravel()
@@ -414,8 +412,8 @@ def _parted(
 
 def _solve(psi1: Array, chi: Array, tolerance: float) -> Array:
     """Return psi2, shape (impacts,), from the table where chi is in range, else solved."""
-    tabulated = (chi <= TABULATED_CHI) & (tolerance > TABULATED)
-    return _parted(tabulated, _table("tangential"), _exact, psi1, chi)
+    table, (_, high) = _table("tangential")
+    return _parted((chi <= high) & (tolerance > TABULATED), table, _exact, psi1, chi)
 
 
 def _each(psi1: Array, chi: Array, restitution: Array, tolerance: float) -> Array:
@@ -424,7 +422,7 @@ def _each(psi1: Array, chi: Array, restitution: Array, tolerance: float) -> Arra
     def elastic(psi1: Array, chi: Array, _: Array) -> Array:
         return _solve(psi1, chi, tolerance)
 
-    return _parted(restitution == 1.0, elastic, _table("normal"), psi1, chi, restitution)
+    return _parted(restitution == 1.0, elastic, _law("normal").rebound, psi1, chi, restitution)
 
 
 def laws_of(restitution: float) -> Simulation:
@@ -445,17 +443,15 @@ def laws_of(restitution: float) -> Simulation:
 
 
 def restituted_error(chi: Real, restitution: Real) -> Any:
-    """Return the bound of the error of psi2 below a restitution of 1; 0 at e = 0."""
-    far = BEYOND_ERROR * np.sqrt(np.asarray(chi) / RESTITUTED_CHI[1])
-    wide = np.where(chi <= RESTITUTED_CHI[1], WIDER_ERROR, far)
-    near = np.where(np.asarray(chi) <= NEARER, RESTITUTED_ERROR, wide)
-    return np.where(np.equal(restitution, 0.0), 0.0, near)
+    """Return the bound of the error of psi2 below a restitution of 1, as its law declares it."""
+    return _law("normal").rebound_error(chi, restitution)
 
 
 @cache
-def _table(kind: str) -> Callable[..., Any]:
-    """Return psi2 of a law: of the exact tangential law, or of the normal law of a restitution."""
-    return _law(kind).rebound
+def _table(kind: str) -> tuple[Callable[..., Any], tuple[float, float]]:
+    """Return psi2 of the law of a kind as in ``_law``, and the range of chi of its table."""
+    law = _law(kind)
+    return law.rebound, law.chi_range
 
 
 @cache  # to ask the environment what is blocked takes as long as half an answer

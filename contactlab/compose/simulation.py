@@ -112,8 +112,8 @@ class Simulation:
             The same as in ``run``.
         """
         laws = self.laws
-        ways = solve.accepted(laws, _scene(scene), as_one=bool(_history(history)))
-        columns = solve.planned(ways, scene, history)
+        ways = solve.accept_scene(laws, _scene(scene), as_one=bool(_history(history)))
+        columns = solve.plan_columns(ways, scene, history)
         return plan_of(laws, scene, columns, history=history)
 
     def run(
@@ -150,7 +150,7 @@ class Simulation:
         started, laws, recorder = time.perf_counter(), self.laws, None
         if _history(history):
             recorder = Recorder(_scene(scene).shape, with_fields=history == "fields")
-        ways, flat = solve.accepted(laws, _scene(scene), as_one=bool(history)), scene
+        ways, flat = solve.accept_scene(laws, _scene(scene), as_one=bool(history)), scene
         if len(scene.shape) > 1:  # laws and integrators are run over one axis
             flat = scene.take(np.ones(scene.shape, dtype=bool))
             ways = solve.ways(laws, flat, as_one=bool(history))
@@ -274,7 +274,7 @@ class Simulation:
             raise refuse("scenes", scenes, rule, "give into=folder, or Scene.grid")
         batch = scenes if isinstance(scenes, Scene) else Scene.stack(scenes)
         one_axis(batch.shape)
-        ways = solve.accepted(laws, batch)
+        ways = solve.accept_scene(laws, batch)
         columns, motion = swept(laws, batch, keep=keep, **options)
         return _result(ways, batch, plan_of(laws, batch, columns, motion), motion, started)
 

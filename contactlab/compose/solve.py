@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from contactlab.compose import stand_ins
-from contactlab.compose.along import Along
 from contactlab.compose.composition import Laws, versions
+from contactlab.compose.coupled import Coupled
+from contactlab.compose.decoupled import Decoupled
 from contactlab.compose.names import KINDS
 from contactlab.compose.pieces import Piece
-from contactlab.compose.together import Together
 from contactlab.compose.way import Way, blocks
 from contactlab.contracts import faults
 from contactlab.contracts.law import Law
@@ -28,14 +28,14 @@ def ways(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
     # Where slip turns laws are asked first: their refusal and its remedy hold for the batch.
     for where, part in reversed(scene.parts(as_one=as_one)):
         if part.inverse_mass is None:
-            found.append(Along(where, part, laws))
+            found.append(Decoupled(where, part, laws))
         else:
-            found.append(Together(where, part, stand_ins.together(laws, part)))
+            found.append(Coupled(where, part, stand_ins.coupled(laws, part)))
     found.reverse()
     return found
 
 
-def accepted(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
+def accept_scene(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
     """Return the ways in which a scene is solved, or refuse one that a law cannot run."""
     found = ways(laws, scene, as_one=as_one)
     for _, part, used in found:
@@ -87,13 +87,13 @@ def outcome(
 
 
 @np.errstate(under="ignore")
-def planned(found: Sequence[Way], scene: Scene, history: bool | str) -> PlanColumns:
+def plan_columns(found: Sequence[Way], scene: Scene, history: bool | str) -> PlanColumns:
     """Return the columns of the plan, without a march."""
     parts = [(way.where, way.prepare(history).columns) for way in found]
     return parts[0][1] if len(parts) == 1 else PlanColumns.merged(parts, scene.shape)
 
 
-def solved(laws: Laws, scene: Scene, chunk: Chunk, block: int) -> Piece:
+def solve_chunk(laws: Laws, scene: Scene, chunk: Chunk, block: int) -> Piece:
     """Return the piece of a sweep's chunk, a block at a time; ``scene`` is the chunk alone."""
     scenes = (scene.take(place) for place in blocks(chunk.size, block))
     pieces = (outcome(ways(laws, each), each, False, None) for each in scenes)

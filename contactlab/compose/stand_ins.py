@@ -7,12 +7,13 @@ from typing import Any
 
 from contactlab.compose.composition import RIGID, TOGETHER, Laws, misfit
 from contactlab.compose.names import KINDS
-from contactlab.contracts.law import Law
-from contactlab.contracts.tangential import SteppedTangentialLaw
+from contactlab.contracts.integrator import CoupledIntegrator
+from contactlab.contracts.law import Law, derived
+from contactlab.contracts.tangential import CausalTangentialLaw, CoupledTangentialLaw
 from contactlab.impact.scene import Scene
 
 
-def together(laws: Laws, part: Scene) -> Laws:
+def coupled(laws: Laws, part: Scene) -> Laws:
     """Return the laws of impacts in which friction changes the approach.
 
     Where a law that nobody named has no answer, another stands in for it.
@@ -41,13 +42,13 @@ def _no_answer(laws: Laws, part: Scene) -> str | None:
     tangential: Any = laws.tangential
     integrator, turns = laws.integrator, not part.planar
     name, reason = _name(tangential), None
-    if turns and not tangential.vectors:
+    if turns and "vectors" not in tangential.offers:
         reason = "it follows slip along one line"
-    elif tangential.together:
+    elif derived(tangential, CoupledTangentialLaw):
         return None
-    elif not isinstance(tangential, SteppedTangentialLaw) or tangential.needs_future:
+    elif not derived(tangential, CausalTangentialLaw):
         reason = "it needs the normal motion before the march"
-    elif not integrator.together:
+    elif not derived(integrator, CoupledIntegrator):
         name, reason = _name(integrator), "it follows a normal motion that is known before"
     if reason is None:
         return None

@@ -6,12 +6,16 @@ import itertools
 import math
 from collections.abc import Callable, Generator, Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from contactlab.compose.composition import Laws
 from contactlab.compose.pieces import Part, Piece, unsolved
-from contactlab.compose.solve import solved
+from contactlab.compose.solve import solve_chunk
+from contactlab.contracts.law import derived
+from contactlab.contracts.normal import ClosedFormNormalLaw
+from contactlab.contracts.path import PathTangentialLaw
 from contactlab.contracts.status import Status
+from contactlab.contracts.tangential import WholeImpactTangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse, whole
 from contactlab.outcome.chunk_forms import Chunk
@@ -23,31 +27,29 @@ if TYPE_CHECKING:
 
 #: Impacts of a block if nothing is marched: as many as fit into the cache.
 WHOLE_IMPACTS = 1 << 14
-
-
-def block_of(laws: Laws) -> int:
-    """Return how many impacts are solved in one call."""
-    # The last bits of an answer may depend on the impacts beside it: on the iterations of an array
-    # solver, and on whether the processor uses scalar or vector arithmetic. So the size of a block
-    # depends on the laws alone.
-    if laws.tangential.whole and laws.normal.closed_form:
-        return WHOLE_IMPACTS
-    return laws.integrator.chunk(laws.tangential)
+#: Impacts of a block that are marched: a call costs little, an interruption loses little.
+MARCHED = 1000
 
 
 def block_for(laws: Laws, scene: Scene) -> int:
     """Return how many impacts of a scene are solved in one call."""
-    if laws.tangential.needs_no_march(scene, laws.integrator.accuracy):
-        return WHOLE_IMPACTS
-    return block_of(laws)
+    # The last bits of an answer may depend on the impacts beside it: on the iterations of an array
+    # solver, and on whether the processor uses scalar or vector arithmetic. So the size of a block
+    # depends on the laws alone.
+    law: Any = laws.tangential
+    if derived(law, PathTangentialLaw):
+        block: int = law.cost(scene, laws.integrator.accuracy).block
+        return block
+    closed = derived(laws.normal, ClosedFormNormalLaw)
+    return WHOLE_IMPACTS if closed and derived(law, WholeImpactTangentialLaw) else MARCHED
 
 
-def solved_parts(
+def solve_parts(
     laws: Laws, parts: Iterable[Part], executor: Executor | None, *, ahead: int | None = None
 ) -> Generator[Piece, None, None]:
     """Yield the pieces of parts, solved here or by an executor; ``ahead`` as in ``pieces_of``."""
     if executor is None:
-        return (solved(laws, scene, chunk, block) for chunk, scene, block in parts)
+        return (solve_chunk(laws, scene, chunk, block) for chunk, scene, block in parts)
     from contactlab.compose.workers import pieces_of  # needed with an executor only
 
     return pieces_of(laws, parts, executor, ahead=ahead)
@@ -74,7 +76,7 @@ def swept(
     done = sum(piece.chunk.size for piece in finished)
     missing = cut(_gaps(finished, size), step)
     parts = (Part(each, scene.take(slice(*each)), block) for each in missing)
-    pieces = solved_parts(laws, parts, executor)
+    pieces = solve_parts(laws, parts, executor)
     try:
         for piece in pieces:
             finished.append(piece)

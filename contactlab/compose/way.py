@@ -1,8 +1,8 @@
 """Base of the ways to solve impacts: it divides batches that fail, and judges the motions.
 
-Spheres, and bodies whose contact does not couple, go along a known normal motion (``along.py``).
+Spheres, and bodies whose contact does not couple, follow a known normal motion (``decoupled.py``).
 Where friction changes the approach, or slip turns, both motions are found together
-(``together.py``). Each way tells the plan what it does differently.
+(``coupled.py``). Each way tells the plan what it does differently.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ class Way(Entries, ABC):
         """Return what is known before the march, or raise LawFaultError."""
 
     @abstractmethod
-    def moved(self, prepared: Prepared, recorder: Recorder | None) -> Motion:
+    def solve(self, prepared: Prepared, recorder: Recorder | None) -> Motion:
         """Return the motion, or raise LawFaultError."""
 
     @abstractmethod
@@ -96,16 +96,12 @@ class Way(Entries, ABC):
 
     @property
     @abstractmethod
-    def judged(self) -> Scene:
+    def scene_of_cautions(self) -> Scene:
         """The impacts of spheres about which cautions are asked."""
 
     @abstractmethod
     def how(self) -> str:
         """Return words on how the normal motion is found."""
-
-    def lasting(self, marched: Mask) -> str:
-        """Return words on how long the march of some impacts takes, empty if nobody declares it."""
-        return ""
 
     def one_by_one(self, masks: Masks) -> Mask:
         """Return the impacts that a law takes one by one, if it does."""
@@ -123,14 +119,14 @@ class Way(Entries, ABC):
         """Return what else is left out."""
         return []
 
-    def reused(self, motion: Motion | None) -> Motion | None:
+    def motion_of_cautions(self, motion: Motion | None) -> Motion | None:
         """Return the motion of a run where its normal motion is that about which cautions ask."""
         return motion
 
     def cautions_of_laws(self, scene: Scene, normal: NormalMotion, known: Mask) -> list[str]:
         """Return what the laws say of the impacts that have a normal motion."""
         laws = self.laws.normal, self.laws.tangential
-        return [text for law in laws for text in asked(law, law.cautions, scene, normal)]
+        return [text for law in laws for text in ask(law, law.cautions, scene, normal)]
 
     def cautions_of_contact(self, scene: Scene, normal: NormalMotion) -> list[str]:
         """Return what holds whatever the laws say."""
@@ -145,15 +141,15 @@ class Way(Entries, ABC):
         scene, laws = self.scene, self.laws
         divisible = bool(scene.shape) and recorder is None and math.prod(scene.shape) > 1
         if divisible and scene.shape[0] > self.at_a_time:
-            return self.cut(blocks(scene.shape[0], int(self.at_a_time)))
+            return self.solve_parts(blocks(scene.shape[0], int(self.at_a_time)))
         try:
             prepared = self.prepare(history)
             if divisible and isinstance(prepared.normal, FailedMotion):
-                return self.cut(halves(*scene.shape, most=1))
-            motion = self.moved(prepared, recorder)
+                return self.solve_parts(halves(*scene.shape, most=1))
+            motion = self.solve(prepared, recorder)
         except faults.LawFaultError as fault:
             if divisible:
-                return self.cut(halves(*scene.shape, most=1))
+                return self.solve_parts(halves(*scene.shape, most=1))
             nothing = Motion.nothing(scene.shape, fault.status, fault.detail, axes=scene.slip_axes)
             return PlanColumns.nothing(scene.shape), nothing
         # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
@@ -161,7 +157,7 @@ class Way(Entries, ABC):
         motion = sound(motion, together=self.both)
         return prepared.columns, balanced(motion, scene, bound, together=self.both)
 
-    def cut(self, places: list[slice]) -> tuple[PlanColumns, Motion]:
+    def solve_parts(self, places: list[slice]) -> tuple[PlanColumns, Motion]:
         """Return columns and motion of a batch that is solved in consecutive parts."""
         parts = [self.taking(place).outcome(False, None) for place in places]
         columns, motions = zip(*parts, strict=True)
@@ -178,10 +174,10 @@ class Way(Entries, ABC):
             return motion
         return motion.turned(self.line(scene))
 
-    def refuse_history(self, history: bool | str, *, common_instants: bool) -> None:
+    def refuse_history(self, history: bool | str) -> None:
         """Refuse the history of a batch whose impacts have instants of their own."""
-        if self.scene.shape and not common_instants:
-            rule = f"impacts of a batch have instants of their own under {self.laws.integrator!r}"
+        if self.scene.shape:
+            rule = f"impacts of a batch have instants of their own under {self.laws.tangential!r}"
             raise refuse("history", history, rule, "run them one by one")
 
 
@@ -194,7 +190,7 @@ def books_bound(law: TangentialLaw, scene: Scene) -> Real:
     return bound
 
 
-def asked(law: Law, question: Callable[..., tuple[str, ...]], *about: object) -> list[str]:
+def ask(law: Law, question: Callable[..., tuple[str, ...]], *about: object) -> list[str]:
     """Return what a law says; if it raises, what it raised."""
     try:
         return list(question(*about))

@@ -21,7 +21,7 @@ import attrs
 from contactlab.compose.composition import Laws, versions
 from contactlab.compose.hooks import short
 from contactlab.compose.pieces import Part, Piece, unsolved
-from contactlab.compose.solve import solved
+from contactlab.compose.solve import solve_chunk
 from contactlab.contracts.status import Status
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import refuse, whole
@@ -127,7 +127,7 @@ def reply(sent: bytes, part: bytes, chunk: Chunk, block: int) -> Reply:
         remedy = f"install them there too, and {MODULE_REMEDY}"
         return Reply(None, {}, ValueError(f"{rule}; {remedy}"))
     try:
-        return Reply(solved(laws, scene, chunk, block), versions(*laws))
+        return Reply(solve_chunk(laws, scene, chunk, block), versions(*laws))
     except Exception as error:
         return Reply(None, {}, error)
 

@@ -6,7 +6,7 @@ options (``quantity``, ``count``, ``choice``, ``flag``, ``restitution``), status
 
 from contactlab.contracts import faults
 from contactlab.contracts.contact import NormalContact, without_tension
-from contactlab.contracts.integrator import Integrator
+from contactlab.contracts.integrator import CoupledIntegrator, Integrator
 from contactlab.contracts.law import API_VERSION, Law
 from contactlab.contracts.motion import (
     ClosedFormMotion,
@@ -15,13 +15,16 @@ from contactlab.contracts.motion import (
     ScaledContact,
 )
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
-from contactlab.contracts.path import LostPathError, PathTangentialLaw, Stretch
+from contactlab.contracts.path import Cost, LostPathError, PathTangentialLaw, Stretch
 from contactlab.contracts.restitution import restitution
 from contactlab.contracts.sampled_motion import Ends, SampledMotion
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import (
     AllStepsResponse,
     AllStepsTangentialLaw,
+    CausalTangentialLaw,
+    CoupledTangentialLaw,
+    Errors,
     Increment,
     Sampled,
     SteppedTangentialLaw,
@@ -29,6 +32,7 @@ from contactlab.contracts.tangential import (
     TangentialLaw,
     TangentialResponse,
     WholeImpactTangentialLaw,
+    shares_loss,
 )
 from contactlab.contracts.tangential_motion import Observer, Sample, TangentialMotion
 from contactlab.contracts.whole_impact import (
@@ -49,9 +53,14 @@ __all__ = [
     "POSITIVE",
     "AllStepsResponse",
     "AllStepsTangentialLaw",
+    "CausalTangentialLaw",
     "ClosedFormMotion",
     "ClosedFormNormalLaw",
+    "Cost",
+    "CoupledIntegrator",
+    "CoupledTangentialLaw",
     "Ends",
+    "Errors",
     "Increment",
     "Integrator",
     "Law",
@@ -89,6 +98,7 @@ __all__ = [
     "no_force",
     "quantity",
     "restitution",
+    "shares_loss",
     "sliding",
     "without_tension",
 ]

@@ -1,4 +1,4 @@
-"""The base class of all laws: kind, needs, offers, and the version of the contract."""
+"""The base class of all laws: what a law claims, what it needs, and the version of the contract."""
 
 from __future__ import annotations
 
@@ -12,22 +12,32 @@ from contactlab.impact.scene import Scene
 API_VERSION = 2
 
 
+def derived(law: Law, contract: Any) -> bool:
+    """Return whether a law has a contract; ``isinstance`` of an abstract class is slow."""
+    return contract in type(law).__mro__
+
+
 class Law(ABC):
     """Base of normal laws, tangential laws and integrators.
 
     Contract
     --------
-    1. A law is immutable and holds parameters only (``attrs.frozen(kw_only=True)``). The same
-       object may serve any number of simulations at once. A law can be pickled.
+    1. A law is immutable, holds parameters only (``attrs.frozen(kw_only=True)``) and can be
+       pickled. One object may serve any number of simulations; arrays that it is given are
+       read-only. Each parameter is checked when the law is made, under a word as its name.
     2. ``api_version`` is set in the class itself, to the version the law was written for.
-    3. The base classes of a law determine how it is run. ``offers`` are further claims, in
-       words, which ``contactlab.testing`` checks. ``needs`` are the claims that a tangential
-       law requires of its normal law. Words in use:
+    3. The base classes of a law determine how it is run. ``offers`` are its further claims, which
+       ``contactlab.testing`` checks; a property where they depend on parameters. Words in use:
 
        ========================  ====================================================
        ``radius``                the normal contact knows its contact radius
        ``hertzian_pressure``     pressure is a hemisphere over that radius, eq. (3)
        ``elastic_hertz``         the normal motion is the elastic impact of eqs (2)-(7)
+       ``kelvin_voigt``          in unloading the pressure is Hertz's over b² = R (z + A z')
+       ``viscous``               P is b³ in Hertz's units at rest and more in approach, b² = R z,
+                                 without memory: tangential laws may share its loss
+       ``similar``               motions of all impacts are one in units of Hertz's impact
+       ``plastic``               bodies yield: there is no caution about yield
        ``partial_slip``          the contact slips from its edge inwards: at fixed normal
                                  load the force is Cattaneo and Mindlin's; elastic impacts
                                  converge to the axisymmetric continuum's
@@ -35,61 +45,44 @@ class Law(ABC):
                                  velocity is zero or contact ends, and then roll without
                                  tangential force
        ``no_friction``           the tangential force is zero
+       ``shares_loss``           the force depends on the slip velocity too, through the loss of
+                                 a viscous normal law: increments then have ``sampled``
+       ``vectors``               slip may turn: displacements, velocities and forces of shape
+                                 (..., 2), in length at most mu times the friction load
+       ``normal_spin``           whole-impact answers have ``normal_spin_change``, odd in the spin
+       ``elliptic``              it holds on an ellipse: ``Pair`` has the radius of the circle as
+                                 stiff, G* along t1, and ``cross_stiffness_ratio``
        ========================  ====================================================
 
-    4. ``resolution`` names the parameter that makes answers finer, or is None: a count
+    4. ``needs`` are the words of the normal law, and the classes of the other laws, beside which
+       alone the law runs. ``accept(scene)`` raises a ``ValueError`` for a scene it cannot run.
+    5. ``resolution`` names the parameter that makes answers finer, or is None: a count
        (``steps``, ``annuli``), finer the greater, or ``tolerance``, finer the smaller.
-    5. Parameters have words as names. Each parameter is checked when the law is made; a bad
-       value raises a ``ValueError`` that names the parameter. A ``quantity`` of a law is one
-       number and refuses arrays (``plain_options``).
     6. ``expected_failures`` maps the checks of ``contactlab.testing`` that the law fails by
-       its nature to the reasons. It is a class variable; one that depends on parameters is
-       declared ``ClassVar[Any]``, and is a ``property`` of a function.
-    7. Arrays passed to a law are read-only; writing to them raises an error.
-    8. ``elliptic`` says that the law holds on an elliptic contact, of which ``Pair`` has the radius
-       of the circle as stiff, and G* along t1; a law of vectors has G* along t2 too,
-       ``cross_stiffness_ratio`` times that. Of other laws the plan says there that they were made
-       for a circle.
-    9. ``refuses(other)`` says why the law does not run beside another law; ``accept(scene)``
-       raises a ``ValueError`` for a scene that the law cannot run.
+       its nature to the reasons.
     """
 
+    #: An option of a law is one number, for all impacts.
+    _plain_options: ClassVar[bool] = True
     kind: ClassVar[str]
     api_version: ClassVar[int]
-    needs: ClassVar[frozenset[str]] = frozenset()
-    offers: ClassVar[frozenset[str]] = frozenset()
+    #: Of str and classes; ``ClassVar[Any]``, as a checker would refuse a property in their place.
+    needs: ClassVar[Any] = frozenset()
+    offers: ClassVar[Any] = frozenset()
     resolution: ClassVar[str | None] = None
-    plain_options: ClassVar[bool] = True
-    elliptic: ClassVar[bool] = False
-    #: A mapping of str to str; a checker would refuse a law with a dict of them.
     expected_failures: ClassVar[Any] = MappingProxyType({})
 
-    def refuses(self, other: Law) -> str | None:
-        """Return why this law does not run beside ``other``; None, the default, if it does.
-
-        Parameters
-        ----------
-        other : Law
-            A law of another kind.
-
-        Returns
-        -------
-        str or None
-            The reason: ``"it has no pressure over the radius"``. The message of the ``ValueError``
-            adds the names of both laws.
-        """
-        return None
+    def __init_subclass__(cls, *, kind: str | None = None, **options: Any) -> None:
+        """Set the kind of the laws of a contract."""
+        super().__init_subclass__(**options)
+        if kind is not None:
+            cls.kind = kind
 
     def accept(self, scene: Scene) -> None:  # noqa: B027 most laws run every scene
-        """Do nothing, or raise a ``ValueError`` if the law cannot run ``scene``.
+        """Raise a ``ValueError``, with argument, value, rule and remedy, for a scene it cannot run.
 
         Parameters
         ----------
         scene : Scene
             One impact or a batch.
-
-        Raises
-        ------
-        ValueError
-            With the argument of the scene, its value, the rule and a remedy.
         """

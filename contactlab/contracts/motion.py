@@ -106,7 +106,8 @@ class NormalMotion(ABC):
     @property
     def offers(self) -> frozenset[str]:
         """Claims of the normal law."""
-        return self.law.offers
+        offers: frozenset[str] = self.law.offers
+        return offers
 
     def once(self, key: Hashable, make: Callable[[], T]) -> T:
         """Return ``make()``, or what it returned before for this key and an equal motion.

@@ -15,13 +15,36 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
-from typing import Any, ClassVar
+from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
 
 from contactlab.contracts.motion import ClosedFormMotion, ScaledContact
 from contactlab.contracts.tangential import TangentialLaw
+from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array
+
+#: Velocities below this are so small that a response is proportional to them, to 1e-8 of itself:
+#: the path of this velocity is asked for, and scaled.
+LINEAR_BELOW = 1e-8
+
+
+class Cost(NamedTuple):
+    """How a batch is solved.
+
+    Attributes
+    ----------
+    block : int
+        Impacts of a sweep that are solved in one call, so that none takes long.
+    solver : str
+        What computes the paths, in words, where that depends on the installation.
+    one_by_one : bool
+        True if a batch takes as long as its impacts one by one.
+    """
+
+    block: int = 1000
+    solver: str = ""
+    one_by_one: bool = False
 
 
 class LostPathError(ArithmeticError):
@@ -72,7 +95,7 @@ class Stretch(ABC):
             Contact at the instant; its entries are floats.
         factor : float
             Factor on the scaled solution: -1 for a negative slip velocity, and smaller than 1 where
-            an integrator scales, by clause 4 of ``PathTangentialLaw``.
+            the law is linear.
         """
         return {}
 
@@ -86,11 +109,19 @@ class PathTangentialLaw(TangentialLaw):
        is given a velocity > 0, as a law is odd.
     2. A path that cannot be followed further raises ``LostPathError``.
     3. Stretches of no length are allowed, a hundred in a row.
-    4. Below the velocity ``linear_below`` the response is proportional to the velocity, to 1e-8 of
-       itself; an integrator may then ask for the path of ``linear_below`` and scale.
     """
 
-    linear_below: ClassVar[float] = 0.0
+    def cost(self, scene: Scene, accuracy: float | None) -> Cost:
+        """Return how a batch is best cut, and by what it is solved.
+
+        Parameters
+        ----------
+        scene : Scene
+            One impact or a batch.
+        accuracy : float or None
+            The error that the integrator controls: answers with a larger one are not used.
+        """
+        return Cost()
 
     @abstractmethod
     def path(

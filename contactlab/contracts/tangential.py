@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Mapping
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
@@ -60,7 +60,7 @@ class Increment(NamedTuple):
         The time in s for which the bodies moved: ``displacement`` is ``velocity`` times ``drift``.
         NaN, the default, if the integrator does not tell.
     sampled : Sampled, optional
-        The motion at the end of the step. Integrators give it to laws with ``shares_loss``.
+        The motion at the end of the step. Laws that share a loss are given it.
     """
 
     displacement: Real
@@ -97,80 +97,60 @@ class TangentialResponse(NamedTuple):
     shear_loss: Real = 0.0
 
 
-class TangentialLaw(Law):
+class Errors(NamedTuple):
+    """Declared bounds of numerical errors, of the batch shape; NaN is not declared.
+
+    Attributes
+    ----------
+    psi2 : float or array
+        Of psi2; in space the length of its error.
+    restitution : float or array
+        Of V2/v1, the normal restitution.
+    """
+
+    psi2: Real = math.nan
+    restitution: Real = math.nan
+
+
+def shares_loss(tangential: Law, normal: Law) -> bool:
+    """Return whether a tangential law loses energy in shear as a viscous normal law in pressure.
+
+    Parameters
+    ----------
+    tangential, normal : Law
+    """
+    return "viscous" in normal.offers and "shares_loss" in tangential.offers
+
+
+class TangentialLaw(Law, kind="tangential"):
     """Base of tangential laws, which return the tangential force of a contact.
 
     Contract
     --------
-    1. Friction is Coulomb's: abs(F) <= mu times the friction load, and F = 0 out of contact. A
-       discrete law may exceed this limit by its declared discretisation error.
-    2. The law is odd: reversing every displacement reverses every force. A central impact
-       (v_x = 0) has no tangential force, whatever the normal motion.
-    3. A subclass determines how the law is run: ``SteppedTangentialLaw`` for laws that answer
-       to a step, ``contactlab.contracts.path.PathTangentialLaw`` for laws that know their path
-       between events, ``WholeImpactTangentialLaw`` for laws that need no march. A law may be
-       derived from several of these classes.
-    4. ``whole_impacts`` returns the whole-impact answers of the law; the impacts for which they
-       hold are not marched. If several answers hold for an impact, the first is used. A law that
-       can be marched is marched where an answer has no course and a history is asked for, and
-       where the error of an answer exceeds the error that the integrator controls.
-    5. ``psi2_error`` is a bound of the error of psi2 from the law's own discretisation and
-       from ``steps`` even steps of an integrator of second order; infinite ``steps`` add no
-       error. NaN, the default, means not declared.
-    6. ``cautions`` returns doubts about the model. The method is asked when a plan is read, about
-       the whole batch; after a run ``normal`` has the ends and maxima of the run at hand, and all
-       else is computed again.
-    7. ``books_bound`` is a bound of the relative error of the energy books; infinite, the default,
-       means not declared.
-    8. A law with the word ``together`` answers impacts in which friction changes the approach:
-       ``impacts_together`` returns normal and tangential motion, and ``errors_together`` their
-       errors. With the word ``vectors`` it does so where the slip turns too.
-    9. ``shares_loss(normal_law)`` is True if the force depends on the slip velocity too, through
-       the loss of a viscous normal law. Increments then have ``sampled``, and integrators
-       grade their steps at first touch, where such a force grows as the root of time.
-    10. A law with the word ``normal_spin`` answers impacts of bodies that spin about the normal,
-        ``scene.normal_spin``: its whole-impact answers have ``normal_spin_change``. By symmetry
-        the change of slip is even in the spin, that of the spin odd, and there is no force across
-        the slip. Other laws leave the spin as it is, and the plan cautions with a size.
+    1. Friction is Coulomb's: abs(F) <= mu times the friction load, and F = 0 out of contact; a
+       discrete law may exceed this limit by its declared error. The law is odd in the slip.
+    2. A subclass determines how the law is run: by steps (``SteppedTangentialLaw``), along its
+       path between events (``PathTangentialLaw``), or as wholes (``WholeImpactTangentialLaw``);
+       where friction changes the approach, by steps (``CausalTangentialLaw``) or by the law's own
+       solution (``CoupledTangentialLaw``). A law may be derived from several of these classes.
+    3. Impacts for which a whole-impact answer holds are not marched; the first that holds is used.
+       A law that can be marched is marched where an answer has no course and a history is asked
+       for, and where its error exceeds that which the integrator controls.
 
     Parameters of methods
     ---------------------
     scene : Scene
         One impact or a batch.
     normal : NormalMotion
-        Normal motion of all impacts of ``scene``.
+        Normal motion of all impacts of ``scene``; without friction where friction changes it.
     """
-
-    kind: ClassVar[str] = "tangential"
-    together: ClassVar[bool] = False
-    vectors: ClassVar[bool] = False
-    whole: ClassVar[bool] = False
-
-    @property
-    def normal_spin(self) -> bool:
-        """True if the law answers spin about the normal (clause 10); False by default."""
-        return False
-
-    def books_bound(self, scene: Scene) -> Real:
-        """Return the largest relative error of the energy books that counts as success.
-
-        The error is the imbalance over the energy at the start. Infinite, the default, means not
-        declared: the plan then cautions of an imbalance above 0.01, and 1 counts as success. The
-        error that an integrator controls is allowed in addition.
-
-        Returns
-        -------
-        float or array
-            At least 0; broadcasts to the batch shape.
-        """
-        return math.inf
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
         """Return the whole-impact answers: by default for central impacts and for mu = 0."""
         slip: Any = scene.slip_velocity
         friction: Any = scene.friction_coefficient
         central, smooth = slip == 0.0, friction == 0.0
-        if self.normal_spin and scene.turns:
+        if scene.turns and "normal_spin" in self.offers:
             central = central & (scene.normal_spin == 0.0)
         reasons = (
             (central, "central impact, no slip velocity"),
@@ -182,89 +162,57 @@ class TangentialLaw(Law):
             if where is not False  # not of one impact, which it does not hold for
         )
 
-    def needs_no_march(self, scene: Scene, accuracy: float | None) -> bool:
-        """Return True if ``whole_impacts`` answers for all impacts: sweeps then take more at once.
-
-        False, the default, is always safe.
-
-        Parameters
-        ----------
-        accuracy : float or None
-            The error that the integrator controls: answers with a larger one are not used.
-        """
-        return False
-
-    @classmethod
-    def solver(cls) -> str:
-        """Return in words what computes the answers, where that depends on the installation."""
-        return ""
-
-    @classmethod
-    def one_by_one(cls) -> str:
-        """Return in words what makes a batch as slow as its impacts one by one; empty if not."""
-        return ""
-
-    def shares_loss(self, normal: Law) -> bool:
-        """Return whether the law shares the loss of a normal law (clause 9); False by default.
+    def errors(
+        self, scene: Scene, normal: NormalMotion, steps: Real, accuracy: float | None = None
+    ) -> Errors:
+        """Return declared bounds of the numerical errors; NaN, the default: not declared.
 
         Parameters
         ----------
-        normal : NormalLaw
+        steps : int or array
+            Even steps of an integrator of second order; infinite steps add no error.
+        accuracy : float, optional
+            Error of psi2 that the integrator controls; None for the law's own.
         """
-        return False
+        return Errors()
 
-    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Real) -> Real:
-        """Return the declared bound of the numerical error of psi2, of the batch shape.
+    def books_bound(self, scene: Scene) -> Real:
+        """Return the largest imbalance of the energy books, over the energy at the start.
 
-        Parameters
-        ----------
-        steps : int or array of int
-            Steps of each impact from first touch to separation.
+        Infinite, the default, means not declared: the plan then cautions of one above 0.01. The
+        error that an integrator controls is allowed in addition.
         """
-        return math.nan
-
-    def errors_in_steps(self, scene: Scene, normal: NormalMotion, steps: Real) -> tuple[Real, Real]:
-        """Return declared bounds of the numerical errors of psi2 and of the normal restitution.
-
-        They hold where friction changes the approach and an integrator marches both motions. NaN,
-        the default, means not declared. Of a psi2 with two components it is the length of the
-        error.
-
-        Parameters
-        ----------
-        scene : Scene
-            One impact or a batch, with its inverse mass.
-        normal : NormalMotion
-            The approach without friction.
-        steps : array of float
-            Steps of each impact in the duration of that approach.
-        """
-        return math.nan, math.nan
-
-    def seconds_in_steps(self, scene: Scene, normal: NormalMotion, steps: Real) -> float:
-        """Return about how many seconds a march of both motions takes on a computer of 2026.
-
-        NaN, the default, means not measured.
-
-        Parameters
-        ----------
-        scene, normal, steps
-            As in ``errors_in_steps``.
-        """
-        return math.nan
+        return math.inf
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return one sentence for each doubt about the model; by default on unlike bodies."""
+        """Return one sentence for each doubt about the model; by default on unlike bodies.
+
+        Asked when a plan is read; after a run ``normal`` has the ends and maxima of the run.
+        """
         return coupling(scene)
 
-    def impacts_together(
+
+class WholeImpactTangentialLaw(TangentialLaw):
+    """Base of tangential laws whose whole-impact answers together hold for every impact."""
+
+    @abstractmethod
+    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
+        """Return whole-impact answers that together hold for all impacts."""
+        return super().whole_impacts(scene, normal)
+
+
+class CoupledTangentialLaw(TangentialLaw):
+    """Base of tangential laws that find normal and tangential motion together, themselves."""
+
+    @abstractmethod
+    def solve_coupled(
         self,
         scene: Scene,
         normal: NormalMotion,
         accuracy: float | None,
         observer: Observer | None = None,
     ) -> TangentialMotion:
-        """Return the motion of impacts in which friction changes the approach (clause 8).
+        """Return the motion of impacts in which friction changes the approach, with its ends.
 
         Parameters
         ----------
@@ -276,43 +224,7 @@ class TangentialLaw(Law):
             Error of psi2 over max(1, psi1) that is aimed at; None for the law's own.
         observer : callable, optional
             Called with the instants of a single impact.
-
-        Returns
-        -------
-        TangentialMotion
-            Its ``normal`` holds the ends of the normal motion.
         """
-        raise NotImplementedError(f"{type(self).__name__} has not the word 'together'")
-
-    def errors_together(self, scene: Scene, accuracy: float | None) -> tuple[Real, Real]:
-        """Return declared bounds of the numerical errors of psi2 and of the normal restitution.
-
-        NaN, the default, means not declared.
-
-        Parameters
-        ----------
-        scene : Scene
-        accuracy : float or None
-            As in ``impacts_together``.
-        """
-        return math.nan, math.nan
-
-
-class WholeImpactTangentialLaw(TangentialLaw):
-    """Base of tangential laws that have a whole-impact answer for every impact.
-
-    Contract
-    --------
-    1. The answers of ``whole_impacts`` together hold for all impacts, which the word ``whole``
-       says. No integrator is used.
-    """
-
-    whole: ClassVar[bool] = True
-
-    @abstractmethod
-    def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-        """Return whole-impact answers that together hold for all impacts."""
-        return super().whole_impacts(scene, normal)
 
 
 class Steps(NamedTuple):
@@ -371,52 +283,15 @@ class SteppedTangentialLaw(TangentialLaw):
 
     Contract
     --------
-    1. ``start(scene, normal)`` returns the state at first touch. The state holds the memory of
-       the law, and the numbers that the law needs of scene and normal motion: stiffness,
-       friction coefficient, a grid that spans the largest contact.
-    2. ``advance(state, increment, before, after)`` returns ``(TangentialResponse, state)``.
-       The method does not change its argument ``state``, so an integrator may reject a step and
-       try another one.
-    3. ``before`` and ``after`` are the normal contact at the two ends of the step. Coulomb's
-       limit uses their friction load, or the increment's; never the normal force, which may
-       pull.
-    4. A normal force that grows at displacement 0 makes no tangential force.
-    5. ``fields(state)`` returns named arrays for the history and changes nothing.
-    6. ``stiffness(scene, normal)`` is an upper bound of dF/dD in N/m, from which an integrator
-       computes its largest stable step; 0 for a law whose force does not depend on
-       displacement. A law that offers ``partial_slip`` damps the oscillation by microslip. For
-       other laws integrators take more steps, as phase errors add up over all periods.
-    7. A law whose ``needs_future`` is False takes nothing of the motion to come: ``advance``
-       depends on its arguments only. Such a law runs where friction changes the approach. ``begin``
-       returns its state there; ``normal`` is the approach without friction, from which a law may
-       take scales; the motion that follows may be another, with a larger contact, or with several
-       compressions. ``stiffness`` is an upper bound for the contacts of the approach alone.
-    8. With the word ``vectors`` a law without future takes displacements and slip velocities of
-       shape (..., 2) from the state of ``begin(..., vectors=True)``, and returns a force of this
-       shape; friction work has the batch shape. A rotation of all vectors rotates the forces; the
-       length of the force does not exceed mu times the friction load.
-
-    Parameters of methods
-    ---------------------
-    state : object
-        The state that ``start``, ``begin`` or the last step returned.
+    1. The state holds the memory of the law, and what it needs of scene and normal motion.
+       ``advance`` does not change it, so that an integrator may reject a step.
+    2. Coulomb's limit uses the friction load of the contact, or the increment's; never the normal
+       force, which may pull. A normal force that grows at displacement 0 makes no force.
     """
-
-    needs_future: ClassVar[bool] = True
 
     @abstractmethod
     def start(self, scene: Scene, normal: NormalMotion) -> Any:
         """Return the state at first touch."""
-
-    def begin(self, scene: Scene, normal: NormalMotion, *, vectors: bool = False) -> Any:
-        """Return the state at first touch of a motion to come; by default that of ``start``.
-
-        Parameters
-        ----------
-        vectors : bool
-            True if displacements are vectors of the tangent plane.
-        """
-        return self.start(scene, normal)
 
     @abstractmethod
     def advance(
@@ -426,6 +301,8 @@ class SteppedTangentialLaw(TangentialLaw):
 
         Parameters
         ----------
+        state : object
+            The state at first touch, or that of the last step.
         increment : Increment
             Displacement, slip velocity, mean friction load and duration of the step.
         before, after : NormalContact
@@ -433,36 +310,57 @@ class SteppedTangentialLaw(TangentialLaw):
         """
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
-        """Return an upper bound of the tangential stiffness, in N/m, of the batch shape."""
+        """Return an upper bound of dF/dD in N/m, which bounds a stable step; 0 if there is none.
+
+        A law that offers ``partial_slip`` damps the oscillation; others take more steps.
+        """
         return 0.0
+
+    def fields(self, state: Any) -> Mapping[str, AnyArray]:
+        """Return named arrays of the state for the history (traction, stuck, ...).
+
+        Parameters
+        ----------
+        state : object
+        """
+        return {}
 
     def path_cautions(self) -> tuple[str, ...]:
         """Return one sentence for each doubt about the law along a prescribed path; none here."""
         return ()
 
-    def fields(self, state: Any) -> Mapping[str, AnyArray]:
-        """Return named arrays of ``state`` for the history (traction, stuck, ...)."""
-        return {}
+
+class CausalTangentialLaw(SteppedTangentialLaw):
+    """Base of stepped laws that take nothing of the motion to come, which friction may change.
+
+    From ``begin`` on ``advance`` depends on its arguments only: the motion may have a larger
+    contact than the approach without friction, or several compressions.
+    """
+
+    def begin(self, scene: Scene, normal: NormalMotion, *, vectors: bool = False) -> Any:
+        """Return the state at first touch of a motion to come; by default that of ``start``.
+
+        Parameters
+        ----------
+        normal : NormalMotion
+            The approach without friction, from which a law may take scales.
+        vectors : bool
+            True if displacements are vectors of the tangent plane; only of a law that offers them.
+        """
+        return self.start(scene, normal)
 
 
 class AllStepsTangentialLaw(SteppedTangentialLaw):
-    """Base of stepped laws that can also take all steps in one call, which is faster.
-
-    Contract
-    --------
-    1. ``advance_all(scene, normal, steps)`` returns, to rounding, the forces that ``advance``
-       returns step by step when each step reduces the slip velocity by force times kick over
-       tangential mass.
-    2. ``scene`` is one impact or a batch. Forces of a batch have shape (K, ...).
-    3. ``advance_all`` may return None; the impacts are then marched step by step. A law that
-       implements single impacts only returns None if ``scene.shape`` is not empty.
-    """
+    """Base of stepped laws that can also take all steps in one call, which is faster."""
 
     @abstractmethod
     def advance_all(
         self, scene: Scene, normal: NormalMotion, steps: Steps
     ) -> AllStepsResponse | None:
-        """Return the forces of all steps, of one impact or of each of a batch.
+        """Return, to rounding, the forces that ``advance`` returns step by step.
+
+        Each step reduces the slip velocity by force times kick over tangential mass. None: the
+        impacts are marched step by step, as a batch by a law that has single impacts only.
 
         Parameters
         ----------

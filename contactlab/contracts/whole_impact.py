@@ -88,7 +88,23 @@ class WholeImpact:
 
 
 class Tabulated(ABC):
-    """Capability of a law: psi2 as a function of psi1 and chi, by which ``rebound`` answers."""
+    """Capability of a law: psi2 as a function of psi1 and chi, by which ``rebound`` answers.
+
+    Its table is for chi in ``chi_range``.
+    """
+
+    chi_range: ClassVar[tuple[float, float]]
+
+    @staticmethod
+    @abstractmethod
+    def rebound_error(*impact: Any) -> Any:
+        """Return the bound of the error of psi2 over max(1, abs(psi1)).
+
+        Parameters
+        ----------
+        *impact : float or array
+            chi, and restitutions of a law that takes them.
+        """
 
     @staticmethod
     @abstractmethod

@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 
 from contactlab.compose.names import short_name
-from contactlab.compose.rebound import RESTITUTED_CHI
+from contactlab.compose.registry import REGISTRY
 from contactlab.fitting import tabulated
 from contactlab.fitting.f_test import SPARE, chance_of
 from contactlab.fitting.model import Model
@@ -335,7 +335,8 @@ def _restituted(problem: Problem, values: Array) -> Wider:
         )
 
     names = [parameter.name for parameter in parameters]
-    low, high = RESTITUTED_CHI
+    table: Any = REGISTRY.law_class("normal.viscoelastic")
+    low, high = table.chi_range
     chi = np.asarray(setup.scene.chi)
     known = np.all((chi >= low) & (chi <= high)) and tabulated.holds(laws)
     if f"normal.{RESTITUTION}" in names or not known:

@@ -53,7 +53,7 @@ def with_loss(restitution: float) -> Simulation:
 
 def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
     """Return the impacts of a batch by the table of psi2; friction work is NaN."""
-    lossy = simulation is not None and simulation.normal.viscous
+    lossy = simulation is not None and "viscous" in simulation.normal.offers
     laws: Any = simulation if lossy else Simulation()
     course = laws.normal_motion(scene)
     ends = {name: getattr(course, source) for name, source in ENDS.items()}

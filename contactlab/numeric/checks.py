@@ -201,7 +201,7 @@ def _checked(value: Numbers | None, owner: object, field: attrs.Attribute[object
         real(field.name, numbers[~np.isnan(numbers)], rule=meta["rule"], remedy=remedy, empty=True)
         return np.array(numbers, dtype=np.float64)
     number = real(field.name, value, rule=meta["rule"], remedy=remedy, empty=meta["empty"])
-    if isinstance(number, np.ndarray) and getattr(type(owner), "plain_options", False):
+    if isinstance(number, np.ndarray) and getattr(type(owner), "_plain_options", False):
         rule = "must be one number: an option of a law holds for every impact"
         raise refuse(field.name, value, rule, "make a law for each value")
     return number
@@ -239,7 +239,7 @@ def quantity(
     """Return an attrs field for a checked real quantity with its unit in the metadata.
 
     If the default is None, the quantity is optional and may be None. A body or a scene accepts an
-    array with one value for each impact; a law (``Law.plain_options``) refuses arrays.
+    array with one value for each impact; a law refuses arrays.
 
     Parameters
     ----------

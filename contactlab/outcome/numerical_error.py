@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from contactlab.contracts.error_model import COARSE, range_of
+from contactlab.impact.error_model import COARSE, range_of
 from contactlab.numeric.arrays import for_share
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.columns import WithScene

@@ -15,7 +15,7 @@ from contactlab.compose.names import full_name
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import TangentialLaw, WholeImpactTangentialLaw
-from contactlab.contracts.error_model import range_of
+from contactlab.impact.error_model import range_of
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array
 from contactlab.study.stability_references import continuum, converges, reference_for

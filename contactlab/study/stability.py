@@ -14,7 +14,7 @@ import attrs
 import numpy as np
 
 from contactlab.compose.composition import DEFAULT_NORMAL
-from contactlab.contracts.error_model import COARSE
+from contactlab.impact.error_model import COARSE
 from contactlab.study.bench_methods import Method
 from contactlab.study.model_error import ModelError, model_error
 from contactlab.study.stability_cases import INCIDENCES, MAP, Case, cases, map_chis

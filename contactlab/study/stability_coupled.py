@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.contracts.tangential import SteppedTangentialLaw
+from contactlab.contracts.integrator import CoupledIntegrator
+from contactlab.contracts.tangential import CausalTangentialLaw, CoupledTangentialLaw
 from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
 from contactlab.outcome.result import ImpactResult
@@ -69,10 +70,14 @@ def tried_coupled(method: Method) -> bool:
     """Return whether the method answers coupled impacts, by partial slip or as rigid bodies."""
     simulation = method.simulation({"tangential": {}, "integrator": {}})
     law = simulation.tangential
-    if law.together:
+    if isinstance(law, CoupledTangentialLaw):
         return True
-    stepped = isinstance(law, SteppedTangentialLaw) and not law.needs_future
-    return stepped and "partial_slip" in law.offers and simulation.integrator.together
+    stepped = isinstance(law, CausalTangentialLaw)
+    return (
+        stepped
+        and "partial_slip" in law.offers
+        and isinstance(simulation.integrator, CoupledIntegrator)
+    )
 
 
 def distance(one: ImpactResult, other: ImpactResult) -> Any:

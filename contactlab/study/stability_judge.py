@@ -14,8 +14,8 @@ from contactlab.compose.registry import PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.compose.solved_motion import ACCURACY
 from contactlab.contracts import ClosedFormNormalLaw
-from contactlab.contracts.error_model import LARGEST_SHARE, range_of
 from contactlab.contracts.status import Status
+from contactlab.impact.error_model import LARGEST_SHARE, range_of
 from contactlab.impact.scene import Scene
 from contactlab.outcome.motion import Motion, sound
 from contactlab.outcome.plan import MARCHED, Plan, PlanColumns
@@ -164,7 +164,7 @@ def marched(simulation: Simulation, scene: Scene) -> ImpactResult:
     normal = simulation.normal_motion(scene)
     tangential = integrator.integrate(normal, law, scene, None)
     code = np.full(scene.shape, MARCHED)
-    plan = Plan(PlanColumns(code, integrator.psi2_error(normal, law, scene)))
+    plan = Plan(PlanColumns(code, integrator.errors(normal, law, scene).psi2))
     motion = sound(Motion.along(normal, tangential))
     return ImpactResult(scene=scene, plan=plan, motion=motion, run_time=0.0, laws={})
 

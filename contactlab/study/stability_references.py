@@ -24,7 +24,8 @@ from contactlab.contracts import (
     TangentialLaw,
     WholeImpactTangentialLaw,
 )
-from contactlab.contracts.error_model import range_of
+from contactlab.contracts.tangential import shares_loss
+from contactlab.impact.error_model import range_of
 from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.impact.scene import Scene
 from contactlab.testing.units import with_parameters
@@ -141,7 +142,7 @@ def judging_laws(normal: NormalLaw, judged: TangentialLaw) -> list[type[Tangenti
         except (ValueError, PluginError):  # blocked, broken, or an option has no default
             continue
         suits = converges(law) and law.needs <= {"radius"} and misfit(normal, law) is None
-        suits = suits and law.shares_loss(normal) is judged.shares_loss(normal)
+        suits = suits and shares_loss(law, normal) is shares_loss(judged, normal)
         if suits and _refines(law) and type(law) is not type(judged):
             pointwise = (POINTWISE in law.expected_failures, POINTWISE in judged.expected_failures)
             (same_limit if pointwise[0] is pointwise[1] else other_limit).append(type(law))

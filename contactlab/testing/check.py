@@ -72,7 +72,7 @@ class Check:
         """
         if not isinstance(law, self.contracts):
             return False
-        return self.word is None or getattr(law, self.word[0]) == self.word[1]
+        return self.word is None or (self.word[0] in law.offers) == self.word[1]
 
     @property
     def holds(self) -> str:

@@ -48,7 +48,7 @@ class Noting(Yielding):
 @check(Integrator)
 def drift(integrator: Integrator) -> None:
     """The displacement of a step is velocity times drift, if the drift is told (Increment)."""
-    apply_if(issubclass(SteppedTangentialLaw, integrator.tangential_contract), "It has no steps.")
+    apply_if(SteppedTangentialLaw in integrator.needs, "It has no steps.")
     law, impact = Noting(), scene(ANGLES[1], CHI)
     normal = normal_motion(REGISTRY.create("normal.hertz"), impact)
     integrator.integrate(normal, law, impact, None)
@@ -89,13 +89,7 @@ def dissipation(law: NormalLaw) -> None:
 
 @check(Law)
 def partners(law: Law) -> None:
-    """Partners and scenes are refused by a sentence, or not at all (Law, 8)."""
-    for name in ("normal.hertz", "tangential.springs", "integrator.symplectic"):
-        other = REGISTRY.create(name)
-        if other.kind != law.kind:
-            reason = law.refuses(other)
-            told = reason is None or (isinstance(reason, str) and bool(reason.strip()))
-            hold(told, f"refuses({name}) returned {reason!r}: must be None, or a reason.")
+    """Scenes are refused by a sentence, or not at all (Law, 8)."""
     for impact in (scene(ANGLES[1], CHI), Scene.nondimensional(psi1=1.0, chi=CHI)):
         try:
             law.accept(impact)

@@ -13,7 +13,7 @@ from contactlab.compose.answers import answers
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import ClosedFormNormalLaw, Integrator, Law, TangentialLaw
-from contactlab.contracts.error_model import psi_magnitude
+from contactlab.impact.error_model import psi_magnitude
 from contactlab.impact.scene import Scene
 from contactlab.testing.check import NotApplicableError, apply_if, check, hold, within
 from contactlab.testing.impacts import CHI
@@ -70,8 +70,8 @@ def _declared(way: Way, impact: Scene) -> float:
         return float(np.asarray(whole[0].psi2_error)) if whole else math.nan
     steps = way.integrator.resolution_for(normal, way.law, impact)
     if way.integrator.accuracy is None:
-        return float(np.asarray(way.law.psi2_error(impact, normal, steps)))
-    own = float(np.asarray(way.law.psi2_error(impact, normal, math.inf)))
+        return float(np.asarray(way.law.errors(impact, normal, steps).psi2))
+    own = float(np.asarray(way.law.errors(impact, normal, math.inf).psi2))
     return own + way.integrator.accuracy * float(np.asarray(psi_magnitude(impact)))
 
 

@@ -13,11 +13,11 @@ from contactlab.compose.composition import WAYS
 from contactlab.compose.registry import KINDS
 from contactlab.contracts import (
     API_VERSION,
+    CausalTangentialLaw,
     ClosedFormNormalLaw,
     Integrator,
     Law,
     NormalLaw,
-    SteppedTangentialLaw,
     TangentialLaw,
 )
 from contactlab.testing.check import CHECKS, check, hold
@@ -31,22 +31,23 @@ BAD_NUMBERS = (float("nan"), float("inf"), float("-inf"), "seven", 1j)
 #: Values that a parameter must refuse if it is a word, or True or False.
 BAD_WORDS, BAD_FLAGS = ("no such word", 3.5), (float("nan"), "yes", 2)
 
-#: Words of a class of law, with the method that each promises.
-WORDS: tuple[tuple[str, Any, str], ...] = (
-    ("together", TangentialLaw, "impacts_together"),
-    ("together", Integrator, "integrate_together"),
-    ("vectors", SteppedTangentialLaw, "begin"),
+#: Words that no check tests, by the contract of the laws that offer them.
+UNTESTED = {"similar": NormalLaw, "plastic": NormalLaw, "shares_loss": TangentialLaw}
+
+#: Words with the method that each promises.
+PROMISED: tuple[tuple[str, Any, str], ...] = (
+    ("vectors", CausalTangentialLaw, "begin"),
     ("normal_spin", TangentialLaw, "whole_impacts"),
 )
 
 
 def claims(contract: type[Law]) -> frozenset[str]:
     """Return the words that laws of ``contract`` may offer: the claims that checks test."""
-    return frozenset(
-        entry.claim
-        for entry in CHECKS
-        if entry.claim and any(issubclass(each, contract) for each in entry.contracts)
-    )
+    checked = [each for each in CHECKS if any(issubclass(one, contract) for one in each.contracts)]
+    own = {word for word, base in UNTESTED.items() if base is contract}
+    own |= {each.claim for each in checked if each.claim}
+    own |= set() if contract is Integrator else {"elliptic"}
+    return frozenset(own | {each.word[0] for each in checked if each.word})
 
 
 @check(Law)
@@ -57,25 +58,31 @@ def contract(law: Law) -> None:
     hold(
         isinstance(law, bases[law.kind]), f"A {law.kind} law must be a {bases[law.kind].__name__}."
     )
-    for name, contract in (("needs", NormalLaw), ("offers", bases[law.kind])):
-        words = getattr(law, name)
-        good = isinstance(words, frozenset) and all(isinstance(word, str) for word in words)
-        hold(good, f"{name} = {words!r}: must be a frozenset of words.")
+    hold(isinstance(law.needs, frozenset), f"needs = {law.needs!r}: must be a frozenset of words.")
+    hold(not law.needs or law.kind != "normal", "A normal law needs nothing.")
+    words = {each for each in law.needs if isinstance(each, str)}
+    for name, contract, own in (
+        ("needs", NormalLaw, words),
+        ("offers", bases[law.kind], law.offers),
+    ):
+        good = isinstance(own, frozenset | set) and all(isinstance(word, str) for word in own)
+        hold(good, f"{name} = {own!r}: must be a frozenset of words.")
         known_words = claims(contract)
-        for word in sorted(words - known_words):
+        for word in sorted(own - known_words):
             listed = ", ".join(sorted(known_words)) or "none"
             hold(False, f"{name}: {word!r} is a word that no check knows; there are: {listed}.")
-    hold(not law.needs or isinstance(law, TangentialLaw), "Only a tangential law needs something.")
     if isinstance(law, TangentialLaw):
         ways = ", ".join(way.__name__ for way in WAYS)
         hold(isinstance(law, WAYS), f"It must be derived from one of {ways}: nobody can run it.")
     if isinstance(law, Integrator):
-        for name, base in (("tangential_contract", TangentialLaw), ("normal_contract", NormalLaw)):
-            stated = getattr(law, name, None)
-            good = isinstance(stated, type) and issubclass(stated, base)
-            hold(good, f"{name} = {stated!r}: must be a class derived from {base.__name__}.")
-    for word, base, method in WORDS:
-        if isinstance(law, base) and getattr(law, word) is True:
+        needed = [each for each in law.needs if isinstance(each, type) and issubclass(each, Law)]
+        hold(len(needed) == len(law.needs), f"needs = {law.needs!r}: must be classes of laws.")
+        hold(
+            any(issubclass(each, TangentialLaw) for each in needed),
+            f"needs = {law.needs!r}: must have a class derived from TangentialLaw.",
+        )
+    for word, base, method in PROMISED:
+        if isinstance(law, base) and word in law.offers:
             own = getattr(type(law), method) is not getattr(base, method)
             hold(own, f"It has the word {word!r}, and does not define {method}.")
     if "elastic_hertz" in law.offers:

@@ -9,7 +9,7 @@ import numpy as np
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import NormalLaw
 from contactlab.impact.hertz import hertz_scales
-from contactlab.testing.check import apply_if, check, hold, within
+from contactlab.testing.check import check, hold, within
 from contactlab.testing.normal import ROUNDING, STEPS, respond, strokes
 
 #: Contact radius squared over R times approach: 1 for an elastic sphere, 2 for a material that
@@ -124,10 +124,9 @@ def hertzian_pressure(law: NormalLaw) -> None:
             )
 
 
-@check(NormalLaw)
+@check(NormalLaw, word=("viscous", True))
 def viscous(law: NormalLaw) -> None:
     """A viscous law has Hertz's radius and force at rest, and more in approach (NormalLaw, 8)."""
-    apply_if(law.viscous, "It is not viscous.")
     impact, approach, _ = strokes()
     depths = np.linspace(0.02, 1.0, STEPS) * float(approach.max())
     exact = np.sqrt(impact.pair.radius * depths)

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from contactlab.compose.composition import misfit
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import NormalContact, SteppedTangentialLaw
@@ -36,7 +37,7 @@ def stiffness(law: SteppedTangentialLaw) -> None:
     The contacts are as large as Hertz's, and larger under a softer normal law.
     """
     for normal_law in (REGISTRY.create("normal.hertz"), SoftHertz()):
-        if not law.needs <= normal_law.offers:
+        if misfit(normal_law, law) is not None:
             continue
         bench = Bench.along(normal_motion(normal_law, scene(0.0, HEAVY)))
         bound = float(law.stiffness(bench.scene, bench.normal)) * bench.slip / bench.friction_force

@@ -7,7 +7,7 @@ import numpy as np
 
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
-from contactlab.contracts import SteppedTangentialLaw
+from contactlab.contracts import CausalTangentialLaw, SteppedTangentialLaw
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.types import Array
 from contactlab.testing import limits
@@ -24,7 +24,7 @@ from contactlab.testing.load_paths import (
 )
 
 #: Words of the laws that the checks apply to, with their values.
-PRESENT, VECTORS = ("needs_future", False), ("vectors", True)
+VECTORS = ("vectors", True)
 ELLIPTIC = ("elliptic", True)
 SEEDS = (41, 42, 43)
 #: Rounding of forces over mu P_max, and of work.
@@ -39,8 +39,8 @@ RATIO, LITTLE, NEAR = 1.2, 1e-3, 0.01
 SHAPES: tuple[tuple[int, ...], ...] = ((), (3,))
 
 
-@check(SteppedTangentialLaw, word=PRESENT)
-def begin_is_start(law: SteppedTangentialLaw) -> None:
+@check(CausalTangentialLaw)
+def begin_is_start(law: CausalTangentialLaw) -> None:
     """In a contact that grows no larger than expected `begin` and `start` give the same forces."""
     for shape in SHAPES:
         bench = Bench.of(shape)
@@ -56,8 +56,8 @@ def begin_is_start(law: SteppedTangentialLaw) -> None:
             )
 
 
-@check(SteppedTangentialLaw, word=PRESENT)
-def deeper_contact(law: SteppedTangentialLaw) -> None:
+@check(CausalTangentialLaw)
+def deeper_contact(law: CausalTangentialLaw) -> None:
     """A contact may grow and last beyond the approach without friction, and be made again."""
     bench = Bench.of()
     beyond = straight((0.0, DEEP), (4.0 * DEEP, DEEP), (4.0 * DEEP, 0.0), steps=STEPS)
@@ -83,8 +83,8 @@ def deeper_contact(law: SteppedTangentialLaw) -> None:
     )
 
 
-@check(SteppedTangentialLaw, word=VECTORS)
-def vectors_rotate(law: SteppedTangentialLaw) -> None:
+@check(CausalTangentialLaw, word=VECTORS)
+def vectors_rotate(law: CausalTangentialLaw) -> None:
     """A rotation of all vectors in the tangent plane rotates the forces (vector, 2)."""
     for shape in SHAPES:
         bench = Bench.of(shape)
@@ -101,8 +101,8 @@ def vectors_rotate(law: SteppedTangentialLaw) -> None:
             )
 
 
-@check(SteppedTangentialLaw, word=VECTORS)
-def vectors_turn(law: SteppedTangentialLaw) -> None:
+@check(CausalTangentialLaw, word=VECTORS)
+def vectors_turn(law: CausalTangentialLaw) -> None:
     """Under a steady drag the force comes to lie along the slip, at Coulomb's limit."""
     bench, level = Bench.of(), 0.8
     bound = slack(law, 1e-6)
@@ -121,8 +121,8 @@ def vectors_turn(law: SteppedTangentialLaw) -> None:
         )
 
 
-@check(SteppedTangentialLaw, word=VECTORS)
-def vector_limit(law: SteppedTangentialLaw) -> None:
+@check(CausalTangentialLaw, word=VECTORS)
+def vector_limit(law: CausalTangentialLaw) -> None:
     """No force is longer than mu times the friction load, whichever way the slip turns."""
     bench = Bench.of((3,))
     for seed in SEEDS:
@@ -137,8 +137,8 @@ def vector_limit(law: SteppedTangentialLaw) -> None:
         )
 
 
-@check(SteppedTangentialLaw, word=VECTORS)
-def vectors_on_a_line(law: SteppedTangentialLaw) -> None:
+@check(CausalTangentialLaw, word=VECTORS)
+def vectors_on_a_line(law: CausalTangentialLaw) -> None:
     """Vectors along t1 give the forces and the work of numbers, and no force along t2."""
     for shape in SHAPES:
         bench = Bench.of(shape)
@@ -171,7 +171,7 @@ def two_stiffnesses(law: SteppedTangentialLaw) -> None:
         path = wandering(SEEDS[0])
         gap = worst(drive(law, bench, path).force - drive(law, circle, path).force)
         within(gap, slack(law), f"The stiffness of t2 moves forces along t1 by {gap:.2g} mu P_max.")
-        if not law.vectors:
+        if not isinstance(law, CausalTangentialLaw) or "vectors" not in law.offers:
             continue
         level, way = 0.8, np.array((0.6, 0.8))
         path = straight((0.0, level), (LITTLE, level), (DRAGGED, level), steps=STEPS)
@@ -191,7 +191,7 @@ def two_stiffnesses(law: SteppedTangentialLaw) -> None:
         )
 
 
-def drive_vectors(law: SteppedTangentialLaw, bench: Bench, path: Path) -> Answers:
+def drive_vectors(law: CausalTangentialLaw, bench: Bench, path: Path) -> Answers:
     """Return the answers of ``law`` to slips of shape (K, 2); forces have the shape (K, ..., 2)."""
     limits.begin(f"a path of {len(path.slip)} vectors")
     state = law.begin(bench.scene, bench.normal, vectors=True)

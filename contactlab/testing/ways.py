@@ -12,6 +12,9 @@ from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import (
+    CausalTangentialLaw,
+    CoupledIntegrator,
+    CoupledTangentialLaw,
     Integrator,
     Law,
     NormalLaw,
@@ -113,9 +116,11 @@ def _coupled(impact: Scene) -> Scene:
 def _together(way: Way, impact: Scene, recorder: Observer | None) -> TangentialMotion:
     """Return the motion of an impact in which friction changes the approach."""
     normal = normal_motion(way.normal, impact.central)
-    if way.integrator is None or way.law.together:
-        return way.law.impacts_together(impact, normal, None, recorder)
-    return way.integrator.integrate_together(normal, way.law, impact, recorder)
+    if way.integrator is None or isinstance(way.law, CoupledTangentialLaw):
+        assert isinstance(way.law, CoupledTangentialLaw)
+        return way.law.solve_coupled(impact, normal, None, recorder)
+    assert isinstance(way.integrator, CoupledIntegrator)
+    return way.integrator.integrate_coupled(normal, way.law, impact, recorder)
 
 
 def _followed(way: Way, normal: NormalMotion, impact: Scene) -> None:
@@ -185,11 +190,11 @@ def ways(law: TangentialLaw | Integrator, normal: NormalLaw | None = None) -> li
         listed.append(Way(law, normal_law, REGISTRY.create("integrator.symplectic", steps=STEPS)))
     if isinstance(law, PathTangentialLaw):
         events: Integrator = REGISTRY.create("integrator.events")
-        if isinstance(normal_law, events.normal_contract):
+        if composition.misfit(normal_law, law, events) is None:
             listed.append(Way(law, normal_law, events))
     if isinstance(law, WholeImpactTangentialLaw):
         listed.append(Way(law, normal_law, None))
-    if not law.needs <= normal_law.offers:
+    if composition.misfit(normal_law, law) is not None:
         listed = []
     apply_if(listed, f"There is no way to run it under {type(normal_law).__name__}.")
     return listed
@@ -205,17 +210,24 @@ def ways_of_bodies(law: TangentialLaw | Integrator) -> list[Way]:
     """
     listed = ways(law)
     together = [
-        Way(each.law, each.normal, None if each.law.together else each.integrator, bodies=True)
+        Way(
+            each.law,
+            each.normal,
+            None if isinstance(each.law, CoupledTangentialLaw) else each.integrator,
+            bodies=True,
+        )
         for each in listed
-        if each.law.together or (each.integrator is not None and _marches(each))
+        if isinstance(each.law, CoupledTangentialLaw)
+        or (each.integrator is not None and _marches(each))
     ]
     return listed + together[:1]
 
 
 def _marches(way: Way) -> bool:
     """Return whether the integrator of a way marches the law with the normal motion."""
-    present = isinstance(way.law, SteppedTangentialLaw) and not way.law.needs_future
-    return way.integrator is not None and way.integrator.together and present
+    return isinstance(way.integrator, CoupledIntegrator) and isinstance(
+        way.law, CausalTangentialLaw
+    )
 
 
 def meet(

@@ -9,6 +9,7 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import (
+    CoupledTangentialLaw,
     Ends,
     NormalMotion,
     Observer,
@@ -28,7 +29,7 @@ ROUNDING = 1e-9
 
 
 @attrs.frozen(kw_only=True)
-class Coulomb(WholeImpactTangentialLaw):
+class Coulomb(WholeImpactTangentialLaw, CoupledTangentialLaw):
     """Coulomb friction between bodies that do not deform tangentially.
 
     While the contact slips the force is mu times the friction load; once slip has stopped the
@@ -46,11 +47,8 @@ class Coulomb(WholeImpactTangentialLaw):
     635-642, for Routh's construction.
     """
 
-    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
-    offers: ClassVar[frozenset[str]] = frozenset({"rigid"})
-    together: ClassVar[bool] = True
-    vectors: ClassVar[bool] = True
+    offers: ClassVar[frozenset[str]] = frozenset({"rigid", "elliptic", "vectors"})
     expected_failures: ClassVar[Mapping[str, str]] = {
         "impact_reference": "the exact solution is that of bodies which deform tangentially",
     }
@@ -74,7 +72,7 @@ class Coulomb(WholeImpactTangentialLaw):
             "up to about 1.5 where the contact sticks (model, not numerical error)",
         )
 
-    def impacts_together(
+    def solve_coupled(
         self,
         scene: Scene,
         normal: NormalMotion,
@@ -88,17 +86,14 @@ class Coulomb(WholeImpactTangentialLaw):
 
 
 @attrs.frozen(kw_only=True)
-class Frictionless(WholeImpactTangentialLaw):
+class Frictionless(WholeImpactTangentialLaw, CoupledTangentialLaw):
     """No tangential force; the reference for the cost of a run.
 
     Between any two bodies pressure alone drags the surfaces: psi2 = psi1 - 2 eta if e is 1.
     """
 
-    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
-    offers: ClassVar[frozenset[str]] = frozenset({"no_friction"})
-    together: ClassVar[bool] = True
-    vectors: ClassVar[bool] = True
+    offers: ClassVar[frozenset[str]] = frozenset({"no_friction", "elliptic", "vectors"})
     expected_failures: ClassVar[Mapping[str, str]] = {
         "impact_reference": "the exact solution is that of bodies with friction",
         "sliding_impulse": "there is no friction, however large the slip",
@@ -116,7 +111,7 @@ class Frictionless(WholeImpactTangentialLaw):
         """Return no caution: without traction there is no coupling."""
         return ()
 
-    def impacts_together(
+    def solve_coupled(
         self,
         scene: Scene,
         normal: NormalMotion,

@@ -9,11 +9,12 @@ from typing import Any, ClassVar, NamedTuple
 import attrs
 
 from contactlab.contracts import NormalContact, NormalLaw, without_tension
-from contactlab.contracts.restitution import one_of_two, restitution, root
+from contactlab.contracts.restitution import restitution
 from contactlab.impact.hertz import hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, quantity
 from contactlab.numeric.types import Real
+from contactlab_laws.calibrated import claims_of_loss, one_of_two, root
 
 #: Default restitution, for laws with no damping of their own.
 DEFAULT_RESTITUTION = 0.9
@@ -61,9 +62,7 @@ class HuntCrossley(NormalLaw):
     Hunt & Crossley, J. Appl. Mech. 42 (1975) 440-445, doi:10.1115/1.3423596.
     """
 
-    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
-    offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure"})
 
     restitution: float | None = restitution(default=None)
     damping: float | None = quantity("s/m", rule=NON_NEGATIVE, default=None)
@@ -71,15 +70,12 @@ class HuntCrossley(NormalLaw):
     def __attrs_post_init__(self) -> None:
         one_of_two(self, "restitution", "damping", default=DEFAULT_RESTITUTION)
 
-    @property
-    def viscous(self) -> bool:
-        """True if there is any loss."""
-        return self.restitution not in (None, 1.0) or bool(self.damping)
+    def _offers(self) -> frozenset[str]:
+        """Return the claims, with those of the loss."""
+        loses = self.restitution not in (None, 1.0) or bool(self.damping)
+        return claims_of_loss(self.restitution, loses) | {"radius", "hertzian_pressure", "elliptic"}
 
-    @property
-    def similar(self) -> bool:
-        """True for a restitution: then motions of all impacts are one but for their scale."""
-        return self.restitution is not None
+    offers: ClassVar[Any] = property(_offers)
 
     def start(self, scene: Scene) -> Parts:
         """Return stiffness and damping of the pair; the law has no memory."""

@@ -82,7 +82,6 @@ class KuwabaraKono(Relaxing):
     """
 
     api_version: ClassVar[int] = 2
-    offers: ClassVar[frozenset[str]] = frozenset({"radius"})
 
     number_of = staticmethod(viscosity_number)
 

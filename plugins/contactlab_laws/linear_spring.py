@@ -9,10 +9,10 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import (
+    CausalTangentialLaw,
     Increment,
     NormalContact,
     NormalMotion,
-    SteppedTangentialLaw,
     TangentialResponse,
 )
 from contactlab.impact.scene import Scene
@@ -54,7 +54,7 @@ class State(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class LinearSpring(SteppedTangentialLaw):
+class LinearSpring(CausalTangentialLaw):
     """F = k_t u + c v_x within mu L: spring and dashpot, in series with a slider.
 
     The stiffness is the same from first touch to separation, k_t = ``stiffness_ratio`` times
@@ -75,8 +75,7 @@ class LinearSpring(SteppedTangentialLaw):
     """
 
     api_version: ClassVar[int] = 2
-    needs_future: ClassVar[bool] = False
-    vectors: ClassVar[bool] = True
+    offers: ClassVar[frozenset[str]] = frozenset({"vectors"})
 
     stiffness_ratio: float | None = quantity("1", rule=POSITIVE, default=None)
     damping: float = quantity("1", rule=NON_NEGATIVE, default=0.0)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import (
+    CausalTangentialLaw,
     Increment,
     NormalContact,
     NormalMotion,
@@ -170,7 +171,7 @@ class State(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class MindlinCap(SteppedTangentialLaw):
+class MindlinCap(CausalTangentialLaw):
     """The stiffness of a contact that sticks all over, k = 2 G* b, under Coulomb's cap mu P.
 
     No part of the contact slips before the whole does. The energy that the changing
@@ -201,8 +202,7 @@ class MindlinCap(SteppedTangentialLaw):
     """
 
     api_version: ClassVar[int] = 2
-    needs_future: ClassVar[bool] = False
-    vectors: ClassVar[bool] = True
+    offers: ClassVar[frozenset[str]] = frozenset({"vectors"})
     needs: ClassVar[frozenset[str]] = frozenset({"radius"})
 
     form: str = choice(*FORMS, default="displacement")

@@ -8,11 +8,12 @@ from typing import Any, ClassVar, NamedTuple
 import attrs
 
 from contactlab.contracts import NormalLaw
-from contactlab.contracts.restitution import one_of_two, restitution
+from contactlab.contracts.restitution import restitution
 from contactlab.impact.hertz import hertz_scales, hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, quantity
 from contactlab.numeric.types import Real
+from contactlab_laws.calibrated import claims_of_loss, one_of_two
 
 #: Default restitution, for laws with no relaxation time of their own.
 DEFAULT_RESTITUTION = 0.9
@@ -30,7 +31,7 @@ class Parts(NamedTuple):
 class Relaxing(NormalLaw):
     """Base of laws of a relaxation time A, which a restitution gives at each speed."""
 
-    elliptic: ClassVar[bool] = True
+    claims: ClassVar[frozenset[str]] = frozenset({"radius", "elliptic"})
 
     restitution: float | None = restitution(default=None)
     relaxation_time: float | None = quantity("s", rule=NON_NEGATIVE, default=None)
@@ -44,14 +45,15 @@ class Relaxing(NormalLaw):
         """Return A v1/z_max at a restitution, z_max that of Hertz's impact."""
 
     @property
-    def viscous(self) -> bool:
+    def loses(self) -> bool:
         """True if there is any loss."""
         return self.restitution not in (None, 1.0) or bool(self.relaxation_time)
 
-    @property
-    def similar(self) -> bool:
-        """True for a restitution: then motions of all impacts are one but for their scale."""
-        return self.restitution is not None
+    def _offers(self) -> frozenset[str]:
+        """Return the claims, with those of the loss."""
+        return claims_of_loss(self.restitution, self.loses) | self.claims
+
+    offers: ClassVar[Any] = property(_offers)
 
     def restitution_in(self, scene: Scene) -> Real | None:
         """Return e of each impact, where no relaxation time is given."""

@@ -9,11 +9,11 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import NormalContact, NormalLaw
-from contactlab.contracts.restitution import one_of_two
 from contactlab.impact.hertz import hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import POSITIVE, quantity
 from contactlab.numeric.types import Real
+from contactlab_laws.calibrated import one_of_two
 
 #: Default v_y in m/s, that of a ball of hard steel.
 DEFAULT_VELOCITY = 0.1
@@ -53,8 +53,7 @@ class Thornton(NormalLaw):
     """
 
     api_version: ClassVar[int] = 2
-    plastic: ClassVar[bool] = True
-    offers: ClassVar[frozenset[str]] = frozenset({"radius"})
+    offers: ClassVar[frozenset[str]] = frozenset({"radius", "plastic"})
 
     yield_velocity: float | None = quantity("m/s", rule=POSITIVE, default=None)
     yield_pressure: float | None = quantity("Pa", rule=POSITIVE, default=None)

@@ -41,8 +41,8 @@ class Walton(WholeImpactTangentialLaw):
     Allia, Phys. Fluids 6 (1994) 1108-1115, doi:10.1063/1.868282.
     """
 
-    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
+    offers: ClassVar[frozenset[str]] = frozenset({"elliptic"})
     expected_failures: ClassVar[Mapping[str, str]] = {
         "impact_reference": "the exact solution is that of bodies which deform tangentially",
     }

@@ -44,10 +44,8 @@ class WaltonBraun(NormalLaw):
     Walton & Braun, J. Rheol. 30 (1986) 949-980, doi:10.1122/1.549893.
     """
 
-    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
-    plastic: ClassVar[bool] = True
-    offers: ClassVar[frozenset[str]] = frozenset({"radius"})
+    offers: ClassVar[frozenset[str]] = frozenset({"radius", "elliptic", "plastic"})
 
     restitution: float = restitution(default=0.9)
     stiffness: float | None = quantity("N/m", rule=POSITIVE, default=None)

@@ -14,7 +14,7 @@ import contactlab
 from contactlab.cli import main as module
 from contactlab.cli import run as run_command
 from contactlab.compose.installed import commands
-from contactlab.contracts.integrator import CHUNK
+from contactlab.compose.sweep import MARCHED as CHUNK
 
 COMMANDS = commands("contactlab")
 COMMAND = [sys.executable, "-m", "contactlab"]

@@ -43,7 +43,7 @@ def test_check_of_a_law_that_keeps_its_contract(run):
     assert ran.out.splitlines()[0].split() == ["check", "outcome", "sentence"]
     assert 'never "no contact"' in ran.out
     passed = re.findall(r"^\w+ +passed ", ran.out, re.MULTILINE)
-    others = "1 not applicable, 1 not claimed"  # it is not viscous
+    others = "1 not claimed"
     assert ran.out.splitlines()[-1] == f"{len(passed)} passed, {others}"
 
 

@@ -36,7 +36,7 @@ class Spoiler:
 
 def inert_copy(law, base):
     """Return class attributes of a law for its wrapper."""
-    names = ("needs", "offers", "resolution", "linear_below")
+    names = ("needs", "offers", "resolution")
     found = {name: getattr(law, name) for name in names if hasattr(law, name)}
     return found | {"api_version": 2}
 

@@ -6,7 +6,7 @@ import pytest
 
 import contactlab
 from contactlab import Encounter, RigidBody, Simulation, Sphere, collide
-from contactlab.compose.rebound import RESTITUTED_ERROR
+from contactlab_laws.tables.restituted_regions import RESTITUTED_ERROR
 from tests.compose.test_collision import BALL, meeting
 from tests.compose.test_eccentric import FLOOR, STEEL, rod
 

@@ -608,7 +608,7 @@ def test_a_sweep_takes_a_sequence_or_a_batch():
 
 
 def test_a_stopped_sweep_keeps_what_is_done_and_resumes_on_other_workers(tmp_path, monkeypatch):
-    monkeypatch.setattr(sweeping, "block_of", lambda _: 1000)
+    monkeypatch.setattr(sweeping, "block_for", lambda *_: 1000)
     scene, folder = random_planar(2500, 15), tmp_path / "kept"
 
     def stop(done, total):

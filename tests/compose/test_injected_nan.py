@@ -64,7 +64,7 @@ def ladder(integrator):
     are chosen on the way, with three calls each, a bad value is treated alike in all of them:
     the first four, and then ever fewer.
     """
-    every, further = (41, 12) if integrator.common_instants else (13, 10)
+    every, further = (41, 12)
     return [*range(1, every), *np.geomspace(every, MOST, further).astype(int).tolist()]
 
 

@@ -12,8 +12,10 @@ import pytest
 
 from contactlab import Simulation, create
 from contactlab.contracts import (
+    CausalTangentialLaw,
+    CoupledIntegrator,
+    CoupledTangentialLaw,
     Ends,
-    Integrator,
     SteppedTangentialLaw,
     TangentialMotion,
     TangentialResponse,
@@ -30,19 +32,17 @@ from tests.compose.any_scene import (
 )
 
 
-class OfVectors(SteppedTangentialLaw):
+class OfVectors(CausalTangentialLaw):
     """Base of laws that need no future, of slip that turns too."""
 
     api_version: ClassVar[int] = 2
-    needs_future: ClassVar[bool] = False
-    vectors: ClassVar[bool] = True
+    offers: ClassVar[frozenset[str]] = frozenset({"vectors"})
 
 
 @attrs.frozen
-class Liar(OfVectors):
+class Liar(OfVectors, CoupledTangentialLaw):
     """Answers both motions as told: NaN, an error for one impact, or books that do not close."""
 
-    together: ClassVar[bool] = True
     how: str = "nan"
 
     def start(self, scene, normal):
@@ -70,7 +70,7 @@ class Liar(OfVectors):
         factor = {"nan": math.nan, "books": -1.0, "raise": -1e-9}[self.how]
         return factor * np.asarray(scene.slip_velocity)
 
-    def impacts_together(self, scene, normal, accuracy, observer=None):
+    def solve_coupled(self, scene, normal, accuracy, observer=None):
         self._raise(scene)
         ones = np.ones(scene.shape)
         rate = -scene.normal_speed * ones
@@ -256,21 +256,20 @@ def test_energy_beyond_the_numbers_is_no_answer(scene, sense):
 
 
 @attrs.frozen(kw_only=True)
-class Spoiling(Integrator):
+class Spoiling(CoupledIntegrator):
     """Symplectic steps, whose motion is spoilt."""
 
     api_version: ClassVar[int] = 2
-    tangential_contract: ClassVar[type] = SteppedTangentialLaw
-    together: ClassVar[bool] = True
+    needs: ClassVar[frozenset[type]] = frozenset({SteppedTangentialLaw})
     how: str
 
     def integrate(self, normal, tangential, scene, observer=None):
         sound = create("integrator.symplectic")
         return self.spoilt(sound.integrate(normal, tangential, scene, observer))
 
-    def integrate_together(self, normal, tangential, scene, observer=None):
+    def integrate_coupled(self, normal, tangential, scene, observer=None):
         sound = create("integrator.symplectic", steps=20)
-        return self.spoilt(sound.integrate_together(normal, tangential, scene, observer))
+        return self.spoilt(sound.integrate_coupled(normal, tangential, scene, observer))
 
     def spoilt(self, motion):
         change = motion.slip_velocity_change
@@ -311,9 +310,6 @@ class Unsure(Springs):
 
     how: str = ""
 
-    def refuses(self, other):
-        return [][1] if self.how == "refuses" else None
-
     def accept(self, scene):
         if self.how == "accept":
             raise TypeError("unknown scene")
@@ -325,7 +321,6 @@ class Unsure(Springs):
 @pytest.mark.parametrize(
     ("how", "words"),
     [
-        ("refuses", "Unsure.*its refuses raised IndexError"),
         ("accept", "tangential = Unsure: its accept raised TypeError: unknown scene"),
     ],
 )

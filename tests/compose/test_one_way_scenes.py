@@ -17,7 +17,7 @@ from contactlab import (
     create,
 )
 from contactlab.contracts import (
-    SteppedTangentialLaw,
+    CausalTangentialLaw,
     TangentialResponse,
 )
 from tests.compose.any_scene import (
@@ -50,12 +50,11 @@ def test_the_index_is_numbered(scene):
 
 
 @attrs.frozen
-class Seeded(SteppedTangentialLaw):
+class Seeded(CausalTangentialLaw):
     """No friction; keeps the index that a random seed would come from."""
 
     api_version: ClassVar[int] = 2
-    needs_future: ClassVar[bool] = False
-    vectors: ClassVar[bool] = True
+    offers: ClassVar[frozenset[str]] = frozenset({"vectors"})
     seen: ClassVar[list[int]] = []
 
     def start(self, scene, normal):

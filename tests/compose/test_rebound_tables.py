@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from contactlab import Scene, Simulation, Sphere, collide, create, rebound
-from contactlab.compose.rebound import (
+from contactlab_laws.tables.regions import LARGEST_CHI
+from contactlab_laws.tables.restituted_regions import (
     BEYOND_ERROR,
     RESTITUTED_ERROR,
-    TABULATED_CHI,
     WIDER_ERROR,
     restituted_error,
 )
@@ -20,7 +20,7 @@ from tests.compose.test_collision import STEEL, meeting
 
 CHI = 49.0 / 34.0
 E_09 = {"restitution": 0.9}
-BEYOND = math.nextafter(TABULATED_CHI, 3.0)
+BEYOND = math.nextafter(LARGEST_CHI, 3.0)
 BLOCKED = """
 import contactlab
 for options in ({}, {"restitution": 0.9}):
@@ -32,7 +32,7 @@ for options in ({}, {"restitution": 0.9}):
 
 
 def test_answers_in_the_table_and_beyond_are_those_of_the_exact_law():
-    chi = np.array([0.5, 1.0, TABULATED_CHI, BEYOND, 3.0])
+    chi = np.array([0.5, 1.0, LARGEST_CHI, BEYOND, 3.0])
     psi1 = np.array([0.7, -1.3, 2.0, 2.0, -4.0])
     exact = Simulation(
         tangential=create("tangential.fronts", table=False),
@@ -57,7 +57,7 @@ def test_derivatives_are_differences():
     alone = rebound(0.5, 1.0, derivatives=True)
     assert [type(each) for each in alone] == [float] * 3
     assert alone == pytest.approx((psi2[0], by_psi1[0], by_chi[0]), rel=1e-12)
-    at_the_end = rebound(1.0, TABULATED_CHI, derivatives=True)
+    at_the_end = rebound(1.0, LARGEST_CHI, derivatives=True)
     assert len(at_the_end) == 3
     nothing = rebound([], 1.0, derivatives=True)
     assert [each.shape for each in nothing] == [(0,)] * 3

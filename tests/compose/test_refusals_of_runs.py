@@ -46,13 +46,6 @@ class Boasting(LinearSpring):
     offers: ClassVar[frozenset] = frozenset({"elastic_hertz"})
 
 
-@attrs.frozen(kw_only=True)
-class Alone(type(contactlab.create("integrator.symplectic"))):
-    """An integrator whose impacts have instants of their own."""
-
-    common_instants: ClassVar[bool] = False
-
-
 DEMANDING = Demanding(share=1.0)
 REFUSED = [
     (
@@ -179,11 +172,6 @@ REFUSED = [
         "chunk = 0: must be a whole number from 1 to 10000000",
     ),
     (lambda: Simulation().sweep([BARE], keep=3), "keep = 3: must be the path of a folder"),
-    (
-        lambda: Simulation(integrator=Alone(steps=9)).run(BATCH, history=True),
-        "history = True: impacts of a batch have instants of their own under Alone(steps=9, "
-        "refine=True); run them one by one",
-    ),
     (
         lambda: Simulation(normal=Boasting(), tangential=DEMANDING, integrator="symplectic"),
         "normal = Boasting: offers 'elastic_hertz', and is no ClosedFormNormalLaw; derive it from "

@@ -189,7 +189,7 @@ class GivesUpNeighbours(Integrator):
     """Of a batch it gives up the impact before a fast one too."""
 
     api_version: ClassVar[int] = 2
-    tangential_contract: ClassVar[object] = SteppedTangentialLaw
+    needs: ClassVar[frozenset[type]] = frozenset({SteppedTangentialLaw})
 
     def integrate(self, normal, tangential, scene, observer=None):
         inner = contactlab.create("integrator.symplectic", steps=50)

@@ -18,6 +18,7 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation, Status
+from contactlab.compose import into
 from contactlab.compose import sweep as sweeping
 from contactlab.compose import workers as workers_module
 from contactlab.compose.registry import REGISTRY
@@ -39,7 +40,8 @@ def scene(size=SIZE):
 
 
 def blocks_of(monkeypatch, block):
-    monkeypatch.setattr(sweeping, "block_of", lambda _: block)
+    monkeypatch.setattr(sweeping, "block_for", lambda *_: block)
+    monkeypatch.setattr(into, "block_for", lambda *_: block)
 
 
 def assert_same(one, other):
@@ -341,7 +343,7 @@ if __name__ == "__main__":
     from contactlab.compose import sweep
     from contactlab.compose.workers import processes
     from tests.laws.ending_laws import Waiting
-    sweep.block_of = lambda _: 10
+    sweep.block_for = lambda *_: 10
     scene = Scene.nondimensional(psi1=np.linspace(0.3, 9.0, 150), chi=1.4411764706)
     simulation = Simulation(tangential=Waiting(folder=sys.argv[1]), integrator="symplectic")
     with processes(2) as two:

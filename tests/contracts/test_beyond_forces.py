@@ -11,12 +11,10 @@ from contactlab.contracts import (
     NormalContact,
     SampledMotion,
     SteppedTangentialLaw,
-    TangentialLaw,
     TangentialResponse,
     WholeImpact,
     WholeImpactTangentialLaw,
 )
-from contactlab_laws.hertz import Hertz
 from contactlab_laws.springs.law import Springs
 
 CHI = 1.4412
@@ -66,26 +64,6 @@ def test_a_whole_impact_answer_may_have_a_normal_motion():
     assert alone.motion.duration == 2.0
     # Nothing lost the energy: the books do not close.
     assert alone.energy.imbalance == pytest.approx(0.5 * (1.0 - 0.9**2))
-
-
-@attrs.frozen(kw_only=True)
-class Choosy(Hertz):
-    """A normal law that goes with one spring only."""
-
-    api_version: ClassVar[int] = 2
-
-    def refuses(self, other):
-        if isinstance(other, TangentialLaw) and not isinstance(other, Springs):
-            return "its pressure is that of springs"
-        return None
-
-
-def test_a_law_may_refuse_a_partner():
-    with pytest.raises(ValueError, match=r"Choosy.*tangential = .*Annul.*pressure is that of spri"):
-        Simulation(normal=Choosy(), tangential="annulus")
-    assert isinstance(Simulation(normal=Choosy(), tangential="springs").tangential, Springs)
-    # The default is the first that fits, so it is not one that is refused.
-    assert isinstance(Simulation(normal=Choosy()).tangential, Springs)
 
 
 @attrs.frozen(kw_only=True)

@@ -9,7 +9,7 @@ import pytest
 from contactlab import Scene
 from contactlab.contracts import NormalContact
 from contactlab.contracts.contact import without_tension
-from contactlab.contracts.error_model import range_of
+from contactlab.impact.error_model import range_of
 from contactlab.testing.load_paths import scene
 
 NAN = math.nan

@@ -17,8 +17,7 @@ import contactlab
 from contactlab import Scene, Status, contracts
 from contactlab.cli.guide import PAGES, PARTS, SECTION, TOPICS, sections, summary, text, whole
 from contactlab.compose import normal_motion
-from contactlab.contracts import error_model
-from contactlab.impact import bodies, coupling, hertz, normal_spin
+from contactlab.impact import bodies, coupling, error_model, hertz, normal_spin
 from contactlab.outcome import energy, history, motion, plan, result
 from contactlab.study.validation import REFERENCE_PSI2, TORSION
 from contactlab.testing import Verdict, check_law

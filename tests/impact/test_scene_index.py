@@ -98,7 +98,7 @@ def test_the_draws_are_those_of_seed_and_index():
 def test_a_sweep_draws_the_same_in_chunks_in_workers_and_after_it_was_ended(
     name, workers, monkeypatch, tmp_path
 ):
-    monkeypatch.setattr(sweeping, "block_of", lambda _: 4)
+    monkeypatch.setattr(sweeping, "block_for", lambda *_: 4)
     simulation, batch = SIMULATIONS[name], scene()
     expected = answers(simulation.run(batch))
     np.testing.assert_allclose(answers(simulation.sweep(batch)), expected, rtol=1e-8)

@@ -208,10 +208,10 @@ class Heun(Integrator):
     """The Runge-Kutta method of Heun over even steps: two stages, the first one thrown away."""
 
     api_version: ClassVar[int] = 2
-    order: ClassVar[int] = 1  # a memory that jumps between stages leaves no more
     resolution: ClassVar[str] = "steps"
-    tangential_contract: ClassVar[type] = SteppedTangentialLaw
+    needs: ClassVar[frozenset[type]] = frozenset({SteppedTangentialLaw})
     expected_failures: ClassVar[dict] = {
+        "order": "a memory that jumps between stages leaves an error of first order",
         "faults_named": "what a law raises it leaves to the simulation, which knows no culprit",
     }
 

@@ -119,8 +119,7 @@ def test_a_law_of_a_users_own_shares_its_loss():
     @attrs.frozen(kw_only=True)
     class Own(contactlab.contracts.NormalLaw):
         api_version = 2
-        offers = frozenset({"radius"})
-        viscous = True
+        offers = frozenset({"radius", "viscous"})
 
         def start(self, scene):
             return tsuji.start(scene)

@@ -6,7 +6,7 @@ import pytest
 import contactlab
 from contactlab import Scene, Simulation, Status
 from contactlab.contracts import Increment, NormalContact
-from contactlab.contracts.error_model import range_of
+from contactlab.impact.error_model import range_of
 from contactlab.scene_file import read_scene
 from contactlab.study.scores import DEFAULT_SCENE
 from contactlab.study.stability_references import itself

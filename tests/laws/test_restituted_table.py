@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from contactlab import rebound
-from contactlab.compose.rebound import BEYOND_ERROR, RESTITUTED_ERROR, WIDER_ERROR
 from contactlab_laws.tables import restituted
+from contactlab_laws.tables.restituted_regions import BEYOND_ERROR, RESTITUTED_ERROR, WIDER_ERROR
 from contactlab_laws.viscoelastic.relaxation import restitution_of
 from tests.laws.viscous_rings import rebound as by_rings
 from tests.longer import longer

@@ -10,6 +10,7 @@ import pytest
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import (
+    Errors,
     NormalContact,
     NormalLaw,
     SteppedTangentialLaw,
@@ -160,8 +161,8 @@ class Rude(SteppedTangentialLaw):
             bad(self.how)
         return super().whole_impacts(scene, normal)
 
-    def psi2_error(self, scene, normal, steps):
-        return bad(self.how) if self.place == "psi2_error" else np.nan
+    def errors(self, scene, normal, steps, accuracy=None):
+        return bad(self.how) if self.place == "errors" else Errors()
 
     def cautions(self, scene, normal):
         if self.place == "cautions":
@@ -191,7 +192,7 @@ class RudePress(NormalLaw):
         return NormalContact(approach * (approach > 0.0), 0.0 * approach, approach), state
 
 
-PLACES = ("start", "stiffness", "whole_impacts", "psi2_error", "cautions", "advance")
+PLACES = ("start", "stiffness", "whole_impacts", "errors", "cautions", "advance")
 SCENES = {"one": Scene.nondimensional(psi1=1.2, chi=1.44), "batch": batch()}
 
 
@@ -200,7 +201,7 @@ SCENES = {"one": Scene.nondimensional(psi1=1.2, chi=1.44), "batch": batch()}
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
 @pytest.mark.parametrize("integrator", ["symplectic", "adaptive"])
 def test_a_plug_in_does_not_end_the_process(how, place, scene, integrator):
-    if (place, integrator) == ("psi2_error", "adaptive"):
+    if (place, integrator) == ("errors", "adaptive"):
         pytest.skip("the adaptive integrator declares nothing, and asks no law to")
     result = Simulation(tangential=Rude(place=place, how=how), integrator=integrator).run(scene)
     if place == "cautions":  # the numbers are sound without them

@@ -5,6 +5,7 @@ import json
 import pytest
 
 from contactlab.cli.main import main
+from contactlab.contracts import shares_loss
 from contactlab.scene_file import read_scene
 
 SCENE = """
@@ -27,7 +28,7 @@ def test_a_restitution_is_the_viscoelastic_law(tmp_path):
     lines = ("normal = 'viscoelastic'", "options.normal.restitution = 0.7")
     assert by_key == read_scene(write(tmp_path, *lines)).laws.simulation()
     assert by_key.normal.restitution == 0.7
-    assert by_key.tangential.shares_loss(by_key.normal)
+    assert shares_loss(by_key.tangential, by_key.normal)
     elastic = read_scene(write(tmp_path, "restitution = 1.0")).laws.simulation()
     assert "elastic_hertz" in elastic.normal.offers
 

@@ -7,7 +7,7 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation
-from contactlab.contracts.error_model import range_of
+from contactlab.impact.error_model import range_of
 from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.study.bench_methods import Method, methods
 from contactlab.study.error_map import error_map, error_maps

@@ -11,7 +11,7 @@ import contactlab
 from contactlab import Scene, Simulation
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import NormalContact, NormalLaw, SteppedTangentialLaw, TangentialResponse
-from contactlab.contracts.error_model import range_of
+from contactlab.impact.error_model import range_of
 from contactlab.study import stability_judge
 from contactlab.study.bench_methods import Method, methods
 from contactlab.study.stability import Stability, stability, work
@@ -75,8 +75,8 @@ class Spoiled(SteppedTangentialLaw):
     def stiffness(self, scene, normal):
         return self.law.stiffness(scene, normal)
 
-    def psi2_error(self, scene, normal, steps):
-        return self.law.psi2_error(scene, normal, steps)
+    def errors(self, scene, normal, steps, accuracy=None):
+        return self.law.errors(scene, normal, steps)
 
     def advance(self, state, increment, before, after):
         response, state = self.law.advance(state, increment, before, after)

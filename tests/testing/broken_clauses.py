@@ -285,7 +285,7 @@ class ShowsSuccessesOnly(STEPS):
 class RunsItsOwnLawsOnly(STEPS):
     """Runs laws of one class, which no other law is derived from."""
 
-    tangential_contract: ClassVar[type] = InFurlongs
+    needs: ClassVar[frozenset[type]] = frozenset({InFurlongs})
 
 
 def counting(base, member, name):
@@ -343,7 +343,7 @@ BROKEN = [
     ),
     *broken(Press, "needs",
         ("NeedsAsANormalLaw", frozenset({"radius"}),
-         "contract", "Only a tangential law needs something"),
+         "contract", "A normal law needs nothing"),
     ),
     *broken(Sound, "resolution",
         ("NamesNoParameter", "fineness",

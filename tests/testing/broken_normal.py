@@ -71,7 +71,7 @@ class Stepwise(NormalLaw):
 class Viscous(Stepwise):
     """Says that it is viscous."""
 
-    viscous = True
+    offers: ClassVar[frozenset[str]] = frozenset({"viscous"})
 
 
 class EndsUnderLoad(Stepwise):

@@ -14,7 +14,7 @@ from tests.testing.broken_laws import Sound
 class Torsion(Whole):
     """Slip until it stops; friction takes a tenth of the spin about the normal."""
 
-    normal_spin: ClassVar[bool] = True
+    offers: ClassVar[frozenset[str]] = frozenset({"normal_spin"})
 
     def spin_change(self, scene):
         return -0.1 * np.asarray(scene.normal_spin)
@@ -74,13 +74,13 @@ class JumpsWithoutSpin(Torsion):
 class TakesInSilence(Torsion):
     """Changes the spin without the word."""
 
-    normal_spin: ClassVar[bool] = False
+    offers: ClassVar[frozenset[str]] = frozenset()
 
 
 class MarchesItsSpin(Sound):
     """Has the word, and nothing but steps."""
 
-    normal_spin: ClassVar[bool] = True
+    offers: ClassVar[frozenset[str]] = frozenset({"normal_spin"})
 
 
 #: Each with the check meant for it, and words of what the check says of it.

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.contracts import TangentialResponse
+from contactlab.contracts import CausalTangentialLaw, TangentialResponse
 from tests.testing.broken_laws import Sound
 
 
@@ -19,13 +19,11 @@ class Held(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class SoundVector(Sound):
+class SoundVector(Sound, CausalTangentialLaw):
     """A spring and a slider, of numbers or of vectors, which are cut to their limit."""
 
     api_version: ClassVar[int] = 2
-    needs_future: ClassVar[bool] = False
-    vectors: ClassVar[bool] = True
-    elliptic: ClassVar[bool] = True
+    offers: ClassVar[frozenset[str]] = frozenset({"vectors", "elliptic"})
 
     def sides(self, scene):
         """Return the stiffness along t1 and t2 over that along t1."""
@@ -81,7 +79,7 @@ class SlipsByStiffness(SoundVector):
 class StifferAcross(SoundVector):
     """A spring that is stiffer along t2 while it sticks."""
 
-    elliptic: ClassVar[bool] = False
+    offers: ClassVar[frozenset[str]] = frozenset({"vectors"})
 
     def trial(self, state, increment):
         moved = np.asarray(increment.displacement) * (1.0, 1.2)
@@ -99,7 +97,7 @@ class StifferAcross(SoundVector):
 class KeepsItsDirection(SoundVector):
     """A force at its limit does not turn with the slip."""
 
-    elliptic: ClassVar[bool] = False
+    offers: ClassVar[frozenset[str]] = frozenset({"vectors"})
 
     def cut(self, trial, limit, state):
         old = state.force

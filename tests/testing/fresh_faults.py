@@ -13,7 +13,7 @@ import numpy as np
 import contactlab
 from contactlab import Status
 from contactlab.compose.normal_motion import normal_motion
-from contactlab.contracts import TangentialResponse
+from contactlab.contracts import Errors, TangentialResponse
 from tests.testing.fresh_sound import (
     Brush,
     HardSphere,
@@ -298,8 +298,8 @@ FAULTS = [
     *broken(SlipThenRoll, "slip",
         ("PowerOnePercent", MorePower, "impact_books", "the energy books miss 1.0e-02"),
     ),
-    *broken(Brush, "psi2_error",
-        ("FalsePsi2Error", lambda scene, *_: 1e-9 + 0.0 * scene.psi1,
+    *broken(Brush, "errors",
+        ("FalsePsi2Error", lambda scene, *_: Errors(1e-9 + 0.0 * scene.psi1),
          "declared_error", "psi2_error = 1e-09 is declared, and psi2 is 0.0007"),
     ),
     *broken(Slider, "held",

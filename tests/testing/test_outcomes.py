@@ -215,6 +215,18 @@ def test_words_that_a_law_may_offer_are_those_that_checks_test():
         "hertzian_pressure",
         "elastic_hertz",
         "kelvin_voigt",
+        "viscous",
+        "similar",
+        "plastic",
+        "elliptic",
     }
-    assert claims(contracts.TangentialLaw) == {"partial_slip", "rigid", "no_friction"}
+    assert claims(contracts.TangentialLaw) == {
+        "partial_slip",
+        "rigid",
+        "no_friction",
+        "vectors",
+        "elliptic",
+        "normal_spin",
+        "shares_loss",
+    }
     assert claims(contracts.Integrator) == set()

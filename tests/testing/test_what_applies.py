@@ -84,9 +84,6 @@ class NanAlone(RefusesNan):
 class RefusesWithWords(Sound):
     """Refuses a scene and a partner, and says why."""
 
-    def refuses(self, other):
-        return f"{other.kind} laws are beyond it"
-
     def accept(self, scene):
         raise ValueError("scene: it runs none")
 
@@ -104,7 +101,7 @@ CASES = [
     (AsksNobody(), "drift", "It did not ask the law."),
     (TellsNoDrift(), "drift", "It does not tell the drift."),
     (WithoutResolution(), "resolution_told", "It has no resolution."),
-    (WithoutResolution(), "order", "It declares no order."),
+    (WithoutResolution(), "order", "It has no count of steps."),
     (SpoiledHertz(), "motion_accuracy", "Its motion declares no accuracy."),
     (Stepwise(), "dissipation", "It declares none."),
     (GLUED, "rebounds", "At no speed do the bodies part: adhesion holds them."),

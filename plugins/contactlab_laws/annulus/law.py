@@ -63,7 +63,6 @@ class Annulus(PartialSlip):
     eqs (1), (13)-(18), (22), non-dimensional as (33)-(37).
     """
 
-    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
     resolution: ClassVar[str | None] = "annuli"
 

@@ -17,6 +17,7 @@ from contactlab.impact.hertz import hertz_scales, hertz_stiffness, linear_stiffn
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import POSITIVE, quantity
 from contactlab.numeric.types import Real
+from contactlab_laws.calibrated import claims_of_loss
 from contactlab_laws.dashpot.motion import DashpotMotion, ScaledMotion
 from contactlab_laws.dashpot.oscillator import damping_of
 from contactlab_laws.hertz.motion import HertzMotion
@@ -59,16 +60,16 @@ class Tsuji(ClosedFormNormalLaw):
     Matter 9 (2007) 465-469, doi:10.1007/s10035-007-0065-z.
     """
 
-    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
-    offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure"})
 
     restitution: float = restitution(default=0.9)
 
-    @property
-    def viscous(self) -> bool:
-        """True if there is any loss."""
-        return self.restitution < 1.0
+    def _offers(self) -> frozenset[str]:
+        """Return the claims; the law is viscous if there is any loss."""
+        loss = claims_of_loss(None, self.restitution < 1.0)
+        return loss | {"radius", "hertzian_pressure", "elliptic"}
+
+    offers: ClassVar[Any] = property(_offers)
 
     def start(self, scene: Scene) -> Parts:
         """Return stiffness and damping of the pair; the law has no memory."""
@@ -112,9 +113,8 @@ class Linear(ClosedFormNormalLaw):
     doi:10.1007/s10035-007-0065-z.
     """
 
-    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
-    offers: ClassVar[frozenset[str]] = frozenset({"radius"})
+    offers: ClassVar[frozenset[str]] = frozenset({"radius", "elliptic"})
 
     restitution: float = restitution(default=0.9)
     stiffness: float | None = quantity("N/m", rule=POSITIVE, default=None)

@@ -14,8 +14,8 @@ from functools import lru_cache
 import attrs
 import numpy as np
 
-from contactlab.contracts.restitution import root
 from contactlab.numeric.types import Real
+from contactlab_laws.calibrated import root
 
 
 def half_duration(damping: float) -> float:

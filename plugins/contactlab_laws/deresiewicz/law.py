@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import (
+    CausalTangentialLaw,
     Increment,
     NormalContact,
     NormalMotion,
-    SteppedTangentialLaw,
     TangentialResponse,
 )
 from contactlab.impact.scene import Scene
@@ -41,7 +41,7 @@ class State(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class MindlinDeresiewicz(SteppedTangentialLaw):
+class MindlinDeresiewicz(CausalTangentialLaw):
     """Partial slip by increments: dT = 2 G* b theta dD +- (1 - theta) mu dP.
 
     theta, the stick radius over b, follows from the force and from two turning points, which move
@@ -62,9 +62,8 @@ class MindlinDeresiewicz(SteppedTangentialLaw):
     Technol. 210 (2011) 189-197, doi:10.1016/j.powtec.2011.01.013.
     """
 
-    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
-    needs_future: ClassVar[bool] = False
+    offers: ClassVar[frozenset[str]] = frozenset({"elliptic"})
     needs: ClassVar[frozenset[str]] = frozenset({"radius"})
     expected_failures: ClassVar[Mapping[str, str]] = {
         "impact_books": "the traction of a contact that stuck as it grew is proportional to p",

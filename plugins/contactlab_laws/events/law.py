@@ -10,6 +10,7 @@ import numpy as np
 from contactlab.contracts import (
     ClosedFormMotion,
     ClosedFormNormalLaw,
+    Errors,
     Integrator,
     NormalMotion,
     Observer,
@@ -17,10 +18,9 @@ from contactlab.contracts import (
     TangentialLaw,
     TangentialMotion,
 )
-from contactlab.contracts.error_model import psi_magnitude
+from contactlab.impact.error_model import psi_magnitude
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Rule, quantity
-from contactlab.numeric.types import Real
 from contactlab_laws.events.scaled import show, solve
 
 #: Rounding allows no more than the first; with the second the answer still has three digits.
@@ -28,10 +28,6 @@ TOLERANCES = Rule(
     lambda value: np.ndim(value) == 0 and 1e-12 <= value <= 1e-3,
     "must be one number between 1e-12 and 1e-3",
 )
-
-#: Impacts of a sweep at a time. Below this tolerance none has an answer from a table, and so few
-#: are passed at a time that an interruption loses little.
-TABULATED, FEW = 1e-9, 20
 
 
 @attrs.frozen(kw_only=True)
@@ -49,9 +45,7 @@ class Events(Integrator):
 
     api_version: ClassVar[int] = 2
     resolution: ClassVar[str | None] = "tolerance"
-    tangential_contract: ClassVar[Any] = PathTangentialLaw
-    normal_contract: ClassVar[Any] = ClosedFormNormalLaw
-    own_statuses: ClassVar[bool] = True
+    needs: ClassVar[frozenset[type]] = frozenset({PathTangentialLaw, ClosedFormNormalLaw})
 
     tolerance: float = quantity("1", rule=TOLERANCES, default=1e-9)
 
@@ -60,15 +54,10 @@ class Events(Integrator):
         """The error aimed at."""
         return self.tolerance
 
-    def chunk(self, tangential: TangentialLaw) -> int:
-        """Return few impacts if each is followed, which is slow."""
-        return super().chunk(tangential) if self.tolerance >= TABULATED else FEW
-
-    def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
+    def errors(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Errors:
         """Return the tolerance, and what the law declares for itself."""
-        own: Any = tangential.psi2_error(scene, normal, np.inf)
-        bound: Real = self.tolerance * psi_magnitude(scene) + own
-        return bound
+        own: Any = tangential.errors(scene, normal, np.inf).psi2
+        return Errors(self.tolerance * psi_magnitude(scene) + own)
 
     def integrate(
         self,

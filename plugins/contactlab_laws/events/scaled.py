@@ -21,6 +21,7 @@ from contactlab.contracts import (
     TangentialMotion,
     faults,
 )
+from contactlab.contracts.path import LINEAR_BELOW
 from contactlab.contracts.status import Status
 from contactlab.numeric.types import Array
 
@@ -78,8 +79,8 @@ def solve(law: PathTangentialLaw, normal: ClosedFormMotion, tolerance: float) ->
         velocity = abs(scene.slip_velocity) / unit if unit else 0.0
         inertia = kappa * (force / speed) * (approach / speed) / scene.pair.tangential_mass
     factor = math.copysign(1.0, scene.slip_velocity)
-    if 0.0 < velocity < law.linear_below and inertia > LEAST_INERTIA:
-        factor, velocity = factor * velocity / law.linear_below, law.linear_below
+    if 0.0 < velocity < LINEAR_BELOW and inertia > LEAST_INERTIA:
+        factor, velocity = factor * velocity / LINEAR_BELOW, LINEAR_BELOW
     if not (math.isfinite(velocity) and math.isfinite(inertia) and inertia > 0.0):
         failure = "psi1 or chi is not finite and positive."
         path = _Followed((), 0.0, math.nan, failure=failure, status=Status.NON_FINITE)

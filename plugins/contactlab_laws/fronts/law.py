@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar
 
@@ -10,6 +11,9 @@ import numpy as np
 
 from contactlab.contracts import (
     ClosedFormMotion,
+    Cost,
+    CoupledTangentialLaw,
+    Errors,
     NormalMotion,
     Observer,
     PathTangentialLaw,
@@ -20,7 +24,7 @@ from contactlab.contracts import (
     flag,
     from_change,
 )
-from contactlab.contracts.error_model import psi_magnitude
+from contactlab.impact.error_model import psi_magnitude
 from contactlab.impact.hertz import slips_throughout
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import greater, spread
@@ -30,6 +34,9 @@ from contactlab_laws.jaeger.gross_slip import gross_slip
 from contactlab_laws.tables.elastic import ERROR, rebound
 from contactlab_laws.tables.regions import LARGEST_CHI
 
+#: Impacts of a block: as many as fit into the cache if none is followed; so few that an
+#: interruption loses little if none has an answer from the table.
+WHOLE_IMPACTS, FOLLOWED_AT_A_TIME, FEW = 1 << 14, 1000, 20
 #: Why an impact is not followed.
 REASON = "psi2 is tabulated; a history, or a tolerance below 1e-9, follows the impact"
 #: Error of impacts that are followed where none is asked for.
@@ -41,7 +48,7 @@ SOLVED = "psi2 is solved by the compiled law; a history follows the impact"
 
 
 @attrs.frozen(kw_only=True)
-class Fronts(PathTangentialLaw, Tabulated):
+class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
     """The continuum limit of the annulus law, with no discretisation.
 
     Where the contact sticks and where it slips is a short list of fronts; between changes
@@ -62,13 +69,16 @@ class Fronts(PathTangentialLaw, Tabulated):
     tangential loading from superposed normal contacts, of which the springs are one form.
     """
 
-    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
-    offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
+    offers: ClassVar[frozenset[str]] = frozenset({"partial_slip", "elliptic"})
     needs: ClassVar[frozenset[str]] = frozenset({"elastic_hertz"})
-    together: ClassVar[bool] = True
-    linear_below: ClassVar[float] = compiled.LINEAR_BELOW
+    chi_range: ClassVar[tuple[float, float]] = math.ulp(0.0), LARGEST_CHI
     rebound = staticmethod(rebound)
+
+    @staticmethod
+    def rebound_error(*_: Any) -> Any:
+        """Return that of the table."""
+        return ERROR
 
     @staticmethod
     def table_of_arrays() -> Mapping[str, Any]:
@@ -117,26 +127,24 @@ class Fronts(PathTangentialLaw, Tabulated):
         change, _, known = compiled.central(np.where(slips, 0.5, psi1), chi)
         return np.where(slips, -4.0 * chi, change) if known.all() else None
 
-    def needs_no_march(self, scene: Scene, accuracy: float | None) -> bool:
-        """Return whether the table, or a closed form, answers for all impacts."""
-        by_table = bool(np.all(scene.chi <= LARGEST_CHI))
-        error = ERROR if by_table else COMPILED
-        answers = by_table or compiled.library() is not None
-        return self.table and answers and (accuracy is None or accuracy >= error)
+    def cost(self, scene: Scene, accuracy: float | None) -> Cost:
+        """Return many impacts if none is followed, few if none has an answer from the table."""
+        by_table, known = bool(np.all(scene.chi <= LARGEST_CHI)), compiled.library() is not None
+        least = ERROR if by_table else COMPILED
+        if self.table and (by_table or known) and (accuracy is None or accuracy >= least):
+            block = WHOLE_IMPACTS
+        else:
+            block = FEW if accuracy is not None and accuracy < ERROR else FOLLOWED_AT_A_TIME
+        return Cost(block, compiled.told(), not known)
 
-    @classmethod
-    def solver(cls) -> str:
-        """Return whether impacts that are followed are solved by the compiled law."""
-        return compiled.told()
-
-    @classmethod
-    def one_by_one(cls) -> str:
-        """Return why a batch is followed one by one, empty where it is compiled."""
-        return "" if compiled.library() is not None else compiled.told()
-
-    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Real) -> Real:
-        """Return 0: there is no discretisation."""
-        return 0.0
+    def errors(
+        self, scene: Scene, normal: NormalMotion, steps: Real, accuracy: float | None = None
+    ) -> Errors:
+        """Return 0, there is no discretisation; together the accuracy aimed at, for both."""
+        if scene.inverse_mass is None:
+            return Errors(0.0)
+        error = FOLLOWED if accuracy is None else accuracy
+        return Errors(error * psi_magnitude(scene), error)
 
     def path(
         self, velocity: float, inertia: float, motion: ClosedFormMotion, tolerance: float
@@ -146,7 +154,7 @@ class Fronts(PathTangentialLaw, Tabulated):
 
         return stretches(velocity, inertia, motion, tolerance)
 
-    def impacts_together(
+    def solve_coupled(
         self,
         scene: Scene,
         normal: NormalMotion,
@@ -157,11 +165,6 @@ class Fronts(PathTangentialLaw, Tabulated):
         from contactlab_laws.fronts.together import motion
 
         return motion(scene, normal, accuracy or FOLLOWED, observer)
-
-    def errors_together(self, scene: Scene, accuracy: float | None) -> tuple[Real, Real]:
-        """Return the accuracy that is aimed at, over max(1, psi1), for both."""
-        error = FOLLOWED if accuracy is None else accuracy
-        return error * psi_magnitude(scene), error
 
 
 def _solved(scene: Scene, where: Mask) -> tuple[WholeImpact, ...]:

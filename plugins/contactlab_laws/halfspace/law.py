@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import attrs
 import numpy as np
 
-from contactlab.contracts import Law, NormalLaw, NormalMotion, WholeImpact, WholeImpactTangentialLaw
+from contactlab.contracts import NormalMotion, WholeImpact, WholeImpactTangentialLaw
 from contactlab.impact.coupling import coupling_number
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import choice, count, flag, refuse
@@ -61,7 +61,6 @@ class HalfSpace(WholeImpactTangentialLaw):
 
     api_version: ClassVar[int] = 2
     resolution: ClassVar[str | None] = "rings"
-    needs: ClassVar[frozenset[str]] = frozenset({"radius"})
 
     rings: int = count(default=32, least=4, most=MOST_RINGS)
     angles: int = count(default=8, most=32)
@@ -92,10 +91,11 @@ class HalfSpace(WholeImpactTangentialLaw):
                 "give fewer rings, or angles=1",
             )
 
-    @property
-    def normal_spin(self) -> bool:
-        """True without coupling and with more than one angle: friction of slip and spin is one."""
-        return self._options.spins
+    def _offers(self) -> frozenset[str]:
+        """Return the word without coupling and with more than one angle: slip and spin are one."""
+        return frozenset({"normal_spin"}) if self._options.spins else frozenset()
+
+    offers: ClassVar[Any] = property(_offers)
 
     @property
     def _options(self) -> Options:
@@ -109,13 +109,11 @@ class HalfSpace(WholeImpactTangentialLaw):
         bound: Real = 0.02 + ONE_WAY_LOSS * number * number
         return bound
 
-    def refuses(self, other: Law) -> str | None:
-        """Return why two-way coupling does not run beside a law that is not Hertz's."""
-        if self.coupling != "two_way" or not isinstance(other, NormalLaw):
-            return None
-        if "elastic_hertz" in other.offers:
-            return None
-        return "with two-way coupling pressure is found from elastic surfaces: give normal.hertz"
+    def _needs(self) -> frozenset[str]:
+        """Return the words; two-way coupling finds the pressure, from elastic surfaces."""
+        return frozenset({"elastic_hertz" if self.coupling == "two_way" else "radius"})
+
+    needs: ClassVar[Any] = property(_needs)
 
     def accept(self, scene: Scene) -> None:
         """Refuse two-way coupling where the friction coefficient is 1 by choice of units."""

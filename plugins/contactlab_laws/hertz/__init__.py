@@ -25,9 +25,10 @@ class Hertz(ClosedFormNormalLaw):
     eqs (2)-(6), for a general pair: P = (4/3) E* sqrt(R) u_z^1.5.
     """
 
-    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
-    offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure", "elastic_hertz"})
+    offers: ClassVar[frozenset[str]] = frozenset(
+        {"radius", "hertzian_pressure", "elastic_hertz", "elliptic"}
+    )
 
     def start(self, scene: Scene) -> Pair:
         """Return the pair; the law has no memory."""

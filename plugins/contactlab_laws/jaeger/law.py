@@ -40,7 +40,6 @@ class State(NamedTuple):
 class ProfileLaw(PartialSlip):
     """A law of independent springs; a subclass gives their number."""
 
-    elliptic: ClassVar[bool] = True
     expected_failures: ClassVar[Mapping[str, str]] = {
         "coulomb_at_a_point_damped": "each spring is limited separately: that is Coulomb's law "
         "at a point only while the stuck part is a disc, as in elastic Hertz impacts",

@@ -71,7 +71,7 @@ class Scales(NamedTuple):
 class PartialSlip(AllStepsTangentialLaw):
     """Base of laws that divide the contact into parts, each of them stuck or slipping."""
 
-    offers: ClassVar[frozenset[str]] = frozenset({"partial_slip"})
+    offers: ClassVar[frozenset[str]] = frozenset({"partial_slip", "elliptic"})
     needs: ClassVar[frozenset[str]] = frozenset({"radius"})
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:

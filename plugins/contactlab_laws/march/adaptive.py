@@ -8,17 +8,19 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import (
+    CausalTangentialLaw,
+    CoupledIntegrator,
     Ends,
-    Integrator,
     NormalMotion,
     Observer,
     SteppedTangentialLaw,
     TangentialLaw,
     TangentialMotion,
     faults,
+    shares_loss,
 )
-from contactlab.contracts.error_model import range_of
 from contactlab.contracts.status import Status
+from contactlab.impact.error_model import range_of
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Rule, quantity
@@ -53,7 +55,7 @@ ROUNDING = 1e-13
 
 
 @attrs.frozen(kw_only=True)
-class Adaptive(Integrator):
+class Adaptive(CoupledIntegrator):
     """The steps of ``symplectic``, doubled until psi2 no longer changes by the tolerance.
 
     The error is that of the whole impact, seen in the answer itself, and not a sum of what
@@ -75,8 +77,7 @@ class Adaptive(Integrator):
 
     api_version: ClassVar[int] = 2
     resolution: ClassVar[str | None] = "tolerance"
-    tangential_contract: ClassVar[Any] = SteppedTangentialLaw
-    together: ClassVar[bool] = True
+    needs: ClassVar[frozenset[type]] = frozenset({SteppedTangentialLaw})
 
     tolerance: float = quantity("1", rule=TOLERANCE, default=1e-4)
 
@@ -108,7 +109,7 @@ class Adaptive(Integrator):
             return TangentialMotion.nothing(scene.shape, fault.status, fault.detail)
         return motion
 
-    def integrate_together(
+    def integrate_coupled(
         self,
         normal: NormalMotion,
         tangential: TangentialLaw,
@@ -119,7 +120,7 @@ class Adaptive(Integrator):
 
         The tolerance is that of the velocities over the greatest of them at first touch.
         """
-        assert isinstance(tangential, SteppedTangentialLaw)
+        assert isinstance(tangential, CausalTangentialLaw)
         needed = together.needed_steps(scene, normal, tangential)
         count = np.where(needed <= MOST_STEPS, np.maximum(needed, FIRST), np.inf)
         refused = Status.TOO_FEW_STEPS, refusals(FIRST, needed)
@@ -141,7 +142,7 @@ class Adaptive(Integrator):
         self,
         scene: Scene,
         normal: NormalMotion,
-        law: SteppedTangentialLaw,
+        law: CausalTangentialLaw,
         count: Array,
         before: TangentialMotion,
     ) -> tuple[TangentialMotion, Array]:
@@ -237,5 +238,5 @@ def _march(
 ) -> TangentialMotion:
     """Return the motion in ``count`` steps that are even."""
     with faults.blaming(normal.law):
-        steps = midpoints(normal, count, graded=law.shares_loss(normal.law))
+        steps = midpoints(normal, count, graded=shares_loss(law, normal.law))
     return march(normal, law, steps, observer)

@@ -11,7 +11,9 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import (
-    Integrator,
+    CausalTangentialLaw,
+    CoupledIntegrator,
+    Errors,
     NormalMotion,
     Observer,
     SteppedTangentialLaw,
@@ -19,6 +21,7 @@ from contactlab.contracts import (
     TangentialLaw,
     TangentialMotion,
     faults,
+    shares_loss,
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
@@ -47,6 +50,7 @@ def needed_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene | None =
     """
     assert isinstance(law, SteppedTangentialLaw)
     if scene is not None and scene.inverse_mass is not None:
+        assert isinstance(law, CausalTangentialLaw)
         return np.maximum(together.needed_steps(scene, normal, law), float(LEAST_STEPS))
     scene = normal.scene
     stiffness: Any = law.stiffness(scene, normal)
@@ -111,13 +115,11 @@ def in_groups(
 
 
 @attrs.frozen(kw_only=True)
-class FixedSteps(Integrator):
+class FixedSteps(CoupledIntegrator):
     """Even steps over the contact's duration, under any normal law; a subclass samples them."""
 
     resolution: ClassVar[str | None] = "steps"
-    order: ClassVar[int | None] = 2
-    tangential_contract: ClassVar[Any] = SteppedTangentialLaw
-    together: ClassVar[bool] = True
+    needs: ClassVar[frozenset[type]] = frozenset({SteppedTangentialLaw})
 
     steps: int = count(default=200, most=MOST_STEPS)
     refine: bool = flag(default=True)
@@ -135,33 +137,20 @@ class FixedSteps(Integrator):
         steps: Real = self._taken(needed_steps(normal, tangential, scene))
         return steps
 
-    def psi2_error(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
-        """Return the error that the tangential law declares for as many steps."""
-        steps: Any = self.resolution_for(normal, tangential, scene)
-        return tangential.psi2_error(scene, normal, steps)
-
-    def errors_together(
-        self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene
-    ) -> tuple[Real, Real]:
+    def errors(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Errors:
         """Return the errors that the tangential law declares for as many steps."""
-        assert isinstance(tangential, SteppedTangentialLaw)
+        if scene.inverse_mass is None:
+            return tangential.errors(scene, normal, self.resolution_for(normal, tangential, scene))
+        assert isinstance(tangential, CausalTangentialLaw)
         taken = self._taken_together(together.needed_steps(scene, normal, tangential))
-        return tangential.errors_in_steps(scene, normal, taken)
-
-    def seconds_together(
-        self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene
-    ) -> float:
-        """Return the time that the tangential law declares for as many steps."""
-        assert isinstance(tangential, SteppedTangentialLaw)
-        taken = self._taken_together(together.needed_steps(scene, normal, tangential))
-        return tangential.seconds_in_steps(scene, normal, taken)
+        return tangential.errors(scene, normal, taken)
 
     def _taken_together(self, needed: Real) -> Real:
         """Return the steps of each impact in the approach without friction; infinite if refused."""
         most = MOST_STEPS if self.refine else self.steps
         return np.where(needed <= most, np.maximum(self.steps, needed), np.inf)
 
-    def remarks(
+    def cautions(
         self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene
     ) -> tuple[str, ...]:
         """Return a sentence if the steps are too few: the steps taken instead, or needed."""
@@ -192,7 +181,7 @@ class FixedSteps(Integrator):
 
         def even(normal: NormalMotion, number: int) -> TangentialMotion:
             with faults.blaming(normal.law):
-                steps = self.divide(normal, number, graded=law.shares_loss(normal.law))
+                steps = self.divide(normal, number, graded=shares_loss(law, normal.law))
             return march(normal, law, steps, observer)
 
         try:
@@ -204,7 +193,7 @@ class FixedSteps(Integrator):
         except faults.LawFaultError as fault:
             return TangentialMotion.nothing(scene.shape, fault.status, fault.detail)
 
-    def integrate_together(
+    def integrate_coupled(
         self,
         normal: NormalMotion,
         tangential: TangentialLaw,
@@ -212,7 +201,7 @@ class FixedSteps(Integrator):
         observer: Observer | None = None,
     ) -> TangentialMotion:
         """Return the motion, ``steps`` counted on the approach without friction."""
-        assert isinstance(tangential, SteppedTangentialLaw)
+        assert isinstance(tangential, CausalTangentialLaw)
         needed = together.needed_steps(scene, normal, tangential)
         taken = self._taken_together(needed)
         refused = Status.TOO_FEW_STEPS, refusals(self.steps, needed)

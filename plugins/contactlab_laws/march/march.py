@@ -21,6 +21,7 @@ from contactlab.contracts import (
     Steps,
     TangentialMotion,
     faults,
+    shares_loss,
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
@@ -123,7 +124,7 @@ def _one_by_one(
     zero = 0.0 * change
     shear: Real = zero
     slowed, acting = zero, zero
-    shares = law.shares_loss(normal.law)
+    shares = shares_loss(law, normal.law)
     before = NormalContact(zero, zero, zero, zero)
     fault, count = None, 0
     velocity: Real = locked(initial)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import (
+    CausalTangentialLaw,
     Ends,
     Increment,
     NormalContact,
@@ -23,10 +24,10 @@ from contactlab.contracts import (
     Sample,
     Sampled,
     Scene,
-    SteppedTangentialLaw,
     TangentialMotion,
     TangentialResponse,
     faults,
+    shares_loss,
 )
 from contactlab.contracts.status import Status
 from contactlab.numeric.arrays import chosen, filled, locked
@@ -47,7 +48,7 @@ TURNS, LEADING = 3, 0.4
 DEEPEST = 1e10
 
 
-def needed_steps(scene: Scene, normal: NormalMotion, law: SteppedTangentialLaw) -> Real:
+def needed_steps(scene: Scene, normal: NormalMotion, law: CausalTangentialLaw) -> Real:
     """Return the least steps in the approach without friction that resolve every oscillation."""
     # omega² <= k_n W_nn + k_t tr W_tt; both stiffnesses grow as the contact radius, and the energy
     # bounds the radius.
@@ -75,7 +76,7 @@ def deepest(scene: Scene) -> Any:
 def march_together(
     scene: Scene,
     normal: NormalMotion,
-    law: SteppedTangentialLaw,
+    law: CausalTangentialLaw,
     count: Real,
     observer: Observer | None,
     refused: tuple[Status, str | NDArray[np.object_]] = (Status.TOO_FEW_STEPS, ""),
@@ -119,7 +120,7 @@ class _March:
         self,
         scene: Scene,
         normal: NormalMotion,
-        law: SteppedTangentialLaw,
+        law: CausalTangentialLaw,
         count: Real,
     ) -> None:
         self.scene, self.normal, self.law, self.shape = scene, normal, law, scene.shape
@@ -141,7 +142,7 @@ class _March:
         self.change: list[Any] = [0.0 * each for each in self.before]
         zero = self.change[0]
         self.elastic = "elastic_hertz" in normal.law.offers
-        self.shares = law.shares_loss(normal.law)
+        self.shares = shares_loss(law, normal.law)
         self.work, self.loss, self.duration, self.shear = zero, zero, zero, zero
         self.greatest: list[Any] = [zero, zero, zero]
         self.pulls: Any = zero

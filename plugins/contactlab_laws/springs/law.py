@@ -12,15 +12,16 @@ from numpy.typing import NDArray
 
 from contactlab.contracts import (
     AllStepsResponse,
+    CausalTangentialLaw,
+    Errors,
     Increment,
-    Law,
     NormalContact,
-    NormalLaw,
     NormalMotion,
     Steps,
     TangentialLaw,
     TangentialResponse,
     WholeImpact,
+    shares_loss,
     sliding,
 )
 from contactlab.impact.scene import Scene
@@ -41,13 +42,15 @@ BY_SPRINGS, BY_STEPS, LEAST_MEASURED, LARGEST_CHI = 0.12, 15.0, 8, 6.0
 BODY_BY_SPRINGS, BODY_BY_STEPS, LARGEST_LAM, BODY_CHI, LEAST_FREE = 2.0, 4.0, 3.0, 20.0, 0.1
 #: Seconds of a step of bodies with loss: of each block of so many impacts, and of each spring, in
 #: the plane and in space.
-BLOCK, EACH_BLOCK, EACH_SPRING = 1000, 1.3e-3, (6e-7, 4e-6)
+#: Claims of springs, without and with a loss in shear.
+OFFERS = ProfileLaw.offers | {"vectors"}
+SHARING = OFFERS | {"shares_loss"}
 #: The rule of the loss in shear; the largest measured is that of golf balls, about 4.
 SHEAR_LOSS = Rule(lambda value: (value >= 0.0) & (value <= 8.0), "must be one number from 0 to 8")
 
 
 @attrs.frozen(kw_only=True)
-class Springs(ProfileLaw):
+class Springs(ProfileLaw, CausalTangentialLaw):
     """Mindlin's partial slip as a bundle of independent springs.
 
     The spring at distance r from the centre touches while r < b. Its displacement w grows with
@@ -86,8 +89,6 @@ class Springs(ProfileLaw):
 
     api_version: ClassVar[int] = 2
     resolution: ClassVar[str | None] = "springs"
-    needs_future: ClassVar[bool] = False
-    vectors: ClassVar[bool] = True
 
     springs: int = count(default=50, most=100_000)
     grid: str = choice("largest", "doubling", default="largest")
@@ -99,9 +100,11 @@ class Springs(ProfileLaw):
             rule = 'must be even with grid = "doubling", which merges springs in pairs'
             raise refuse("springs", self.springs, rule, f"take {self.springs + 1}")
 
-    def shares_loss(self, normal: Law) -> bool:
-        """Return whether the normal law is viscous, and shear loses."""
-        return isinstance(normal, NormalLaw) and normal.viscous and self.shear_loss > 0.0
+    def _offers(self) -> frozenset[str]:
+        """Return the claims; springs share the loss of a viscous normal law unless told not to."""
+        return SHARING if self.shear_loss else OFFERS
+
+    offers: ClassVar[Any] = property(_offers)
 
     def books_bound(self, scene: Scene) -> Real:
         """Return 0.05 + 0.03/n: the fewest steps leave 0.03, one spring 0.02 whatever the steps.
@@ -113,7 +116,7 @@ class Springs(ProfileLaw):
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
         """Return the whole-impact answers, with those of gross slip throughout."""
         known = super().whole_impacts(scene, normal)
-        if not self.shares_loss(normal.law) or self.shear_loss != 1.0:
+        if not shares_loss(self, normal.law) or self.shear_loss != 1.0:
             return known
         # A spring slips on while psi exceeds w' = (l - w)/A: the rate of approach if bodies of
         # Kelvin and Voigt part, less than nothing in unloading under any law.
@@ -137,20 +140,24 @@ class Springs(ProfileLaw):
 
         return tabulated(scene, e)
 
-    def psi2_error(self, scene: Scene, normal: NormalMotion, steps: Real) -> Real:
-        """Return the error of springs that share a loss, measured for chi up to 6; else NaN."""
-        measured = self.shares_loss(normal.law) and self.shear_loss == 1.0
+    def errors(
+        self, scene: Scene, normal: NormalMotion, steps: Real, accuracy: float | None = None
+    ) -> Errors:
+        """Return the errors of springs that share a loss, as measured; else NaN."""
+        if scene.inverse_mass is not None:
+            return self._errors_together(scene, normal, steps)
+        measured = shares_loss(self, normal.law) and self.shear_loss == 1.0
         if not measured or self.grid == "doubling" or self.springs < LEAST_MEASURED:
-            return math.nan
+            return Errors()
         square = np.square(scene.chi)
         error = BY_SPRINGS * square / self.springs**2 + (BY_STEPS + BY_STEPS * square) / steps**2
-        return np.where(np.asarray(scene.chi) <= LARGEST_CHI, error, math.nan)
+        return Errors(np.where(np.asarray(scene.chi) <= LARGEST_CHI, error, math.nan))
 
-    def errors_in_steps(self, scene: Scene, normal: NormalMotion, steps: Real) -> tuple[Real, Real]:
+    def _errors_together(self, scene: Scene, normal: NormalMotion, steps: Real) -> Errors:
         """Return the errors of springs that share a loss, measured on random bodies; else NaN."""
-        measured = self.shares_loss(normal.law) and self.shear_loss == 1.0
+        measured = shares_loss(self, normal.law) and self.shear_loss == 1.0
         if not measured or self.springs < LEAST_MEASURED:
-            return math.nan, math.nan
+            return Errors()
         chi: Any = scene.largest_chi
         lam, eta = scene.size_of(np.asarray(scene.lam)), scene.size_of(np.asarray(scene.eta))
         own = BODY_BY_SPRINGS / self.springs**2 + BODY_BY_STEPS / np.square(steps)
@@ -159,21 +166,11 @@ class Springs(ProfileLaw):
         known = (lam <= LARGEST_LAM) & (chi <= BODY_CHI) & np.isfinite(steps + eta) & ~jams
         known &= np.equal(scene.pair.cross_stiffness_ratio, 1.0)
         restitution = np.where(known, error, math.nan)
-        return 0.5 * (1.0 + chi + eta) * restitution, restitution
-
-    def seconds_in_steps(self, scene: Scene, normal: NormalMotion, steps: Real) -> float:
-        """Return the time of springs that share a loss; NaN of others, which are faster."""
-        followed = np.isfinite(np.broadcast_to(steps, scene.shape))
-        if not self.shares_loss(normal.law) or not followed.any():
-            return math.nan
-        count = int(np.count_nonzero(followed))
-        each = EACH_BLOCK * math.ceil(count / BLOCK)
-        each += EACH_SPRING[len(scene.slip_axes)] * count * self.springs
-        return each * float(np.max(steps, where=followed, initial=0.0))
+        return Errors(0.5 * (1.0 + chi + eta) * restitution, restitution)
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of springs, or of their loss where they share one."""
-        if not self.shares_loss(normal.law):
+        if not shares_loss(self, normal.law):
             return super().cautions(scene, normal)
         from contactlab_laws.viscoelastic import evidence  # springs without loss need none of it
 
@@ -189,7 +186,7 @@ class Springs(ProfileLaw):
 
     def start(self, scene: Scene, normal: NormalMotion) -> Any:
         """Return contacts without traction."""
-        if self.shares_loss(normal.law):
+        if shares_loss(self, normal.law):
             follows = self.grid == "doubling"
             unit = scene.pair.radius if follows else normal.maximum_radius
             return self._viscous(
@@ -205,7 +202,7 @@ class Springs(ProfileLaw):
         As ``vectors`` they turn with the slip.
         """
         spanned = normal.maximum_radius
-        if self.shares_loss(normal.law):
+        if shares_loss(self, normal.law):
             return self._viscous(
                 scene, normal, spanned, spanned=viscous.SPARE, grows=True, vectors=vectors
             )
@@ -259,7 +256,7 @@ class Springs(ProfileLaw):
         """Return the forces of all steps; None where springs go step by step."""
         if self.grid == "doubling":
             return None
-        if self.shares_loss(normal.law):
+        if shares_loss(self, normal.law):
             return viscous_steps.advance_all(self.start(scene, normal), scene, normal, steps)
         return super().advance_all(scene, normal, steps)
 

@@ -51,8 +51,8 @@ class Stronge(WholeImpactTangentialLaw):
     Impact Mechanics (2nd ed., 2018), ch. 5.
     """
 
-    elliptic: ClassVar[bool] = True
     api_version: ClassVar[int] = 2
+    offers: ClassVar[frozenset[str]] = frozenset({"elliptic"})
     expected_failures: ClassVar[Mapping[str, str]] = {
         "impact_reference": "one spring for the whole contact: there is no partial slip",
         "load_impulse": "the normal spring of the lumped contact does not pull",

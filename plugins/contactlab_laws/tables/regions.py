@@ -20,7 +20,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.compose.rebound import TABULATED_CHI
 from contactlab.numeric.types import Array
 from contactlab_laws.tables.patches import polynomial
 
@@ -37,7 +36,7 @@ Rows = NDArray[np.intp]
     SLIP_LATE,  # slips first, beyond maximum compression
 ) = range(8)
 REGIONS = 8
-LARGEST_CHI = TABULATED_CHI
+LARGEST_CHI = 2.5
 #: Largest t at which the slip regions are cut: beyond it the cut runs above LARGEST_CHI.
 CUT_END = 0.8
 #: t from which the powers in the slip cut are counted: about the middle of its range, for rounding.

@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.compose.rebound import TABULATED_CHI
 from contactlab.numeric.arrays import part_of
 from contactlab.numeric.types import Array, Real
 from contactlab_laws.tables import elastic
 from contactlab_laws.tables.file import read
 from contactlab_laws.tables.patches import Single
+from contactlab_laws.tables.regions import LARGEST_CHI
 from contactlab_laws.tables.restituted_regions import (
     NODES,
     REGIONS,
@@ -101,7 +101,7 @@ def _together(speed: Array, chi: Array, e: Real) -> Array:
     found = _partial(p, x, own)
     near = np.asarray(own > JOINED)
     if near.any():
-        rows = np.flatnonzero(np.broadcast_to(near, p.shape) & (x <= TABULATED_CHI))
+        rows = np.flatnonzero(np.broadcast_to(near, p.shape) & (x <= LARGEST_CHI))
         found[rows] += _share(part_of(own, rows)) * _step(p[rows], x[rows])
     if np.any(own == 0.0):
         found = np.where(own == 0.0, without_rebound(p, x), found)
@@ -162,7 +162,7 @@ def gradient(speed: Array, chi: Array, e: Array) -> tuple[Array, Array, Array]:
     for k, each in enumerate((p, x, own)):
         each[k * who.size : (k + 1) * who.size] += 1j * STEP
     slopes = (_partial(p, x, own).imag / STEP).reshape(3, -1)
-    near = np.flatnonzero((e[who] > JOINED) & (chi[who] <= TABULATED_CHI))
+    near = np.flatnonzero((e[who] > JOINED) & (chi[who] <= LARGEST_CHI))
     if near.size:
         q, y, own = speed[who][near], chi[who][near], e[who][near]
         slopes[2, near] += 2.0 * np.sqrt(_share(own)) / (1.0 - JOINED) * _step(q, y)
@@ -200,7 +200,7 @@ def single(psi1: float, chi: float, e: float) -> float:
         psi2 = (1.0 - 2.0 * chi) * speed ** (1.0 / (1.0 - 2.0 * chi)) if chi < 0.5 else 0.0
     else:
         psi2 = _single(speed, chi, e, end)
-        if e > JOINED and chi <= TABULATED_CHI:
+        if e > JOINED and chi <= LARGEST_CHI:
             exact = elastic.rebound(speed, chi)
             psi2 += _share(e) * (exact - _single(speed, chi, 1.0, border(chi, 1.0)))
         psi2 = max(psi2, least, -speed)

@@ -12,10 +12,14 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.compose.rebound import RESTITUTED_CHI
 from contactlab.numeric.types import Array
 from contactlab_laws.tables.file import Stored
 from contactlab_laws.tables.patches import Patches, powers_of_chebyshev
+
+#: Range of chi in the table. Largest errors of psi2: in the table up to chi ``NEARER``, and up to
+#: its end; and of springs beyond it over sqrt(chi/3): ``tests/laws/test_restituted_table.py``.
+RESTITUTED_CHI, NEARER = (0.3, 3.0), 2.0
+RESTITUTED_ERROR, WIDER_ERROR, BEYOND_ERROR = 5e-5, 1.5e-4, 3e-4
 
 
 class Region(NamedTuple):
@@ -41,6 +45,14 @@ LOW = np.array([each.low for each in REGIONS])
 PER_WIDTH = np.array([1.0 / (each.high - each.low) for each in REGIONS])
 #: Powers of each coordinate in a patch: of that of psi1, of chi and of e.
 NODES = (8, 6, 6)
+
+
+def restituted_error(chi: Any, restitution: Any) -> Any:
+    """Return the bound of the error of psi2 below a restitution of 1; 0 at e = 0."""
+    far = BEYOND_ERROR * np.sqrt(np.asarray(chi) / RESTITUTED_CHI[1])
+    wide = np.where(chi <= RESTITUTED_CHI[1], WIDER_ERROR, far)
+    near = np.where(np.asarray(chi) <= NEARER, RESTITUTED_ERROR, wide)
+    return np.where(np.equal(restitution, 0.0), 0.0, near)
 
 
 def border(chi: Any, e: Any) -> Any:

@@ -14,13 +14,19 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.compose.rebound import RESTITUTED_CHI
 from contactlab.numeric.types import Array
 from contactlab_laws.tables import elastic, restituted
 from contactlab_laws.tables import regions as of
 from contactlab_laws.tables.array_api import Library, Operand, Traced
 from contactlab_laws.tables.file import read
-from contactlab_laws.tables.restituted_regions import LOW, NODES, PER_WIDTH, SLIPPING, border
+from contactlab_laws.tables.restituted_regions import (
+    LOW,
+    NODES,
+    PER_WIDTH,
+    RESTITUTED_CHI,
+    SLIPPING,
+    border,
+)
 
 #: A harmless number in place of the argument of a root.
 HARMLESS = 0.5

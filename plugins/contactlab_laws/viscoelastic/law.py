@@ -15,6 +15,7 @@ from contactlab.numeric.arrays import plain
 from contactlab.numeric.checks import Rule, quantity, refuse
 from contactlab.numeric.types import Real
 from contactlab_laws.relaxing import Parts, Relaxing
+from contactlab_laws.tables.restituted_regions import RESTITUTED_CHI, restituted_error
 from contactlab_laws.viscoelastic.relaxation import number_of
 
 #: c above this leaves nothing to rebound with at 30 m/s.
@@ -77,7 +78,7 @@ class Viscoelastic(Relaxing, Tabulated):
     """
 
     api_version: ClassVar[int] = 2
-    offers: ClassVar[frozenset[str]] = frozenset({"radius", "kelvin_voigt"})
+    claims: ClassVar[frozenset[str]] = Relaxing.claims | {"kelvin_voigt"}
 
     speed_loss: float | None = quantity("(s/m)^(1/5)", rule=LOSS, default=None)
     restitutions: tuple[tuple[float, float], ...] | None = attrs.field(
@@ -87,6 +88,7 @@ class Viscoelastic(Relaxing, Tabulated):
     )
 
     number_of = staticmethod(number_of)
+    chi_range: ClassVar[tuple[float, float]] = RESTITUTED_CHI
 
     def __attrs_post_init__(self) -> None:
         by_speed = [name for name in BY_SPEED if getattr(self, name) is not None]
@@ -103,9 +105,9 @@ class Viscoelastic(Relaxing, Tabulated):
         return f"Viscoelastic({', '.join(f'{name}={getattr(self, name)!r}' for name in names)})"
 
     @property
-    def viscous(self) -> bool:
+    def loses(self) -> bool:
         """True if there is any loss."""
-        return super().viscous or bool(self.speed_loss) or self.restitutions is not None
+        return super().loses or bool(self.speed_loss) or self.restitutions is not None
 
     def accept(self, scene: Scene) -> None:
         """Refuse a speed at which e is not known."""
@@ -153,6 +155,11 @@ class Viscoelastic(Relaxing, Tabulated):
         from contactlab_laws.viscoelastic.rebound import rebound  # not for a normal motion
 
         return rebound(*impact, **options)
+
+    @staticmethod
+    def rebound_error(*impact: Any) -> Any:
+        """Return that of the table, and of springs beyond it."""
+        return restituted_error(*impact)
 
     @staticmethod
     def table_of_arrays() -> Mapping[str, Any]:

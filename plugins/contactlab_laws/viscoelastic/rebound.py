@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.compose.rebound import RESTITUTED_CHI
 from contactlab.numeric.types import Array
 from contactlab_laws.tables import restituted
+from contactlab_laws.tables.restituted_regions import RESTITUTED_CHI
 
 #: Springs and steps up to the largest chi of the table; beyond it as its fourth and square root.
 SPRINGS, STEPS = 100, 800

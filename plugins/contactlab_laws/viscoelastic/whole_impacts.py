@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.compose.rebound import RESTITUTED_CHI, restituted_error
 from contactlab.contracts import WholeImpact, from_change
 from contactlab.impact.scene import Scene
+from contactlab_laws.tables.restituted_regions import RESTITUTED_CHI, restituted_error
 from contactlab_laws.viscoelastic.rebound import rebound
 
 

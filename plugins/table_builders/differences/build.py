@@ -110,7 +110,7 @@ def row(law: NormalLaw) -> list[str]:
     psi1, chi = impacts(e)
     exact = pointwise(law, psi1, chi)
     choice = float(np.abs(tsuji(e) - exact).max())
-    sharing = springs(law, psi1, chi) if law.viscous else exact
+    sharing = springs(law, psi1, chi) if "viscous" in law.offers else exact
     shared = float(np.abs(tsuji_sharing(e) - sharing).max())
     sizes = choice, shared, *by_springs(law, e)
     return [key(law), f"{e:g}", *(f"{size:.1e}" for size in sizes)]

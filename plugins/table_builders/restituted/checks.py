@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 
 import contactlab
-from contactlab.compose.rebound import restituted_error
 from contactlab_laws.tables.file import read
 from contactlab_laws.tables.restituted import SHIPPED, rebound
-from contactlab_laws.tables.restituted_regions import REGIONS, border
+from contactlab_laws.tables.restituted_regions import REGIONS, border, restituted_error
 from contactlab_laws.viscoelastic.batch import extrapolated
 from contactlab_laws.viscoelastic.relaxation import number_of
 

@@ -8,16 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.compose.answers import Answered, answers, followed, separated, show
+from contactlab.compose.answers import Answered, answers, check_motion, separated, show
 from contactlab.compose.normal_motion import normal_or_failed
 from contactlab.compose.way import ONE_BY_ONE, Prepared, Way, books_bound, halves
 from contactlab.contracts import faults
-from contactlab.contracts.error_model import psi_magnitude
 from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.status import Status, succeeded
 from contactlab.contracts.tangential_motion import Observer, TangentialMotion
 from contactlab.contracts.whole_impact import WholeImpact
+from contactlab.impact.error_model import psi_magnitude
 from contactlab.impact.inverse_mass import unit_slip
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import are_zeros, every, plain, some, spread, zeros
@@ -28,11 +29,13 @@ from contactlab.outcome.plan import ENDLESS, MARCHED, PlanColumns, Reason
 
 #: Error of what is known in closed form, over max(1, |psi1|).
 CLOSED_FORM = 1e-12
+#: Statuses of a law's fault, by which an integrator gives a whole batch up.
+GIVEN_UP = (Status.LAW_RAISED, Status.MALFORMED, Status.NON_FINITE, Status.UNSETTLED)
 #: Errors that differ by less, over themselves, are equal.
 ROUNDING = 1e-12
 
 
-class Along(Way):
+class Decoupled(Way):
     """Impacts that friction slows along a line, and whose approach it leaves as it is."""
 
     __slots__ = ()
@@ -41,21 +44,19 @@ class Along(Way):
     at_a_time = math.inf
 
     @property
-    def judged(self) -> Scene:
+    def scene_of_cautions(self) -> Scene:
         """The impacts themselves."""
         return self.scene
 
     def how(self) -> str:
         """Return words on how the normal motion is found."""
-        if self.laws.normal.closed_form:
+        if isinstance(self.laws.normal, ClosedFormNormalLaw):
             return "in closed form"
         return "integrated from first touch to separation"
 
     def prepare(self, history: bool | str) -> Prepared:
         """Return normal motion, answers and columns of the plan, or raise LawFaultError."""
         scene, laws = self.scene, self.laws
-        if history:
-            self.refuse_history(history, common_instants=laws.integrator.common_instants)
         normal = normal_or_failed(laws.normal, scene)
         try:
             size, accuracy = psi_magnitude(scene), laws.integrator.accuracy
@@ -67,7 +68,7 @@ class Along(Way):
             faults.blame(laws.tangential, error)
             raise
 
-    def moved(self, prepared: Prepared, recorder: Recorder | None) -> Motion:
+    def solve(self, prepared: Prepared, recorder: Recorder | None) -> Motion:
         """Return the motion by whole-impact answers where there are any, else marched."""
         normal, answered, columns, _ = prepared
         marched: Any = columns.code == MARCHED
@@ -117,7 +118,7 @@ class Along(Way):
             error = error + np.where(one.where, one.answer.psi2_error, 0.0)
         if some(marched):
             with np.errstate(all="ignore"):
-                declared = laws.integrator.psi2_error(normal, laws.tangential, scene)
+                declared = laws.integrator.errors(normal, laws.tangential, scene).psi2
                 if math.isnan(normal.accuracy):
                     declared = math.nan  # no better known than the motion that it follows
                 error = np.where(marched, declared, error) if scene.shape else declared
@@ -159,16 +160,20 @@ class Along(Way):
         try:
             with np.errstate(under="ignore"):  # harmless, even where a user has numpy raise
                 given = laws.integrator.integrate(normal, laws.tangential, normal.scene, observer)
-            motion, raised = followed(given, shape), False
+            motion = check_motion(given, shape)
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # a plug-in may not end the process
             sentence = faults.sentence(laws.integrator, faults.raised(error), 1)
-            motion, raised = TangentialMotion.nothing(shape, Status.LAW_RAISED, sentence), True
+            motion = TangentialMotion.nothing(shape, Status.LAW_RAISED, sentence)
         if not shape or observer is not None or succeeded(motion.status):
             return motion
-        if laws.integrator.own_statuses and not raised:
+        given_up = np.isin(motion.status, np.array(GIVEN_UP, dtype=object))
+        if not given_up.any():
             return motion
+        if not given_up.all():
+            again = [(np.ones(shape, dtype=bool), motion), (given_up, part(given_up))]
+            return TangentialMotion.merged(again, shape)
         parts = halves(*shape, most=ONE_BY_ONE)
         return TangentialMotion.joined([part(each) for each in parts], shape)
 

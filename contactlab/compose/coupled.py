@@ -8,16 +8,16 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.compose.answers import Mask, followed, separated
+from contactlab.compose.answers import Mask, check_motion, separated
 from contactlab.compose.normal_motion import normal_or_failed
 from contactlab.compose.solved_motion import FailedMotion
-from contactlab.compose.way import ONE_BY_ONE, Masks, Prepared, Way, asked, books_bound, halves
+from contactlab.compose.way import ONE_BY_ONE, Masks, Prepared, Way, ask, books_bound, halves
 from contactlab.contracts import faults
-from contactlab.contracts.integrator import Integrator
+from contactlab.contracts.law import derived
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
-from contactlab.contracts.tangential import TangentialLaw
+from contactlab.contracts.tangential import CoupledTangentialLaw, TangentialLaw, shares_loss
 from contactlab.contracts.tangential_motion import Observer
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import chosen, every, greater, spread
@@ -33,7 +33,7 @@ CANCELS = 1e-4
 #: to a tenth of it, where abs(lam) > 1: of V2 over max(1, V2) and psi2 over max(1, psi1), in 1,200
 #: random planar impacts by 50 springs and 200 steps.
 NEAR_SINGULAR = ((0.1, 0.07), (0.01, 0.4), (0.001, 1.2))
-#: Least slip at which cautions are asked, over the larger of two.
+#: Least slip at which cautions are ask, over the larger of two.
 LITTLE = 1e-3
 #: Statuses by which a law ends a whole batch: its impacts are then solved one by one.
 GIVEN_UP = (Status.LAW_RAISED, Status.MALFORMED, Status.NON_FINITE)
@@ -51,7 +51,7 @@ OF_SPHERES = (
 )
 
 
-class Together(Way):
+class Coupled(Way):
     """Impacts whose approach friction changes, or whose slip turns."""
 
     __slots__ = ()
@@ -62,9 +62,8 @@ class Together(Way):
     def prepare(self, history: bool | str) -> Prepared:
         """Return the approach without friction and columns of the plan, or raise LawFaultError."""
         scene, laws = self.scene, self.laws
-        if history:
-            common = laws.integrator.common_instants and not laws.tangential.together
-            self.refuse_history(history, common_instants=common)
+        if history and derived(laws.tangential, CoupledTangentialLaw):
+            self.refuse_history(history)
         normal = normal_or_failed(laws.normal, scene.central)
         with faults.blaming(laws.tangential):
             bound = greater(books_bound(laws.tangential, normal.scene), CANCELS)
@@ -73,16 +72,16 @@ class Together(Way):
     def _columns(self, normal: NormalMotion) -> PlanColumns:
         """Return the columns of the plan: who answers, and the declared errors."""
         scene, law, integrator = self.scene, self.laws.tangential, self.laws.integrator
-        code = chosen(separated(normal), 0 if law.together else MARCHED, ENDLESS)
-        errors: tuple[Any, Any]
-        if law.together:
-            errors = law.errors_together(scene, integrator.accuracy)
+        whole = derived(law, CoupledTangentialLaw)
+        code = chosen(separated(normal), 0 if whole else MARCHED, ENDLESS)
+        if whole:
+            errors = law.errors(scene, normal, np.inf, integrator.accuracy)
         else:
-            errors = integrator.errors_together(normal, law, scene)
+            errors = integrator.errors(normal, law, scene)
         psi2, restitution = (spread(error, scene.shape) for error in errors)
-        return PlanColumns(code, psi2, (WHOLE,) if law.together else (), restitution)
+        return PlanColumns(code, psi2, (WHOLE,) if whole else (), restitution)
 
-    def moved(self, prepared: Prepared, recorder: Recorder | None) -> Motion:
+    def solve(self, prepared: Prepared, recorder: Recorder | None) -> Motion:
         """Return the motion, of a batch with the impacts solved again that failed beside others."""
         scene, normal = self.scene, prepared.normal
         if type(normal) is FailedMotion:  # isinstance of an abstract class is slow
@@ -95,13 +94,14 @@ class Together(Way):
     def _answered(self, normal: NormalMotion, observer: Observer | None) -> Motion:
         """Return the motion that law or integrator answers, or raise LawFaultError."""
         scene, law, integrator = self.scene, self.laws.tangential, self.laws.integrator
-        blamed: TangentialLaw | Integrator = law if law.together else integrator
+        whole = derived(law, CoupledTangentialLaw)
+        blamed: Any = law if whole else integrator
         with faults.blaming(blamed):
-            if law.together:
-                answer = law.impacts_together(scene, normal, integrator.accuracy, observer)
+            if whole:
+                answer = blamed.solve_coupled(scene, normal, integrator.accuracy, observer)
             else:
-                answer = integrator.integrate_together(normal, law, scene, observer)
-            moved = followed(answer, scene.shape, scene.slip_axes)
+                answer = blamed.integrate_coupled(normal, law, scene, observer)
+            moved = check_motion(answer, scene.shape, scene.slip_axes)
             if moved.normal is None and np.any(np.asarray(moved.status) == Status.SUCCESS):
                 told = "the answer has not the ends of its normal motion"
                 raise faults.LawFaultError(Status.MALFORMED, faults.sentence(blamed, told, 1))
@@ -116,7 +116,7 @@ class Together(Way):
         part = self.taking(again)
         size, shape = part.scene.shape[0], self.scene.shape
         if size == shape[0]:
-            _, repeated = part.cut(halves(size, most=ONE_BY_ONE))
+            _, repeated = part.solve_parts(halves(size, most=ONE_BY_ONE))
         else:
             _, repeated = part.outcome(False, None)
         return Motion.merged([(np.ones(shape, dtype=bool), motion), (again, repeated)], shape)
@@ -126,7 +126,7 @@ class Together(Way):
         return np.array([1.0, 0.0])
 
     @property
-    def judged(self) -> Scene:
+    def scene_of_cautions(self) -> Scene:
         """The central impacts at the larger slip: at first touch, or as pressure alone leaves it.
 
         Sizes of cautions grow with the slip, and pressure makes slip where there is none at first.
@@ -158,13 +158,6 @@ class Together(Way):
         """Return words on how the normal motion is found."""
         return "with the tangential motion"
 
-    def lasting(self, marched: Mask) -> str:
-        """Return words on how long the march of some impacts takes, empty if nobody declares it."""
-        laws, part = self.laws, self.scene if np.all(marched) else self.scene.take(marched)
-        normal = normal_or_failed(laws.normal, part.central)
-        seconds = laws.integrator.seconds_together(normal, laws.tangential, part)
-        return f": about {seconds:.1g} s" if seconds > 0.0 else ""
-
     def one_by_one(self, masks: Masks) -> Mask:
         """Return the impacts that a law takes one by one, if it does."""
         return masks.ended
@@ -184,16 +177,16 @@ class Together(Way):
         """Return what impacts in a plane leave out."""
         return [Clause(ONE_PLANE, masks.known)] if self.scene.planar else []
 
-    def reused(self, motion: Motion | None) -> None:
+    def motion_of_cautions(self, motion: Motion | None) -> None:
         """Return None: friction changed the normal motion of the run."""
 
     def cautions_of_laws(self, scene: Scene, normal: NormalMotion, known: Mask) -> list[str]:
         """Return what the laws say, and what one that shares the loss adds of the smaller slip."""
         said, law = super().cautions_of_laws(scene, normal, known), self.laws.tangential
-        if law.shares_loss(self.laws.normal):
+        if shares_loss(law, self.laws.normal):
             grip = self._gripping if every(known) else self._gripping.take(known)
             usual = TangentialLaw.cautions(law, grip, normal)
-            said += [text for text in asked(law, law.cautions, grip, normal) if text not in usual]
+            said += [text for text in ask(law, law.cautions, grip, normal) if text not in usual]
         return said
 
     def cautions_of_contact(self, scene: Scene, normal: NormalMotion) -> list[str]:
@@ -210,7 +203,7 @@ class Together(Way):
                 "moves by less than 0.01 in four of five random impacts, by up to 0.1 where the "
                 "slip turns most (model)"
             )
-        return said if law.together else said + _near_singular(scene)
+        return said if derived(law, CoupledTangentialLaw) else said + _near_singular(scene)
 
 
 def _near_singular(scene: Scene) -> list[str]:

@@ -1,0 +1,33 @@
+"""What laws share that a restitution, or a measurement, calibrates."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from contactlab.numeric.checks import refuse
+
+
+def claims_of_loss(restitution: float | None, loses: bool) -> frozenset[str]:
+    """Return ``viscous`` of a law that loses, and ``similar`` of one that a restitution gives."""
+    words = ("viscous", loses), ("similar", restitution is not None)
+    return frozenset(word for word, holds in words if holds)
+
+
+def root(function: Callable[[float], float], low: float, high: float) -> float:
+    """Return the sign change of ``function``, negative at ``low``, by bisection to the last bit."""
+    while low < (middle := 0.5 * (low + high)) < high:
+        low, high = (middle, high) if function(middle) < 0.0 else (low, middle)
+    return high
+
+
+def one_of_two(law: object, first: str, second: str, *, default: float) -> None:
+    """Refuse a law that sets both of two equivalent options; if it sets neither, set ``first``."""
+    values = getattr(law, first), getattr(law, second)
+    given = [value is not None for value in values]  # no comparison: a value may be an array
+    if all(given):
+        rule = "only one of the two may be given"
+        raise refuse(
+            f"{first}, {second}", values, rule, "each follows from the other: leave one out"
+        )
+    if not any(given):
+        object.__setattr__(law, first, default)  # the object is frozen
