@@ -15,23 +15,23 @@ plan, which states what was computed and which effects were left out::
 
 The package has these parts. Each imports only from the parts above it:
 
-============== ===========================================================================
-``numeric``    checked numbers, vectors, batches, collocation, Runge-Kutta, lazy imports
-``impact``     materials, bodies, scenes, encounters, Hertz's closed forms, cautions
-``contracts``  base classes of normal laws, tangential laws and integrators; statuses
-``outcome``    results: motion, plan, energy books, history, tables and files
-``compose``    laws by name, simulations, sweeps, rebounds, collisions
-``scene_file`` scenes and sweeps in TOML
-``testing``    the conformance kit, which checks laws against their contracts
-``study``      comparison, cost against error, stability, validation, the paper's figures
-``fitting``    parameters from measured impacts
-``figures``    functions that draw on Matplotlib axes
-``pages``      self-contained HTML pages, notebooks
-``cli``        the command line
-============== ===========================================================================
+================ =========================================================================
+``numeric``      checked numbers, vectors, batches, collocation, Runge-Kutta, lazy imports
+``registration`` names, hooks, the one plug-in manager of the process
+``impact``       materials, bodies, scenes, encounters, Hertz's closed forms, cautions
+``contracts``    base classes of normal laws, tangential laws and integrators; statuses
+``outcome``      results: motion, plan, energy books, history, tables and files
+``compose``      laws by name, simulations, sweeps, rebounds, collisions
+``scene_file``   scenes and sweeps in TOML
+``testing``      the conformance kit, which checks laws against their contracts
+``study``        comparison, cost against error, stability, validation, the paper's figures
+``figures``      functions that draw on Matplotlib axes
+``cli``          the command line
+================ =========================================================================
 
-The laws are in the package ``contactlab_laws``; the guide is in ``guide/``. The friction
-law as a kernel in C and JavaScript is in ``kernels/``, which has no Python.
+The laws are in the package ``contactlab_laws``, fits to measured impacts in ``contactlab_fit``,
+HTML pages in ``contactlab_pages``: each plugs in by entry points and hooks. The guide is in
+``guide/``; the friction law as a kernel in C and JavaScript is in ``kernels/``, without Python.
 """
 
 from __future__ import annotations
@@ -43,12 +43,10 @@ from contactlab.numeric.names import imported_on_use
 if TYPE_CHECKING:
     from contactlab.compose.collide import collide
     from contactlab.compose.collision import Collision
-    from contactlab.compose.hooks import PluginError, hookimpl
     from contactlab.compose.load_path import load_path
     from contactlab.compose.rebound import rebound
     from contactlab.compose.simulation import Simulation
     from contactlab.contracts.status import Status
-    from contactlab.fitting import fit
     from contactlab.impact import material as materials
     from contactlab.impact import shapes
     from contactlab.impact.bodies import HalfSpace, Sphere
@@ -60,6 +58,8 @@ if TYPE_CHECKING:
     from contactlab.outcome.energy import EnergyLedger
     from contactlab.outcome.result import ImpactResult
     from contactlab.outcome.sweep_folder import SweepFolder
+    from contactlab.registration.hooks import PluginError, hookimpl
+    from contactlab.registration.manager import plugin_manager, register
     from contactlab.scene_file import read_scene
 
 __version__ = "0.1.0"
@@ -81,12 +81,13 @@ __all__ = [
     "SweepFolder",
     "collide",
     "create",
-    "fit",
     "hookimpl",
     "load_path",
     "materials",
+    "plugin_manager",
     "read_scene",
     "rebound",
+    "register",
     "shapes",
 ]
 
@@ -123,7 +124,7 @@ MODULES = {
     "ImpactError": "outcome.answer",
     "ImpactResult": "outcome.result",
     "Material": "impact.material",
-    "PluginError": "compose.hooks",
+    "PluginError": "registration.hooks",
     "RigidBody": "impact.rigid_body",
     "Scene": "impact.scene",
     "Simulation": "compose.simulation",
@@ -131,17 +132,17 @@ MODULES = {
     "Status": "contracts.status",
     "SweepFolder": "outcome.sweep_folder",
     "collide": "compose.collide",
-    "fit": "fitting",
-    "hookimpl": "compose.hooks",
+    "hookimpl": "registration.hooks",
     "load_path": "compose.load_path",
     "materials": "impact.material",
+    "plugin_manager": "registration.manager",
     "read_scene": "scene_file",
     "rebound": "compose.rebound",
+    "register": "registration.manager",
     "shapes": "impact.shapes",
     # the public submodules
     "contracts": "contracts",
     "figures": "figures",
-    "fitting": "fitting",
     "study": "study",
     "testing": "testing",
 }

@@ -13,7 +13,8 @@ from PIL import Image
 from sphinx_gallery.directives import imgsgnode
 
 import contactlab
-from contactlab.cli.guide import PAGES, PARTS, text
+from contactlab.cli.guide import PARTS, text
+from contactlab.cli.guide import pages as guide_pages
 
 sys.path.insert(0, str(Path(__file__).parent))
 from examples import NOT_RUN, InOrder, Pictures, arguments
@@ -133,7 +134,7 @@ def linked(app: Any, doctree: nodes.document, page: str) -> None:
             if heading := re.search(rf"^## ({number}\. .*)$", text(part), re.MULTILINE):
                 slug = re.sub(r"[^\w -]", "", heading[1]).lower().replace(" ", "-")
                 target, anchor = part, f"#{slug}"
-        if target not in PAGES:
+        if target not in guide_pages():
             continue
         uri = app.builder.get_relative_uri(page, target) + anchor
         reference = nodes.reference("", "", internal=True, refuri=uri)

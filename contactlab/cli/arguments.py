@@ -20,14 +20,16 @@ from contactlab.cli.statuses import BAD_INPUT as BAD_INPUT
 from contactlab.cli.statuses import FAILED as FAILED
 from contactlab.cli.statuses import INTERRUPTED as INTERRUPTED
 from contactlab.cli.statuses import OK as OK
-from contactlab.compose.hooks import Execute
-from contactlab.compose.names import KINDS
 from contactlab.outcome.files import distinct, unwritable, write_table
+from contactlab.registration.hooks import Execute
+from contactlab.registration.manager import MANAGER
+from contactlab.registration.names import KINDS
 
 if TYPE_CHECKING:
     from contactlab.compose.simulation import Simulation
     from contactlab.figures.style import Look, Width
     from contactlab.impact.scene import Scene
+    from contactlab.scene_file import SceneFile
     from contactlab.study.benchmark import Benchmark
     from contactlab.study.stability import Stability
 
@@ -349,3 +351,12 @@ def check_budget(seconds: float) -> None:
 def why_ended(report: Benchmark | Stability) -> str:
     """Return why a report over all laws is not complete."""
     return "interrupted" if report.interrupted else "the budget ran out"
+
+
+def scene_file(arguments: argparse.Namespace, read: Callable[..., SceneFile]) -> SceneFile:
+    """Return the scene file of a command, with what options of plug-ins put in its place.
+
+    ``read`` returns the file; ``defaults`` are velocities to use where the file has none.
+    """
+    found: SceneFile | None = MANAGER.hook.contactlab_scene_file(arguments=arguments, read=read)
+    return read(defaults=None) if found is None else found

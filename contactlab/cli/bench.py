@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import Unpack
 
 from contactlab.cli import arguments as shared
-from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.tables import time
 from contactlab.outcome.text_table import table
+from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.study.bench_methods import methods
 from contactlab.study.benchmark import Benchmark, Row
 from contactlab.study.work_precision import bench

@@ -14,8 +14,8 @@ from contactlab.cli import arguments as shared
 from contactlab.cli.compare import own_laws, simulations
 from contactlab.cli.scene import add_file, read
 from contactlab.compose.citations import bibtex, references, software
-from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.impact.material import works
+from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.scene_file import LawChoice
 
 

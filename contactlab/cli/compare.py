@@ -9,7 +9,6 @@ Examples
   contactlab compare --all --figure laws.png
   contactlab compare examples/kharaz2001.toml --figure kharaz.png
   contactlab compare examples/steel_ball.toml --tangential annulus,coulomb
-  contactlab compare ball.toml --measured drops.csv --column "impact angle [deg]=angle_deg"
   contactlab compare --psi1 0:6:13 --chi 1.18 --tangential fronts,stronge,coulomb
   contactlab compare examples/sweep.toml --integrator paper,symplectic --csv > sweep.csv
   contactlab compare examples/steel_ball.toml --tangential springs,mindlin_cap --loops loops.png
@@ -28,17 +27,16 @@ from pathlib import Path
 import numpy as np
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.measured import add_measured, beside_measured
 from contactlab.cli.scene import add_file, add_ranges, check_alone, read
 from contactlab.compose.composition import ON_A_PATH
-from contactlab.compose.hooks import Execute, hookimpl
-from contactlab.compose.names import KINDS, full_name, kind_of
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.compose.solve import accept_scene
 from contactlab.impact.scene import Scene
 from contactlab.numeric.names import nearest
 from contactlab.outcome.columns import json_value, quantity_named
+from contactlab.registration.hooks import Execute, hookimpl
+from contactlab.registration.names import KINDS, full_name, kind_of
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab.scene_file.laws import same_law
 from contactlab.study import side_by_side
@@ -62,7 +60,6 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the scene, the laws, the quantities and the outputs."""
     add_file(parser, "a scene or a sweep (default: psi2 over psi1 of a solid sphere, chi = 49/34)")
     add_ranges(parser)
-    add_measured(parser)
     words = "every installed tangential law that fits, one row a law"
     parser.add_argument("--all", action="store_true", help=words)
     shared.add_laws(parser, many=True)
@@ -87,9 +84,7 @@ def execute(arguments: argparse.Namespace) -> int:
     """Compare and report; the status is 1 if a law failed in an impact."""
     for quantity in arguments.quantity or ():
         quantity_named(quantity, where="--quantity")
-    if arguments.measured and not arguments.scene:
-        raise ValueError("--measured: needs a SCENE.toml with the bodies of the experiment")
-    file = beside_measured(arguments, partial(_file, arguments))
+    file = shared.scene_file(arguments, partial(_file, arguments))
     named = bool(arguments.tangential)
     if arguments.all:
         compared = _all(arguments, file)

@@ -15,8 +15,8 @@ from pathlib import Path
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import composed
-from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.outcome.files import write_table
+from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.scene_file import LawChoice
 from contactlab.study.paper_figures import CAPTIONS, FigureData, paper_data
 

@@ -13,26 +13,25 @@ from __future__ import annotations
 import argparse
 import re
 import shutil
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
 
 from contactlab.cli.formulas import readable
-from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
+from contactlab.registration.hooks import Execute, hookimpl
+from contactlab.registration.manager import MANAGER
+from contactlab.registration.names import PAGE, short_name
 
 #: Topics in reading order by group; each is a file of ``contactlab/guide``.
+QUESTIONS = "Questions"
 GROUPS = {
     "Begin": ("getting-started", "units-and-signs", "choosing", "command-line"),
     "Answers": ("how-far-to-trust", "plans-and-statuses", "for-a-paper", "glossary"),
-    "Questions": (
-        "fitting",
-        "any-two-bodies",
-        "load-paths",
-        "beyond-the-paper",
-        "many-machines",
-    ),
+    QUESTIONS: ("any-two-bodies", "load-paths", "beyond-the-paper", "many-machines"),
     "Laws and codes": ("laws", "extending", "engines", "theory"),
 }
-TOPICS = tuple(topic for group in GROUPS.values() for topic in group)
 #: Parts of the long topics, whose own pages begin with a table of them.
 PARTS = {
     "extending": (
@@ -45,7 +44,40 @@ PARTS = {
         "theory-references",
     ),
 }  # fmt: skip
-PAGES = tuple(page for topic in TOPICS for page in (topic, *PARTS.get(topic, ())))
+
+
+def added() -> dict[str, Path]:
+    """Return the pages of plug-ins by name: files of the packages that their entry points name."""
+    infos = [info for info in MANAGER.installed(PAGE) if info.usable and info.meant]
+    found = {short_name(info.name): resource(info.module, info.name) for info in infos}
+    return {name: path for name, path in found.items() if path is not None}
+
+
+@cache
+def resource(package: str, name: str) -> Path | None:
+    """Return the file of a page in a package, which is not imported; None if there is none."""
+    spec = find_spec(package)
+    for folder in (spec and spec.submodule_search_locations) or ():
+        if (path := Path(folder, f"{short_name(name)}.md")).is_file():
+            return path
+    return None
+
+
+def groups() -> dict[str, tuple[str, ...]]:
+    """Return the topics by group; pages of plug-ins end the group of questions."""
+    return GROUPS | {QUESTIONS: GROUPS[QUESTIONS] + tuple(sorted(added()))}
+
+
+def topics() -> tuple[str, ...]:
+    """Return all topics in reading order."""
+    return tuple(topic for group in groups().values() for topic in group)
+
+
+def pages() -> tuple[str, ...]:
+    """Return all topics, each with its parts."""
+    return tuple(page for topic in topics() for page in (topic, *PARTS.get(topic, ())))
+
+
 #: Longest line of prose, however wide the terminal is.
 WIDEST = 100
 #: Signs of LaTeX that no word has: a page that has ``\\psi_1`` is found by psi1.
@@ -69,10 +101,10 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
 def execute(arguments: argparse.Namespace) -> int:
     """Print the list of topics, a topic, or one section of a topic."""
     if arguments.topic is None:
-        width = max(map(len, TOPICS))
-        for group, topics in GROUPS.items():
+        width = max(map(len, topics()))
+        for group, members in groups().items():
             print(group)
-            for topic in topics:
+            for topic in members:
                 print(f"  {topic.ljust(width)}  {summary(topic)}")
         print("\ncontactlab guide TOPIC prints a topic.")
         return 0
@@ -101,17 +133,19 @@ def text(topic: str) -> str:
     from importlib import resources  # only when the guide is read
 
     name = topic.removesuffix(".md")
-    if name not in PAGES:
-        pages = ", ".join(map(repr, about(name)))
-        hint = nearest(name, PAGES, alike=0.75) or f"read of {name} in {pages}; " * bool(pages)
-        raise refuse("topic", topic, "is not in the guide", f"{hint}known: {', '.join(TOPICS)}")
+    if name not in pages():
+        read = ", ".join(map(repr, about(name)))
+        hint = nearest(name, pages(), alike=0.75) or f"read of {name} in {read}; " * bool(read)
+        raise refuse("topic", topic, "is not in the guide", f"{hint}known: {', '.join(topics())}")
+    if name in added():
+        return added()[name].read_text("utf-8")
     return resources.files("contactlab").joinpath("guide", f"{name}.md").read_text("utf-8")
 
 
 def about(word: str) -> list[str]:
     """Return at most three pages that have a word, those with most headings and lines first."""
     found = {}
-    for topic in PAGES:
+    for topic in pages():
         known = text(topic).lower().translate(LATEX).splitlines()
         lines = [line for line in known if word.lower().translate(LATEX) in line]
         if lines:

@@ -12,8 +12,8 @@ from importlib import resources
 from pathlib import Path
 
 from contactlab.cli import arguments as shared
-from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.outcome.files import written
+from contactlab.registration.hooks import Execute, hookimpl
 
 #: Files of ``contactlab/kernels``: springs on a doubling grid (theory §13), bounces, exact impacts
 #: and bodies of any shape (theory §14), types, notes.

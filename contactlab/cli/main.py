@@ -18,10 +18,11 @@ from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 import contactlab
 from contactlab.cli.statuses import BAD_INPUT, BROKEN_PIPE, FAILED, INTERRUPTED
 from contactlab.cli.terminal import fitted
-from contactlab.compose.hooks import PluginError, ask
-from contactlab.compose.installed import PluginWarning, command, commands
-from contactlab.compose.names import PROJECT, PluginInfo
 from contactlab.numeric.names import nearest
+from contactlab.registration.hooks import PluginError
+from contactlab.registration.installed import PluginWarning
+from contactlab.registration.manager import MANAGER, command, commands
+from contactlab.registration.names import PROJECT, PluginInfo
 
 if TYPE_CHECKING:
     from _typeshed import SupportsWrite
@@ -162,7 +163,8 @@ def _parser(names: Mapping[str, PluginInfo], called: bool) -> argparse.ArgumentP
     for name, info in names.items():
         if called:
             added = subparsers.add_parser(name, formatter_class=raw, allow_abbrev=False)
-            execute = ask(info, "contactlab_command", parser=added)
+            execute = MANAGER.ask(info, parser=added)
+            MANAGER.brought("options", only=name, command=name, parser=added)
             if not callable(execute):
                 raise PluginError(f"{info.source} returned {execute!r}, which runs no command")
             text = inspect.cleandoc(sys.modules[info.module].__doc__ or "")

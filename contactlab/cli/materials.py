@@ -14,9 +14,9 @@ import argparse
 import attrs
 
 from contactlab.cli import arguments as shared
-from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.impact import material as materials
 from contactlab.outcome.text_table import table
+from contactlab.registration.hooks import Execute, hookimpl
 
 
 @hookimpl
@@ -32,7 +32,12 @@ def execute(arguments: argparse.Namespace) -> int:
     single = arguments.name is not None
     entries = (materials.entry(arguments.name),) if single else materials.entries()
     if arguments.json:
-        content = {"materials": [attrs.asdict(entry) for entry in entries]}
+        content = {
+            "materials": [
+                attrs.asdict(entry, filter=lambda field, _: field.name != "works")
+                for entry in entries
+            ]
+        }
         shared.print_json(content | {"references": materials.references()})
         return shared.OK
     headings = ["material", "E (GPa)", "nu", "density (kg/m³)", "yield stress (MPa)"]

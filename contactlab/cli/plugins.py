@@ -1,9 +1,10 @@
-"""List the installed laws, show a law, or check a law against its contract.
+"""List plug-ins of every kind, show one, or check one against its contract.
 
 Examples
 --------
   contactlab plugins list
   contactlab plugins show tangential.annulus --json
+  contactlab plugins list --kind materials
   contactlab plugins check tangential.coulomb
 """
 
@@ -17,21 +18,39 @@ from collections import Counter
 from typing import Any
 
 from contactlab.cli.arguments import FAILED, OK, add_progress, finite, print_json, progress
-from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.compose.options import Option, options
 from contactlab.compose.registry import REGISTRY, PluginInfo
 from contactlab.contracts import Integrator, PathTangentialLaw, Scene, TangentialLaw
-from contactlab.numeric.checks import POSITIVE, real
+from contactlab.numeric.checks import POSITIVE, real, refuse
+from contactlab.numeric.names import nearest
 from contactlab.outcome.text_table import WIDTH, table
+from contactlab.registration.hooks import Execute, hookimpl
+from contactlab.registration.installed import by_name
+from contactlab.registration.manager import MANAGER, RANK
+from contactlab.registration.names import (
+    BLOCK_VARIABLE,
+    COLLECTIONS,
+    COMMAND,
+    clash,
+    kind_of,
+    meant,
+    parted,
+    same_distribution,
+)
 
 
 @hookimpl
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add ``list``, ``show NAME`` and ``check NAME``."""
     actions = parser.add_subparsers(dest="action", metavar="list|show|check", required=True)
-    listing = actions.add_parser("list", help="name, kind, distribution and version of every law")
-    show = actions.add_parser("show", help="description and options of a law")
-    check = actions.add_parser("check", help="check a law against its contract; exit 1 if it fails")
+    listing = actions.add_parser("list", help="name, kind, distribution and version of all")
+    show = actions.add_parser(
+        "show", help="description and options of a law, or what another brings"
+    )
+    check = actions.add_parser("check", help="check one against its contract; exit 1 if it fails")
+    listing.add_argument(
+        "--kind", choices=tuple(RANK), metavar="KIND", help=f"one of {', '.join(RANK)}"
+    )
     for action in (show, check):
         action.add_argument(
             "name", metavar="NAME", help="such as tangential.annulus, or my_law.py:Stribeck"
@@ -55,8 +74,11 @@ def execute(arguments: argparse.Namespace) -> int:
         return _check(arguments)
     if arguments.action == "show":
         return _show(arguments)
-    entries = [_entry(info) for info in REGISTRY.installed()]
-    for sentence in REGISTRY.clashes():
+    laws = REGISTRY.installed()  # those of run time among them
+    infos = [*laws, *(info for info in MANAGER.installed() if info not in laws)]
+    infos = sorted(infos, key=lambda info: (RANK.get(info.kind, len(RANK)), info.name))
+    entries = [_entry(info) for info in infos if arguments.kind in (None, info.kind)]
+    for sentence in (*REGISTRY.clashes(), *(clash(each) for each in _rivals())):
         print(f"contactlab: warning: {sentence}", file=sys.stderr)
     if arguments.json:
         print_json(entries)
@@ -71,8 +93,79 @@ def execute(arguments: argparse.Namespace) -> int:
     return OK
 
 
+def _rivals() -> list[list[PluginInfo]]:
+    """Return the commands that several distributions offer."""
+    usable = [info for info in MANAGER.installed(COMMAND) if info.usable]
+    return [rivals for rivals in by_name(usable).values() if len(rivals) > 1]
+
+
+def _no_law(name: str) -> PluginInfo | None:
+    """Return the plug-in of a name that is no law, or None."""
+    kind = kind_of(name)
+    if kind not in (COMMAND, *COLLECTIONS):
+        return None
+    distribution, plain = parted(name)
+    found = [info for info in MANAGER.installed(kind) if info.name == plain]
+    if distribution:
+        found = [info for info in found if same_distribution(info.distribution, distribution)]
+    if not found:
+        known = [info.name for info in MANAGER.installed(kind)]
+        hint = nearest(plain, known)
+        raise refuse(
+            "name", name, "no such plug-in is installed", f"{hint}installed: {', '.join(known)}"
+        )
+    if all(info.blocked for info in found):
+        raise refuse("name", name, f"is blocked by {BLOCK_VARIABLE}", "unset it to use the plug-in")
+    free = [info for info in found if not info.blocked]
+    if (one := meant(free)) is None:
+        raise ValueError(clash(free))
+    return one
+
+
+def _show_other(info: PluginInfo, *, as_json: bool) -> int:
+    """Print origin of a plug-in that is no law, and what it brings."""
+    from contactlab.cli.brought import items, title
+
+    entry: dict[str, Any] = _entry(info)
+    names = [] if info.kind == COMMAND else [title(told.item) for told in items(info)]
+    if as_json:
+        print_json(entry | {"brings": names})
+        return OK
+    width = max(map(len, entry))
+    for key, value in entry.items():
+        print(f"{key.ljust(width)}  {value}")
+    if names:
+        print("\nbrings")
+        print(_indented(", ".join(names), "  "), end="")
+    return OK
+
+
+def _check_other(info: PluginInfo, *, as_json: bool) -> int:
+    """Check what a plug-in that is no law brings."""
+    from contactlab.cli.brought import check
+
+    checked = list(check(info))
+    failures = [each for each in checked if each.complaint]
+    if as_json:
+        checks = [
+            {"check": each.name, "outcome": "failed" if each.complaint else "passed",
+             "sentence": each.complaint}
+            for each in checked
+        ]  # fmt: skip
+        print_json({"name": info.name, "good": not failures, "checks": checks})
+    else:
+        rows = [
+            (each.name, "failed" if each.complaint else "passed", each.complaint)
+            for each in checked
+        ]
+        print(table((info.kind, "outcome", "sentence"), rows))
+    return FAILED if failures or not checked else OK
+
+
 def _show(arguments: argparse.Namespace) -> int:
     """Print origin, contract and options of a law; only this action imports the law."""
+    if (other := _no_law(arguments.name)) is not None:
+        return _show_other(other, as_json=arguments.json)
     from contactlab.compose.citations import references
     from contactlab.compose.composition import WAYS
 
@@ -127,6 +220,8 @@ def _indented(words: str, margin: str) -> str:
 
 def _check(arguments: argparse.Namespace) -> int:
     """Check a law against its contract; only this action imports the conformance kit."""
+    if (other := _no_law(arguments.name)) is not None:
+        return _check_other(other, as_json=arguments.json)
     from contactlab.testing import examine
     from contactlab.testing.limits import SECONDS
     from contactlab.testing.outcomes import REMEDY

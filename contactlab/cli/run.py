@@ -23,13 +23,13 @@ import attrs
 from contactlab.cli import arguments as shared
 from contactlab.cli.describe import describe
 from contactlab.cli.scene import add_scene, inputs
-from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.numeric.types import Real
 from contactlab.outcome import export
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.export import WRITERS
 from contactlab.outcome.numerical_error import error_cautions
 from contactlab.outcome.result import ImpactResult
+from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.study.interrupts import was_interrupted
 
 if TYPE_CHECKING:

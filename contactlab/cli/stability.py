@@ -17,9 +17,9 @@ from pathlib import Path
 import numpy as np
 
 from contactlab.cli import arguments as shared
-from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.text_table import table
+from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.study.bench_methods import Method, methods
 from contactlab.study.error_map import error_maps
 from contactlab.study.model_error import ModelError

@@ -33,7 +33,6 @@ from contactlab.cli.scene import (
     composed,
     read,
 )
-from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.contracts.status import succeeded
 from contactlab.impact.grid import GridParts
 from contactlab.impact.scene import Scene, entry_unit
@@ -46,6 +45,7 @@ from contactlab.outcome.files import unwritable
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import evenly, sweep_section
 from contactlab.outcome.text_table import table
+from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.scene_file import LawChoice, SceneFile
 from contactlab.study.interrupts import was_interrupted
 

@@ -17,10 +17,10 @@ from typing import Any
 import attrs
 
 from contactlab.cli import arguments as shared
-from contactlab.compose.hooks import Execute, hookimpl
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.tables import heading
 from contactlab.outcome.text_table import WIDTH, table
+from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.study.evidence import Evidence, gather
 from contactlab.study.validation import Finding, validate
 

@@ -9,7 +9,6 @@ from typing import Any
 import attrs
 
 from contactlab.compose.loading import outdated
-from contactlab.compose.names import KINDS, full_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.law import Law
@@ -21,6 +20,7 @@ from contactlab.contracts.tangential import (
     WholeImpactTangentialLaw,
 )
 from contactlab.numeric.checks import refuse
+from contactlab.registration.names import KINDS, full_name
 
 #: Defaults are plug-in names: of a list the first that is installed and fits. Coulomb's law at
 #: every point comes first, for any normal law with a radius, then laws that need less.

@@ -16,7 +16,6 @@ import numpy as np
 from contactlab.compose import sources
 from contactlab.compose.composition import Laws
 from contactlab.compose.fingerprints import fingerprint
-from contactlab.compose.names import KINDS, PROJECT
 from contactlab.compose.pieces import Piece
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts.law import Law
@@ -36,6 +35,7 @@ from contactlab.outcome.chunk_forms import NPZ, Chunk, Form
 from contactlab.outcome.files import written
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import PlanColumns
+from contactlab.registration.names import KINDS, PROJECT
 
 #: Distributions that every number comes from.
 NUMBERS_FROM = (PROJECT, "numpy", "scipy")

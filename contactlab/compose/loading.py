@@ -13,11 +13,12 @@ from typing import Any, TypeGuard
 import numpy as np
 
 from contactlab.compose import sources
-from contactlab.compose.hooks import PluginError, ask, guarded
-from contactlab.compose.names import FILE, PluginInfo, Untrusted
 from contactlab.contracts.law import API_VERSION, Law
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
+from contactlab.registration.hooks import PluginError, guarded
+from contactlab.registration.manager import MANAGER
+from contactlab.registration.names import FILE, PluginInfo, Untrusted
 
 #: Laws that were loaded from files.
 IN_FILES: dict[type[Law], PluginInfo] = {}
@@ -32,8 +33,8 @@ def law_class(info: PluginInfo) -> type[Law]:
         If the plug-in cannot be imported or has no hook, or its law breaks the contract.
     """
     with np.errstate():  # a plug-in does not change numpy's settings
-        law = ask(info, "contactlab_law")
-    return _checked(law, info.kind, info.source)
+        law = MANAGER.ask(info)
+    return checked(law, info.kind, info.source)
 
 
 def law_at(place: str) -> type[Law]:
@@ -77,7 +78,7 @@ def law_at(place: str) -> type[Law]:
         remedy = f"{nearest(title, laws)}{where} has {', '.join(laws) or 'no law'}"
         rule = f"{title} is no law" if title else "the class is missing"
         raise refuse("name", place, rule, remedy)
-    return _checked(law, law.kind, repr(place))
+    return checked(law, law.kind, repr(place))
 
 
 def _module(path: str) -> ModuleType:
@@ -130,7 +131,7 @@ def _blank(place: str) -> Law:
     return law.__new__(law)
 
 
-def _checked(law: object, kind: str, source: str) -> type[Law]:
+def checked(law: object, kind: str, source: str) -> type[Law]:
     """Return ``law``, or raise PluginError unless it is a law's class of right kind and version."""
     if not _is_law(law):
         raise PluginError(f"{source} returned {law!r}, which is not the class of a law")

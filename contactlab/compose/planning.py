@@ -43,6 +43,7 @@ from contactlab.outcome.plan import (
     PlanColumns,
     Words,
 )
+from contactlab.registration.manager import MANAGER
 
 #: Advice of a plan if the error is not declared.
 ADVICE = "; run(scene, estimate_error=True) estimates it"
@@ -188,6 +189,11 @@ def _cautions(way: Way, scene: Scene, motion: Motion | None, masks: Masks) -> Cl
             said += of_ellipse(whole, type(law).__name__)
     own = [text for text in dict.fromkeys(of_laws) if text not in said]
     said += [*own, *way.own_cautions(bool(own))]
+    said += [
+        f"{told.item} ({told.info.distribution})"
+        for told in MANAGER.brought("cautions", silent=False, scene=whole, laws=laws)
+        if isinstance(told.item, str)
+    ]
     clauses = [Clause(text, known) for text in said]
     if motion is not None:
         clauses += _books(laws, scene, motion)

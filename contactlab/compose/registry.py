@@ -8,13 +8,20 @@ import warnings
 from functools import cached_property, lru_cache
 from typing import Any
 
-from contactlab.compose.hooks import PluginError
-from contactlab.compose.installed import PluginWarning, by_name, described, entry_points, path_times
-from contactlab.compose.loading import IN_FILES, law_at, law_class
-from contactlab.compose.names import (
+from contactlab.compose.loading import IN_FILES, checked, law_at, law_class
+from contactlab.contracts.law import Law
+from contactlab.numeric.checks import of_kind, refuse
+from contactlab.numeric.names import nearest
+from contactlab.registration.hooks import PluginError
+from contactlab.registration.installed import PluginWarning, by_name
+from contactlab.registration.manager import MANAGER, RANK
+from contactlab.registration.names import (
     BLOCK_VARIABLE,
+    COLLECTIONS,
     COMMAND,
+    HERE,
     KINDS,
+    PAGE,
     PROJECT,
     PluginInfo,
     blocked_names,
@@ -25,9 +32,6 @@ from contactlab.compose.names import (
     parted,
     same_distribution,
 )
-from contactlab.contracts.law import Law
-from contactlab.numeric.checks import of_kind, refuse
-from contactlab.numeric.names import nearest
 
 __all__ = [
     "BLOCK_VARIABLE", "KINDS", "REGISTRY", "PluginError", "PluginInfo", "PluginWarning", "Registry",
@@ -51,10 +55,8 @@ class Registry:
 
     def __init__(self) -> None:
         self._loaded: dict[str, tuple[type[Law], PluginInfo]] = {}
-        self._meant: dict[tuple[str, str], str] = {}
+        self._meant: dict[tuple[str, str, int], str] = {}
         self._warned: set[str] = set()
-        self._found: set[tuple[str, str, str, str]] = set()
-        self._stamp: object = None
 
     @cached_property
     def _modules(self) -> list[tuple[str, str]]:
@@ -62,17 +64,24 @@ class Registry:
         return [(info.qualified, info.module.partition(":")[0]) for info in self.installed()]
 
     def installed(self) -> list[PluginInfo]:
-        """Return every installed law, sorted by kind and name, without an import."""
-        now = path_times()
-        if now != self._stamp:
-            self._found, self._stamp = entry_points(), now
-        infos = described(self._found)
+        """Return every law, installed or registered, sorted by kind and name, without an import."""
+        infos = MANAGER.installed()
         self._warn_of_unknown(infos)
-        laws = [info for info in infos if info.kind != COMMAND]
-        rank = {kind: place for place, kind in enumerate(KINDS)}  # unknown kinds come last
+        here = self._here()
+        laws = [info for info in infos if info.kind not in (COMMAND, PAGE, *COLLECTIONS)]
+        laws += [info for _, info in here.values()]
         return sorted(
-            laws, key=lambda each: (rank.get(each.kind, len(rank)), each.name, each.distribution)
+            laws, key=lambda each: (RANK.get(each.kind, len(RANK)), each.name, each.distribution)
         )
+
+    def _here(self) -> dict[str, tuple[type[Law], PluginInfo]]:
+        """Return the laws that are registered at run time, by their names with "this program"."""
+        blocking = blocked_names()
+        found = {}
+        for name, law in MANAGER.laws.items():
+            own = PluginInfo(name, HERE, "", law.__module__, blocks(blocking, name, HERE))
+            found[own.qualified] = (checked(law, own.kind, own.source), own)
+        return found
 
     def _warn_of_unknown(self, infos: list[PluginInfo]) -> None:
         """Warn once of each blocked name that is not installed: a misspelt name blocks nothing."""
@@ -138,10 +147,13 @@ class Registry:
         """Import the plug-in that offers ``name`` and return the law's class."""
         if is_place(name):
             return law_at(name)
-        key = name, os.environ.get(BLOCK_VARIABLE, "")  # blocking changes the meaning of a name
+        # blocking and registration change the meaning of a name
+        key = name, os.environ.get(BLOCK_VARIABLE, ""), MANAGER.changes
         if self._meant.get(key) not in self._loaded:
             info = self.info(name)
-            if info.qualified not in self._loaded:
+            if info.distribution == HERE:
+                self._loaded |= self._here()
+            elif info.qualified not in self._loaded:
                 self._loaded[info.qualified] = (law_class(info), info)
             self._meant[key] = info.qualified
         return self._loaded[self._meant[key]][0]

@@ -10,7 +10,6 @@ from contactlab.compose import stand_ins
 from contactlab.compose.composition import Laws, versions
 from contactlab.compose.coupled import Coupled
 from contactlab.compose.decoupled import Decoupled
-from contactlab.compose.names import KINDS
 from contactlab.compose.pieces import Piece
 from contactlab.compose.way import Way, blocks
 from contactlab.contracts import faults
@@ -20,6 +19,7 @@ from contactlab.outcome.chunk_forms import Chunk
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import PlanColumns
+from contactlab.registration.names import KINDS
 
 
 def ways(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:

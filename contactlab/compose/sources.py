@@ -19,8 +19,8 @@ from types import ModuleType
 from typing import Any, NamedTuple
 from zlib import crc32
 
-from contactlab.compose.names import PROJECT
 from contactlab.outcome.files import stamp
+from contactlab.registration.names import PROJECT
 
 STANDARD = os.path.realpath(sysconfig.get_path("stdlib")) + os.sep
 INSTALLED = ("site-packages", "dist-packages")

@@ -6,11 +6,11 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from contactlab.compose.composition import RIGID, TOGETHER, Laws, misfit
-from contactlab.compose.names import KINDS
 from contactlab.contracts.integrator import CoupledIntegrator
 from contactlab.contracts.law import Law, derived
 from contactlab.contracts.tangential import CausalTangentialLaw, CoupledTangentialLaw
 from contactlab.impact.scene import Scene
+from contactlab.registration.names import KINDS
 
 
 def coupled(laws: Laws, part: Scene) -> Laws:

@@ -19,13 +19,13 @@ from typing import Any, NamedTuple
 import attrs
 
 from contactlab.compose.composition import Laws, versions
-from contactlab.compose.hooks import short
 from contactlab.compose.pieces import Part, Piece, unsolved
 from contactlab.compose.solve import solve_chunk
 from contactlab.contracts.status import Status
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import refuse, whole
 from contactlab.outcome.chunk_forms import Chunk
+from contactlab.registration.hooks import short
 
 #: Most processes: more than any machine has processors.
 MOST_PROCESSES = 1024

@@ -12,14 +12,12 @@ from contactlab.numeric.names import imported_on_use
 if TYPE_CHECKING:
     from contactlab.figures.comparison import laws_over_sweep
     from contactlab.figures.files import save, save_figure
-    from contactlab.figures.fitting import draw_fits
     from contactlab.figures.names import name_curves
     from contactlab.figures.paper import draw_paper
     from contactlab.figures.stick_slip import draw_stick_slip
     from contactlab.figures.style import law_style, ordered_colours, styled
 
 __all__ = [
-    "draw_fits",
     "draw_paper",
     "draw_stick_slip",
     "law_style",
@@ -34,7 +32,6 @@ __all__ = [
 __getattr__, __dir__ = imported_on_use(
     __name__,
     {
-        "draw_fits": "figures.fitting",
         "draw_paper": "figures.paper",
         "draw_stick_slip": "figures.stick_slip",
         "law_style": "figures.style",

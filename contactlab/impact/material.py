@@ -6,6 +6,7 @@ The numbers and their sources are in ``materials.toml`` beside this file.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from functools import cache
 
 import attrs
@@ -14,6 +15,8 @@ import numpy as np
 from contactlab.numeric.checks import POISSON, POSITIVE, of_kind, quantity, real, refuse
 from contactlab.numeric.names import arguments_told, nearest
 from contactlab.numeric.types import Either, Numbers
+from contactlab.registration.bring import by_name
+from contactlab.registration.hooks import hookimpl
 
 OWN = "or give your own: Material(young_modulus=..., poisson_ratio=..., density=...)"
 #: Names in common use, with the name in the collection.
@@ -129,6 +132,8 @@ class Entry:
         Source of the yield stress; empty without yield stress.
     note : str
         Remarks on the numbers, such as a range or an assumed value; may be empty.
+    works : mapping
+        The works that the sources name, in full, by key.
     """
 
     name: str
@@ -140,6 +145,7 @@ class Entry:
     yield_stress: float | None = attrs.field(default=None, metadata={"unit": "Pa"})
     yield_source: str = ""
     note: str = ""
+    works: Mapping[str, str] = attrs.field(factory=dict, metadata={"json": False})
 
     def material(self) -> Material:
         """Return the entry as a ``Material``."""
@@ -153,7 +159,7 @@ class Entry:
 
 def names() -> tuple[str, ...]:
     """Return the names of the materials: metals, ceramics and glasses, plastics."""
-    return tuple(_collection()[0])
+    return tuple(each.name for each in entries())
 
 
 def entry(name: str) -> Entry:
@@ -166,33 +172,33 @@ def entry(name: str) -> Entry:
     ValueError
         If there is no such material; the message suggests the nearest names.
     """
-    collection = _collection()[0]
+    collection = _collection()
     of_kind("name", name, str, rule="must be the name of a material", remedy="such as 'steel'")
-    names_by_key = {_key(listed): listed for listed in collection}
-    key = _key(name)
-    if key in names_by_key:
-        return collection[names_by_key[key]]
+    distribution, _, plain = name.rpartition(":")
+    key = f"{distribution}:{_key(plain)}" if distribution else _key(plain)
+    if key in collection:
+        return collection[key]
     if key in OTHER_NAMES:
         other = OTHER_NAMES[key]
         raise refuse("name", name, f"is listed as {other!r}", "write that name")
-    similar = [listed for long_key, listed in names_by_key.items() if key and key in long_key]
+    listing = {each: found.name for each, found in collection.items()}
+    similar = [listed for long_key, listed in listing.items() if key and key in long_key]
     words = set(key.split())
-    similar = similar or [
-        listed for each, listed in names_by_key.items() if words & {*each.split()}
-    ]
+    similar = similar or [listed for each, listed in listing.items() if words & {*each.split()}]
     hint = f"did you mean {' or '.join(map(repr, similar))}? " if similar else ""
-    hint = hint or nearest(name, collection, alike=0.75)
-    raise refuse("name", name, "no such material", f"{hint}known: {', '.join(collection)}; {OWN}")
+    hint = hint or nearest(name, listing.values(), alike=0.75)
+    known = ", ".join(listing.values())
+    raise refuse("name", name, "no such material", f"{hint}known: {known}; {OWN}")
 
 
 def entries() -> tuple[Entry, ...]:
     """Return all materials of the collection."""
-    return tuple(_collection()[0].values())
+    return tuple(_collection().values())
 
 
 def references() -> dict[str, str]:
     """Return the works that the sources name, as {key: citation}."""
-    return dict(_collection()[1])
+    return {key: text for each in entries() for key, text in each.works.items()}
 
 
 def works(name: str) -> dict[str, str]:
@@ -200,7 +206,7 @@ def works(name: str) -> dict[str, str]:
     one = entry(name)
     said = " ".join((one.elastic_source, one.density_source, one.yield_source, one.note))
     keys = re.findall(r"\w+", said)
-    return {key: text for key, text in references().items() if key in keys}
+    return {key: text for key, text in one.works.items() if key in keys}
 
 
 def _key(name: str) -> str:
@@ -208,13 +214,23 @@ def _key(name: str) -> str:
     return " ".join(name.lower().replace("-", " ").replace("_", " ").split())
 
 
+@hookimpl
+def contactlab_materials() -> list[Entry]:
+    """Return contactlab's own collection, ``materials.toml``."""
+    return _own()
+
+
 @cache
-def _collection() -> tuple[dict[str, Entry], dict[str, str]]:
-    """Return {name: entry} and {key: citation} of ``materials.toml``."""
+def _own() -> list[Entry]:
     import tomllib
     from importlib import resources
 
     text = resources.files("contactlab.impact").joinpath("materials.toml").read_text("utf-8")
     content = tomllib.loads(text)
     works = content.pop("references")
-    return {name: Entry(name=name, **numbers) for name, numbers in content.items()}, works
+    return [Entry(name=name, works=works, **numbers) for name, numbers in content.items()]
+
+
+def _collection() -> Mapping[str, Entry]:
+    """Return the materials of all plug-ins by name."""
+    return by_name("materials", Entry, lambda entry: _key(entry.name))

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 import attrs
@@ -22,6 +22,8 @@ from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import POSITIVE, real, refuse
 from contactlab.numeric.names import SHAPES, function_told
 from contactlab.numeric.types import Array, Numbers, Real
+from contactlab.registration.bring import by_name
+from contactlab.registration.hooks import hookimpl
 
 __all__ = ["box", "disc", "ellipsoid", "rod"]
 
@@ -514,3 +516,63 @@ def _mass(mass: Numbers | None, material: Material, volume: float) -> float:
     if mass is None:
         return float(real("density", material.density, rule=POSITIVE)) * volume
     return float(real("mass", mass, rule=POSITIVE, remedy="one number in kg"))
+
+
+@attrs.frozen(kw_only=True)
+class Shape:
+    """A shape that ``shape = "..."`` of a scene file names.
+
+    Attributes
+    ----------
+    name : str
+    make : callable
+        Takes the keys, ``material``, ``normal`` and ``axis`` or ``axes`` by name, and returns
+        ``(body, contact)``.
+    needed, further : tuple of str
+        Keys of numbers that must be given, and that may be, beside mass and material.
+    oriented : str
+        ``"axis"`` of a body that is round about it, else ``"axes"``.
+    example : mapping
+        Numbers for ``contactlab plugins check``.
+    """
+
+    name: str
+    make: Callable[..., tuple[RigidBody, Array]]
+    needed: tuple[str, ...]
+    further: tuple[str, ...] = ()
+    oriented: str = "axes"
+    example: Mapping[str, Any] = attrs.field(factory=dict)
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The keys of a scene file."""
+        return (*self.needed, *self.further, self.oriented, "mass", "material")
+
+
+@hookimpl
+def contactlab_shapes() -> list[Shape]:
+    """Return contactlab's own shapes."""
+    return [
+        Shape(
+            name="rod", make=rod, needed=("length", "radius"), further=("end_radius",),
+            oriented="axis", example={"length": 0.2, "radius": 0.01},
+        ),
+        Shape(
+            name="disc", make=disc, needed=("radius", "thickness", "rim_radius"),
+            further=("crown_radius",), oriented="axis",
+            example={"radius": 0.03, "thickness": 0.01, "rim_radius": 0.002},
+        ),
+        Shape(
+            name="box", make=box, needed=("sides", "corner_radius"), further=("crown_radius",),
+            example={"sides": (0.1, 0.1, 0.1), "corner_radius": 0.01, "crown_radius": 0.2},
+        ),
+        Shape(
+            name="ellipsoid", make=ellipsoid, needed=("semi_axes",),
+            example={"semi_axes": (0.03, 0.02, 0.01)},
+        ),
+    ]  # fmt: skip
+
+
+def shapes_by_name() -> Mapping[str, Shape]:
+    """Return the shapes of all plug-ins by name."""
+    return by_name("shapes", Shape, lambda shape: shape.name)

@@ -204,8 +204,8 @@ def imported_on_use(
     package : str
         Name of the package, its ``__name__``.
     modules : mapping of str to str
-        For each public name, the module in ``contactlab`` that defines it, or that it is, if the
-        module has no such name.
+        For each public name, the module in ``contactlab``, or that of a plug-in, that defines it,
+        or that it is, if the module has no such name.
     """
 
     def __getattr__(name: str) -> Any:  # noqa: N807
@@ -216,7 +216,8 @@ def imported_on_use(
                 hint = f"; that body is made by contactlab.{SHAPES[name.lower()]}"
                 hint = hint.replace("contactlab.contactlab", "contactlab")
             raise AttributeError(f"module {package!r} has no attribute {name!r}{hint}")
-        module = import_module(f"contactlab.{modules[name]}")
+        place = modules[name]
+        module = import_module(place if place.startswith("contactlab_") else f"contactlab.{place}")
         value = getattr(module, name, module)
         setattr(sys.modules[package], name, value)
         return value

@@ -1,12 +1,13 @@
 """The columns of a result, for text, files, frames, figures, fits and scene files.
 
-To add a column, add a line to ``COLUMNS``; every angle is available in degrees too. The tables
-for reading show the columns in ``SWEEP_TABLE`` and ``COMPARISON_TABLE``.
+Columns are brought by plug-ins with the hook ``contactlab_columns``, ``COLUMNS`` by contactlab's
+own; every angle is available in degrees too. The tables for reading show the columns in
+``SWEEP_TABLE`` and ``COMPARISON_TABLE``, and those of other plug-ins.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from operator import attrgetter
 from typing import Any, NamedTuple, Protocol
 
@@ -18,6 +19,8 @@ from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
+from contactlab.registration.bring import by_name, state
+from contactlab.registration.hooks import hookimpl
 
 
 class WithScene(Protocol):
@@ -45,18 +48,24 @@ class Column(NamedTuple):
         if those with spin about the normal have.
     part : int or None
         Component of a vector, from 0.
+    value : callable, optional
+        Returns the values from a result, in place of ``path``: numbers of the scene's shape.
+    meaning : str
+        A sentence for ``contactlab plugins show``.
     """
 
     name: str
     unit: str
-    path: str
+    path: str = ""
     factor: float = 1.0
     of_scenes: str = ""
     part: int | None = None
+    value: Callable[[Any], Any] | None = None
+    meaning: str = ""
 
     def read(self, result: WithScene) -> Any:
         """Return the values with the result's own type, or None if the scene defines no value."""
-        value = attrgetter(self.path)(result)
+        value = attrgetter(self.path)(result) if self.value is None else self.value(result)
         if self.part is not None and value is not None:
             vectors = np.ndim(value) > len(result.scene.shape)
             value = np.asarray(value)[..., self.part] if vectors else None
@@ -145,17 +154,67 @@ COMPARISON_TABLE = (
 )  # fmt: skip
 
 
+#: What plug-ins brought, and its columns in order.
+_SORTED: list[Any] = [None, ()]
+
+
+@hookimpl
+def contactlab_columns() -> Iterable[Column]:
+    """Return contactlab's own columns."""
+    return COLUMNS
+
+
+def all_columns() -> Sequence[Column]:
+    """Return the columns of all plug-ins, contactlab's own first; the status comes last."""
+    found = by_name("columns", Column, lambda column: column.name, again=False)
+    if _SORTED[0] is not found:
+        named = [column._replace(name=name.replace(":", "_")) for name, column in found.items()]
+        _SORTED[:] = found, sorted(named, key=lambda column: column.name == "status")
+    columns: Sequence[Column] = _SORTED[1]
+    return columns
+
+
+def foreign() -> list[str]:
+    """Return the names of the columns of numbers that are not contactlab's own."""
+    own = {column.name for column in COLUMNS}
+    return [column.name for column in all_columns() if column.unit and column.name not in own]
+
+
 def _numeric_columns() -> Iterator[Column]:
-    for column in COLUMNS:
+    for column in all_columns():
         if column.unit:
             yield column
         if column.unit == "rad":
-            yield Column(f"{column.name}_deg", "deg", column.path, 180.0 / np.pi)
+            factor = column.factor * 180.0 / np.pi
+            yield column._replace(name=f"{column.name}_deg", unit="deg", factor=factor)
     yield Column("rebound_speed", "m/s", "rebound_speed")
 
 
+class _Quantities(Mapping[str, Column]):
+    """The columns of numbers by name; plug-ins are asked for them at the first use."""
+
+    def __init__(self) -> None:
+        self._state: object = None
+        self._found: dict[str, Column] = {}
+
+    def _named(self) -> dict[str, Column]:
+        if self._state != state():
+            self._found = {column.name: column for column in _numeric_columns()}
+            self._state = state()
+        return self._found
+
+    def __getitem__(self, name: str) -> Column:
+        return self._named()[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._named())
+
+    def __len__(self) -> int:
+        return len(self._named())
+
+
 #: The columns of numbers by name, with angles in degrees and the rebound speed added.
-QUANTITIES = {column.name: column for column in _numeric_columns()}
+QUANTITIES = _Quantities()
 
 
 def quantity_named(name: str, *, where: str = "quantity") -> Column:
@@ -182,7 +241,7 @@ def columns_of(scene: Scene) -> tuple[Column, ...]:
     coupled = scene.inverse_mass is not None
     of_bodies = scene.sphere is None and (coupled or scene.encounter is not None)
     others = {"spheres" if of_bodies else "bodies", "" if scene.turns else "turning"} - {""}
-    return tuple(column for column in COLUMNS if column.of_scenes not in others)
+    return tuple(column for column in all_columns() if column.of_scenes not in others)
 
 
 def columns(result: WithScene) -> list[tuple[str, str, Any]]:

@@ -19,6 +19,7 @@ from contactlab.outcome.columns import (
     Column,
     columns_of,
     components,
+    foreign,
     unit_in,
 )
 from contactlab.outcome.numerical_error import error_words
@@ -125,7 +126,7 @@ def sweep_section(
     scene, columns = result.scene, {}
     for name, (unit, values) in varied.items():
         columns[heading(name, unit)] = np.broadcast_to(values, scene.shape)
-    for column in _shown(scene, SWEEP_TABLE):
+    for column in _shown(scene, (*SWEEP_TABLE, *foreign())):
         for part, values in _parts(result, column):
             if part not in varied and not np.isnan(values).all():
                 columns[heading(part, column.unit_in(scene))] = values
@@ -265,6 +266,11 @@ def _contact(result: ImpactResult) -> list[Row]:
     ]
     if "compressions" in {column.name for column in columns_of(scene)}:
         rows.append(["compressions", result.compressions, "1"])
+    rows += [
+        [column.name.replace("_", " "), column.read(result), column.unit]
+        for column in columns_of(scene)
+        if column.name in foreign()
+    ]
     if scene.sphere is None and scene.encounter is None:
         return rows
     sizes: list[Row] = [["largest contact radius", motion.maximum_radius, "m"]]

@@ -7,20 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.impact import shapes
 from contactlab.impact.material import Material
 from contactlab.impact.rigid_body import RigidBody
+from contactlab.impact.shapes import shapes_by_name
 from contactlab.numeric.checks import real, refuse
 from contactlab.numeric.types import Array, Real
-from contactlab.scene_file.entries import (
-    RIGID_KEYS,
-    SHAPE_KEYS,
-    TILT,
-)
+from contactlab.scene_file.entries import RIGID_KEYS, TILT
 from contactlab.scene_file.table import Table
 
-#: Keys that a shape cannot do without.
-NEEDED = ("length", "radius", "thickness", "rim_radius", "sides", "corner_radius", "semi_axes")
 #: Default axis of a rod or disc: up, so that a rod hangs over what lies below.
 UPRIGHT = (0.0, 0.0, 1.0)
 
@@ -40,33 +34,32 @@ def rigid_body(
     material : callable
         Reads the material of a table.
     """
-    shape = content.get("shape") if isinstance(content, Mapping) else None
-    if shape is None:
+    name = content.get("shape") if isinstance(content, Mapping) else None
+    known = shapes_by_name()
+    if name is None:
         table = Table(content, path, known=("kind", "shape", *RIGID_KEYS))
         numbers = {key: table.content[key] for key in RIGID_KEYS if table.has(key)}
         for key in ("mass", "curvature_radius"):
-            table.require(key, "or name a shape: " + ", ".join(SHAPE_KEYS))
+            table.require(key, "or name a shape: " + ", ".join(known))
         return table.make(RigidBody, **numbers | {"material": material(table)}), None
-    if not (isinstance(shape, str) and shape in SHAPE_KEYS):
-        raise refuse(f"{path}.shape", shape, "is no shape", "known: " + ", ".join(SHAPE_KEYS))
-    table = Table(content, path, known=("kind", "shape", TILT, *SHAPE_KEYS[shape]))
-    options = {key: table.content[key] for key in SHAPE_KEYS[shape] if table.has(key)}
+    if not (isinstance(name, str) and name in known):
+        raise refuse(f"{path}.shape", name, "is no shape", "known: " + ", ".join(known))
+    shape = known[name]
+    table = Table(content, path, known=("kind", "shape", TILT, *shape.keys))
+    options = {key: table.content[key] for key in shape.keys if table.has(key)}
     options |= {"material": material(table), "normal": normal}
     tilt = real(table.at(TILT), table.content.get(TILT, 0.0), remedy="in degrees, about y")
-    oriented = "axis" if "axis" in SHAPE_KEYS[shape] else "axes"
-    upright = options.pop(oriented, UPRIGHT if oriented == "axis" else np.eye(3))
+    upright = options.pop(shape.oriented, UPRIGHT if shape.oriented == "axis" else np.eye(3))
 
     def made(**numbers: object) -> tuple[RigidBody, Any]:
-        maker: Callable[..., tuple[RigidBody, Any]] = getattr(shapes, shape)
         try:
             turned = _about_y(tilt) @ np.asarray(upright, dtype=float)
         except ValueError:
-            raise refuse(oriented, upright, "must be vectors of three numbers") from None
-        return maker(**numbers, **{oriented: turned})
+            raise refuse(shape.oriented, upright, "must be vectors of three numbers") from None
+        return shape.make(**numbers, **{shape.oriented: turned})
 
-    needed = [key for key in SHAPE_KEYS[shape] if key in NEEDED]
-    for key in needed:
-        table.require(key, f"a {shape} needs {', '.join(needed)} in m")
+    for key in shape.needed:
+        table.require(key, f"a {name} needs {', '.join(shape.needed)} in m")
     return table.make(made, **options)
 
 

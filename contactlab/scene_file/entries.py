@@ -28,25 +28,11 @@ NONDIMENSIONAL_KEYS = ("psi1", "chi")
 COUPLING_KEYS = ("lam", "eta", "rho")
 #: Parameters of spin about the normal, in a scene without bodies.
 SPIN_KEYS = ("spin", "spin_inertia")
-#: Keys of a body that is no sphere: those of ``RigidBody``, and those of each of its shapes.
+#: Keys of a body that is no sphere: those of ``RigidBody``; shapes tell their own.
 RIGID_KEYS = (
     "mass", "inertia", "principal", "axes", "curvature_radius", "cross_radius", "curvature_axis",
     "bending_period", "material",
 )  # fmt: skip
-SHAPE_KEYS = {
-    "rod": ("length", "radius", "end_radius", "axis", "mass", "material"),
-    "disc": (
-        "radius",
-        "thickness",
-        "rim_radius",
-        "crown_radius",
-        "axis",
-        "mass",
-        "material",
-    ),
-    "box": ("sides", "corner_radius", "crown_radius", "axes", "mass", "material"),
-    "ellipsoid": ("semi_axes", "axes", "mass", "material"),
-}
 #: Angle by which a shape is turned about y, by the right-hand rule.
 TILT = "tilt_deg"
 #: Further groups of a scene without bodies, which may be left out.

@@ -12,7 +12,13 @@ from typing import Any
 import attrs
 
 from contactlab.compose import composition
-from contactlab.compose.names import (
+from contactlab.compose.registry import REGISTRY, PluginError
+from contactlab.compose.simulation import Simulation
+from contactlab.compose.solve import ways
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import refuse
+from contactlab.numeric.names import nearest
+from contactlab.registration.names import (
     KINDS,
     full_name,
     is_place,
@@ -21,12 +27,6 @@ from contactlab.compose.names import (
     seen_from,
     short_name,
 )
-from contactlab.compose.registry import REGISTRY, PluginError
-from contactlab.compose.simulation import Simulation
-from contactlab.compose.solve import ways
-from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import refuse
-from contactlab.numeric.names import nearest
 from contactlab.scene_file.table import Table, flattened, nearest_of
 
 #: e = 1 - c v^(1/5) in words without blanks.

@@ -9,13 +9,13 @@ from typing import Any, TypeAlias
 import attrs
 
 from contactlab.compose.composition import DEFAULT_NORMAL
-from contactlab.compose.names import KINDS, full_name, is_place, kind_of, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import WholeImpactTangentialLaw
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
+from contactlab.registration.names import KINDS, full_name, is_place, kind_of, short_name
 from contactlab.testing.load_paths import scene as ball
 
 #: psi1 and chi of the scenes: every regime of theory §2 but slip throughout, which every law

@@ -8,13 +8,13 @@ import attrs
 import numpy as np
 
 from contactlab.compose.composition import DEFAULT_NORMAL, STEPPED, exact, fixed_steps
-from contactlab.compose.names import full_name
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import TangentialLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array
+from contactlab.registration.names import full_name
 from contactlab.study.bench_methods import Method
 from contactlab.study.stability_cases import INCIDENCES
 from contactlab.study.stability_references import REFERENCE_TOLERANCES, converges

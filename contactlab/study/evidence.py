@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from importlib import resources
+from pathlib import Path
 
 import attrs
 import numpy as np
 
 from contactlab.compose.composition import DEFAULT_NORMAL
-from contactlab.compose.names import full_name, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
+from contactlab.registration.bring import by_name
+from contactlab.registration.hooks import hookimpl
+from contactlab.registration.names import full_name, short_name
 from contactlab.scene_file import SceneFile, read_scene
 from contactlab.study.agreement import Agreement, LawRun
 from contactlab.study.comparison import Comparison
@@ -26,9 +29,11 @@ class Source:
     Attributes
     ----------
     name : str
-        Name of the file in ``contactlab/study/measured``, without its suffix.
+        Name, for files and tables.
     kind : str
         Where the numbers are from: "experiment", "finite elements" or "other codes".
+    path : Path, optional
+        A scene file with measured values; by default that in ``contactlab/study/measured``.
     normals : mapping of str to mapping
         Options of the normal laws, by name.
     bounds : mapping
@@ -37,11 +42,14 @@ class Source:
 
     name: str
     kind: str
+    path: Path | None = None
     normals: Mapping[str, Mapping[str, object]] = attrs.field(factory=lambda: {DEFAULT_NORMAL: {}})
     bounds: Mapping[tuple[str, str], float] = attrs.field(factory=dict)
 
     def read(self) -> SceneFile:
         """Return the contents of the file."""
+        if self.path is not None:
+            return read_scene(self.path)
         place = resources.files("contactlab").joinpath("study", "measured", f"{self.name}.toml")
         with resources.as_file(place) as path:
             return read_scene(path)
@@ -133,10 +141,17 @@ def gather(
     progress : callable, optional
         Called as ``progress(done, total)`` after each source.
     """
-    for done, source in enumerate(SOURCES, start=1):
+    sources = by_name("measurements", Source, lambda source: source.name).values()
+    for done, source in enumerate(sources, start=1):
         yield _evidence(source, curves=curves)
         if progress is not None:
-            progress(done, len(SOURCES))
+            progress(done, len(sources))
+
+
+@hookimpl
+def contactlab_measurements() -> tuple[Source, ...]:
+    """Return contactlab's own sources."""
+    return SOURCES
 
 
 def _evidence(source: Source, *, curves: bool) -> Evidence:

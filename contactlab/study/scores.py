@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from contactlab.compose import composition
-from contactlab.compose.names import full_name, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import SteppedTangentialLaw, TangentialLaw, WholeImpactTangentialLaw
@@ -21,6 +20,7 @@ from contactlab.numeric.types import Real
 from contactlab.outcome.columns import QUANTITIES, csv_heading, json_value
 from contactlab.outcome.tables import number, time
 from contactlab.outcome.text_table import table
+from contactlab.registration.names import full_name, short_name
 from contactlab.scene_file import LawChoice, Measured, SceneFile
 from contactlab.study.comparison import Comparison
 from contactlab.study.side_by_side import wrapped

@@ -10,7 +10,13 @@ import numpy as np
 
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.types import Array, Real
-from contactlab.outcome.columns import COMPARISON_TABLE, columns_of, components, quantity_named
+from contactlab.outcome.columns import (
+    COMPARISON_TABLE,
+    columns_of,
+    components,
+    foreign,
+    quantity_named,
+)
 from contactlab.outcome.tables import IN_SPACE, heading, number, time
 from contactlab.outcome.text_table import table
 from contactlab.scene_file import SceneFile
@@ -60,7 +66,7 @@ def default_quantities(comparison: Compared) -> list[str]:
     known = {column.name for column in columns_of(scene)}
     if scene.shape:
         return [*psi2, "normal_restitution"] if "compressions" in known else psi2
-    laws, others = comparison.names, [*COMPARISON_TABLE[1:], "compressions"]
+    laws, others = comparison.names, [*COMPARISON_TABLE[1:], "compressions", *foreign()]
     return psi2 + [
         name
         for name in others

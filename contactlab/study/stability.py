@@ -17,7 +17,7 @@ from contactlab.compose.composition import DEFAULT_NORMAL
 from contactlab.impact.error_model import COARSE
 from contactlab.study.bench_methods import Method
 from contactlab.study.model_error import ModelError, model_error
-from contactlab.study.stability_cases import INCIDENCES, MAP, Case, cases, map_chis
+from contactlab.study.stability_cases import INCIDENCES, MAP, Case, all_cases, map_chis
 from contactlab.study.stability_judge import ANSWERED, RAISED, SKIPPED, WRONG, Outcome, judge
 
 #: A case of more work than this, in steps of one part, is skipped. Work is not time: which cases
@@ -99,7 +99,7 @@ def stability(
         Ctrl-C keeps the outcomes that there are.
     """
     until = time.perf_counter() + budget
-    listed = [case for method in methods for case in cases(method, quick=quick)]
+    listed = [case for method in methods for case in all_cases(method, quick=quick)]
     elastic = [method for method in methods if method.normal == DEFAULT_NORMAL]
     largest = QUICK_LARGEST if quick else LARGEST
     # A budget cuts all methods alike: family by family, and within a family by work. Model errors

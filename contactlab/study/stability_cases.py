@@ -11,13 +11,15 @@ import attrs
 import numpy as np
 
 from contactlab.compose.composition import DEFAULT_NORMAL, misfit
-from contactlab.compose.names import full_name, short_name
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.contracts import Law
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Number
+from contactlab.registration.hooks import hookimpl
+from contactlab.registration.manager import MANAGER
+from contactlab.registration.names import full_name, short_name
 from contactlab.study.bench_methods import Method, Options
 from contactlab.study.stability_coupled import coupled_scenes, tried_coupled
 
@@ -71,6 +73,21 @@ class Case:
     scene: Extreme = attrs.field(repr=False)
     planned: bool = True
     normal: str = DEFAULT_NORMAL
+
+
+def all_cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
+    """Iterate over the cases of all plug-ins for a method; a plug-in may bring scenes alone."""
+    for told in MANAGER.brought("cases", method=method, quick=quick):
+        if isinstance(told.item, Extreme):
+            yield _case(method, told.item, {})
+        else:
+            yield told.item
+
+
+@hookimpl
+def contactlab_cases(method: Method, quick: bool) -> Iterator[Case]:
+    """Return contactlab's own cases."""
+    return cases(method, quick=quick)
 
 
 def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:

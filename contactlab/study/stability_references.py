@@ -13,7 +13,6 @@ from functools import lru_cache, partial
 import numpy as np
 
 from contactlab.compose.composition import PREFERRED, exact, fixed_steps, misfit
-from contactlab.compose.names import PROJECT, full_name, kind_of
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
@@ -28,6 +27,7 @@ from contactlab.contracts.tangential import shares_loss
 from contactlab.impact.error_model import range_of
 from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.impact.scene import Scene
+from contactlab.registration.names import PROJECT, full_name, kind_of
 from contactlab.testing.units import with_parameters
 
 #: Tolerances of the exact solution, the finer first; both finer than the default, which they judge.

@@ -17,6 +17,8 @@ from contactlab.impact.elliptic import ellipse
 from contactlab.impact.hertz import hertz_scales, rigid_body_rebound
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
+from contactlab.registration.hooks import hookimpl
+from contactlab.registration.manager import MANAGER
 from contactlab.scene_file import read_scene
 from contactlab.study.interrupts import uninterrupted
 from contactlab.study.scores import DEFAULT_SCENE
@@ -74,13 +76,6 @@ ELLIPSES = (
 )  # fmt: skip
 #: Springs and steps against these values, and the bound.
 LOSS_SPRINGS, LOSS_STEPS, LOSS_BOUND = 50, 200, 1.2e-3
-#: Pure torsion: spin and inertia ratio in its own unit, 1 - nu/2 times w and chi_w, and the spin
-#: after the impact, to 1e-9 by springs and by integrals (theory §17).
-TORSION = (
-    (0.2, 0.05, 0.145379967), (0.5, 0.05, 0.408654101), (1.0, 0.1, 0.792230865),
-    (2.0, 0.05, 1.894555291), (0.5, 0.3, -0.02858620),
-)  # fmt: skip
-TORSION_BOUND, TORSION_POISSON = 1e-3, 0.3
 #: Relative bounds of force, and of approach or duration, as read off figures. Two readers of one
 #: approach differ by 0.0054; the end of contact is read off a curve that meets its axis at a
 #: small angle.
@@ -124,14 +119,16 @@ class Finding:
 
 def validate(progress: Callable[[int, int], object] | None = None) -> Iterator[Finding]:
     """Iterate over all comparisons as they are done; ``progress(done, total)`` follows each."""
-    checks = list(_checks())
+    checks = [told.item for told in MANAGER.brought("checks")]
     for done, check in enumerate(checks, start=1):
         yield check()
         if progress is not None:
             progress(done, len(checks))
 
 
-def _checks() -> Iterator[Callable[[], Finding]]:
+@hookimpl
+def contactlab_checks() -> Iterator[Callable[[], Finding]]:
+    """Return contactlab's own comparisons."""
     installed = REGISTRY.names()
     yield _hertz
     yield _rigid
@@ -143,8 +140,6 @@ def _checks() -> Iterator[Callable[[], Finding]]:
         yield _loss
     if {"tangential.springs", "integrator.symplectic"} <= set(installed):
         yield _aside
-    if "tangential.halfspace" in installed:
-        yield _torsion
     for name, (scene, published) in hertz_scalars().items():
         for entries, bound in (
             (("force",), FORCE_READING),
@@ -160,7 +155,7 @@ def _checks() -> Iterator[Callable[[], Finding]]:
             yield partial(_codes, number, form)
 
 
-def _finding(what: str, against: str, off: ArrayLike, bound: float) -> Finding:
+def finding(what: str, against: str, off: ArrayLike, bound: float) -> Finding:
     """Return the finding of differences, of which the largest counts."""
     worst = float(np.max(np.abs(off)))
     return Finding(what=what, against=against, difference=worst, bound=bound)
@@ -171,7 +166,7 @@ def _hertz() -> Finding:
     result = Simulation(tangential="coulomb", integrator="symplectic").run(scene)
     duration = np.asarray(result.motion.duration / hertz_scales(scene).duration) - 1.0
     off = np.append(duration, np.asarray(result.normal_restitution) - 1.0)
-    return _finding("hertz: duration and restitution", "eq. (7), e = 1", off, 1e-9)
+    return finding("hertz: duration and restitution", "eq. (7), e = 1", off, 1e-9)
 
 
 def _rigid() -> Finding:
@@ -180,7 +175,7 @@ def _rigid() -> Finding:
     sim = Simulation(tangential="coulomb", integrator="symplectic")
     psi2 = uninterrupted(sim.sweep(Scene.nondimensional(psi1=psi1, chi=chi))).psi2
     off = psi2 - rigid_body_rebound(psi1, chi)
-    return _finding("coulomb: psi2", "slip, then rolling", off, 1e-12)
+    return finding("coulomb: psi2", "slip, then rolling", off, 1e-12)
 
 
 def _exact_laws() -> Simulation:
@@ -193,7 +188,7 @@ def _no_friction() -> Finding:
     W: Any = scene.inverse_mass
     slip = scene.slip_velocity - 2.0 * W[:, 0, 1] / W[:, 0, 0]
     off = np.hypot(result.normal_restitution - 1.0, result.rebound_slip_velocity - slip)
-    return _finding("fronts, two bodies: no friction", "V2 = -1, psi2 = psi1 - 2 eta", off, 1e-12)
+    return finding("fronts, two bodies: no friction", "V2 = -1, psi2 = psi1 - 2 eta", off, 1e-12)
 
 
 def _sliding() -> tuple[Scene, Any, Any]:
@@ -208,7 +203,7 @@ def _slip_throughout() -> Finding:
     scene, slip, k = _sliding()
     result = _exact_laws().run(scene).check()
     off = np.hypot(result.normal_restitution - 1.0, result.psi2 - (slip - 2.0 * k))
-    return _finding("fronts, two bodies: slip throughout", "V2 = -1, psi2 = psi1 - 2k", off, 1e-10)
+    return finding("fronts, two bodies: slip throughout", "V2 = -1, psi2 = psi1 - 2k", off, 1e-10)
 
 
 def _first_slip() -> Finding:
@@ -223,7 +218,7 @@ def _first_slip() -> Finding:
         full = np.abs(history.tangential_force) >= limit * (1.0 - 1e-9)
         stopped = int(np.argmin(full)) - 1
         off.append(history.normal_velocity[stopped] - (each - psi1) / (each - 1.0))
-    return _finding("fronts, two bodies: end of first slip", "V = (k - psi1)/(k - 1)", off, 1e-9)
+    return finding("fronts, two bodies: end of first slip", "V = (k - psi1)/(k - 1)", off, 1e-9)
 
 
 def _stiff() -> Finding:
@@ -233,7 +228,7 @@ def _stiff() -> Finding:
         rigid = Simulation(tangential="coulomb").run(scene).check()
         off.append(distance(_exact_laws().run(scene).check(), rigid))
     bound = RIGID_DISTANCE * STIFF**-0.5
-    return _finding("fronts, two bodies: rods, kappa = 1e4", "Routh's construction", off, bound)
+    return finding("fronts, two bodies: rods, kappa = 1e4", "Routh's construction", off, bound)
 
 
 def _reference(
@@ -255,7 +250,7 @@ def _reference(
     ]
     numbers = ", ".join(f"{key}={value}" for key, value in (options | settings).items())
     what = f"{tangential} / {integrator}" + (f", {numbers}" if numbers else "")
-    return _finding(what, "21 reference values of psi2", off, bound)
+    return finding(what, "21 reference values of psi2", off, bound)
 
 
 def _loss() -> Finding:
@@ -275,7 +270,7 @@ def _loss() -> Finding:
     ]
     what = f"viscoelastic / springs, springs={LOSS_SPRINGS}, steps={LOSS_STEPS}"
     count = sum(map(len, LOSS_PSI2.values()))
-    return _finding(what, f"{count} reference values of psi2", off, LOSS_BOUND)
+    return finding(what, f"{count} reference values of psi2", off, LOSS_BOUND)
 
 
 def _ellipses() -> Finding:
@@ -283,7 +278,7 @@ def _ellipses() -> Finding:
     for ratio, aspect, radius in ELLIPSES:
         found = ellipse(1.0 / ratio)
         off += [found.axis_ratio / aspect - 1.0, found.radius / radius - 1.0]
-    return _finding("ellipses: b/a and R(A + B)", "a direct solution of the contact", off, 3e-8)
+    return finding("ellipses: b/a and R(A + B)", "a direct solution of the contact", off, 3e-8)
 
 
 def _aside() -> Finding:
@@ -292,18 +287,7 @@ def _aside() -> Finding:
     scene = Scene.nondimensional(**ASIDE)
     off = Simulation(tangential=law, integrator=march).run(scene).check().psi2 - ASIDE_PSI2
     what = f"springs, an ellipse aside, springs={LOSS_SPRINGS}, steps={LOSS_STEPS}"
-    return _finding(what, "psi2 by two programs", off, ASIDE_BOUND)
-
-
-def _torsion() -> Finding:
-    before, inertia, after = np.transpose(TORSION)
-    unit = 1.0 - 0.5 * TORSION_POISSON
-    entries = {"poisson_ratio": TORSION_POISSON, "spin": before / unit}
-    scene = Scene.nondimensional(psi1=0.0, chi=1.0, spin_inertia=inertia / unit, **entries)
-    w2 = uninterrupted(Simulation(tangential="halfspace").sweep(scene)).w2
-    return _finding(
-        "halfspace: pure spin", "5 values of exact torsion", unit * w2 - after, TORSION_BOUND
-    )
+    return finding(what, "psi2 by two programs", off, ASIDE_BOUND)
 
 
 def _codes(number: int, form: str) -> Finding:
@@ -313,7 +297,7 @@ def _codes(number: int, form: str) -> Finding:
     sim = Simulation(tangential=law, integrator="symplectic")
     psi2 = uninterrupted(sim.sweep(file.scene_at(psi1=series.x))).psi2
     what = f"mindlin_cap, form={form}: psi2"
-    return _finding(what, series.label, psi2 - series.values, CODE_BOUND)
+    return finding(what, series.label, psi2 - series.values, CODE_BOUND)
 
 
 def _scalars(name: str, scene: Scene, published: dict[str, float], bound: float) -> Finding:
@@ -327,7 +311,7 @@ def _scalars(name: str, scene: Scene, published: dict[str, float], bound: float)
     }
     off = [float(computed[entry]) / value - 1.0 for entry, value in published.items()]
     what = f"hertz: {name}, {' and '.join(published)}"
-    return _finding(what, "Chung & Ooi (2011), relative", off, bound)
+    return finding(what, "Chung & Ooi (2011), relative", off, bound)
 
 
 def hertz_scalars() -> dict[str, tuple[Scene, dict[str, float]]]:

@@ -22,7 +22,7 @@ from contactlab import (
     rebound,
     shapes,
 )
-from contactlab.pages.explore import explore_page
+from contactlab_pages.explore import explore_page
 
 pytestmark = pytest.mark.browser
 

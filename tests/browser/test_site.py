@@ -15,8 +15,9 @@ from xml.etree import ElementTree
 import pytest
 
 import contactlab
-from contactlab.cli.guide import PAGES, TOPICS
-from contactlab.pages.explore import explore_page
+from contactlab.cli.guide import pages as guide_pages
+from contactlab.cli.guide import topics as guide_topics
+from contactlab_pages.explore import explore_page
 
 pytestmark = pytest.mark.browser
 TOP = Path(__file__).parents[2]
@@ -76,7 +77,7 @@ def test_formulas_are_typeset_and_drawings_left(site, opened):
 
 
 def test_no_formula_is_left_as_latex(site):
-    for topic in PAGES:
+    for topic in guide_pages():
         page = (site / f"{topic}.html").read_text("utf-8")
         formulas = re.findall(r"<math.*?</math>", page, re.DOTALL)
         for formula in formulas:
@@ -87,7 +88,7 @@ def test_no_formula_is_left_as_latex(site):
 
 
 def test_every_page_of_the_guide_has_a_picture_that_is_there(site, opened):
-    for topic in TOPICS:
+    for topic in guide_topics():
         page = opened(site / f"{topic}.html")
         pictures = page.find_elements("css selector", "article img")
         assert pictures, topic
@@ -161,7 +162,7 @@ def test_the_search_finds_a_word(site, opened, word, pages):
 
 def test_commands_of_the_guide_are_links(site):
     """To the page of the topic, or to the section that is named."""
-    for page in PAGES:
+    for page in guide_pages():
         text = (site / f"{page}.html").read_text("utf-8")
         prose = re.sub(r"<pre\b.*?</pre>", "", text, flags=re.DOTALL)
         for before, code in re.findall(r"(<a [^>]*>)?(<code\b.*?</code>)", prose, re.DOTALL):
@@ -182,7 +183,7 @@ def test_the_explorer_is_the_page_of_the_command(site):
 def test_on_a_phone_wide_formulas_are_scrolled_and_say_so(site, opened):
     screen = {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True}
     wide = 0
-    for topic in PAGES:
+    for topic in guide_pages():
         page = opened(site / f"{topic}.html")
         page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", screen)
         try:

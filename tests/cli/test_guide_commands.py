@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from contactlab.cli.guide import text
-from contactlab.compose.installed import commands
-from contactlab.compose.names import KINDS, full_name, kind_of
 from contactlab.compose.registry import REGISTRY
+from contactlab.registration.manager import commands
+from contactlab.registration.names import KINDS, full_name, kind_of
 
 COMMANDS = commands("contactlab")
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -30,7 +30,7 @@ def test_every_command_has_a_section_and_a_row_in_the_table():
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_the_laws_in_the_examples_of_a_help_text_are_installed(command):
-    examples = import_module(f"contactlab.cli.{command}").__doc__
+    examples = import_module(COMMANDS[command].module).__doc__
     options = r"--(law|normal|tangential|integrator|ghost) (\S+)|plugins \w+ (\w+\.\w+)"
     for kind, listed, shown in re.findall(options, examples):
         kind = "tangential" if kind in ("law", "ghost") else kind

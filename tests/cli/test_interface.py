@@ -10,7 +10,7 @@ from importlib.util import find_spec
 import pytest
 
 from contactlab.cli import main as module
-from contactlab.compose.installed import commands
+from contactlab.registration.manager import commands
 
 COMMANDS = commands("contactlab")
 

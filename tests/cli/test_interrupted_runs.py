@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from contactlab.cli import fit as fit_command
 from contactlab.figures import animation
-from contactlab.fitting import estimation
+from contactlab.registration.manager import MANAGER, Told
 from contactlab.study import comparison, evidence, validation
+from contactlab_fit import command as fit_command
+from contactlab_fit import estimation
 from tests.cli.conftest import EXAMPLES, interrupting, partial
 from tests.longer import longer
 
@@ -52,7 +53,12 @@ def test_compare_keeps_the_laws_that_are_done(run, monkeypatch, measured, tmp_pa
 @pytest.mark.parametrize(("done", "sources"), [(1, 0), (2, 0), *longer((2, 1))])
 def test_validate_keeps_checks_and_sources(run, monkeypatch, done, sources):
     checks = [validation._rigid] * done + [interrupting(None, 0)] * (sources == 0)
-    monkeypatch.setattr(validation, "_checks", lambda: iter(checks))
+    own = MANAGER.brought("checks")[0].info
+    told = [Told(own, check) for check in checks]
+    brought = MANAGER.brought
+    monkeypatch.setattr(
+        MANAGER, "brought", lambda kind, **kw: told if kind == "checks" else brought(kind, **kw)
+    )
     monkeypatch.setattr(evidence, "_evidence", interrupting(evidence._evidence, sources))
     ran = run("validate")
     assert ran.status == 130

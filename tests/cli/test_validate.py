@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import contactlab
+from contactlab.registration import bring
 from contactlab.scene_file import read_scene
 from contactlab.study import evidence, validation
 from tests.cli.conftest import EXAMPLES
@@ -138,6 +139,7 @@ def test_one_loss_is_that_of_the_theory(monkeypatch):
 def short(monkeypatch):
     """Validate against one source of few laws, and no reference values."""
     monkeypatch.setattr(validation, "COMPOSITIONS", validation.COMPOSITIONS[:1])
+    monkeypatch.setattr(bring, "_KEPT", {})
     monkeypatch.setattr(evidence, "SOURCES", (SOURCES["codes-test4-alloy"],))
     monkeypatch.setattr(
         validation.REGISTRY,
@@ -170,6 +172,7 @@ def test_a_law_that_misses_an_experiment_fails(run, short, monkeypatch):
     (source,) = evidence.SOURCES
     quantity = source.read().measured[0].quantity
     bounds = {(quantity, law): 1e-2 for law in ("mindlin_cap", "coulomb")}
+    monkeypatch.setattr(bring, "_KEPT", {})
     monkeypatch.setattr(evidence, "SOURCES", (attrs.evolve(source, bounds=bounds),))
     ran = run("validate", "--json")
     told = {row["what"]: row["ok"] for row in json.loads(ran.out)["checks"]}
@@ -186,6 +189,7 @@ def test_a_wrong_value_fails(run, monkeypatch):
     monkeypatch.setattr(validation, "COMPOSITIONS", validation.COMPOSITIONS[:1])
     laws = ["tangential.fronts", "integrator.events"]  # those of that composition
     monkeypatch.setattr(validation.REGISTRY, "names", lambda: laws)
+    monkeypatch.setattr(bring, "_KEPT", {})
     monkeypatch.setattr(evidence, "SOURCES", ())
     ran = run("validate")
     assert ran.status == 1

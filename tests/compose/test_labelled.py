@@ -18,7 +18,7 @@ from contactlab import (
     rebound,
     shapes,
 )
-from contactlab.fitting import read_measurements
+from contactlab_fit import read_measurements
 from tests.present import extra
 
 STEEL = Material.named("steel")

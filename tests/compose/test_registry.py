@@ -8,7 +8,7 @@ import pytest
 
 import contactlab
 from contactlab import PluginError
-from contactlab.compose.registry import REGISTRY, PluginWarning
+from contactlab.compose.registry import KINDS, REGISTRY, PluginWarning
 
 MINE, KNOWN = "tangential.mine", "normal.hertz"
 NORMAL_LAW = """
@@ -36,7 +36,7 @@ def test_every_declared_entry_point_loads(registry):
     points = [
         point
         for point in metadata.entry_points(group="contactlab")
-        if point.dist.name == "contactlab" and not point.name.startswith("command.")
+        if point.dist.name == "contactlab" and point.name.partition(".")[0] in KINDS
     ]
     assert len(points) >= 6
     for point in points:
@@ -321,7 +321,7 @@ def test_what_is_installed_meanwhile_is_found_and_what_is_known_is_not_read_agai
 
 
 # bytecode written by the import changes the folder, which is read and told again
-@pytest.mark.filterwarnings("ignore::contactlab.compose.installed.PluginWarning")
+@pytest.mark.filterwarnings("ignore::contactlab.registration.installed.PluginWarning")
 @pytest.mark.parametrize("content", [b"[contactlab]\ntangential.x\n", b"[contactlab]\n\xff = x\n"])
 def test_a_distribution_that_cannot_be_read_stops_nothing(
     registry, install, law_source, content, tmp_path

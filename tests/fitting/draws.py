@@ -5,8 +5,9 @@ from typing import NamedTuple
 import attrs
 import numpy as np
 
-from contactlab import HalfSpace, Scene, Simulation, Sphere, create, fit
+from contactlab import HalfSpace, Scene, Simulation, Sphere, create
 from contactlab.outcome.columns import QUANTITIES
+from contactlab_fit import fit
 from tests.fitting.impacts import STEEL
 
 CLEAN, WITH_OUTLIERS = 200, 100

@@ -3,8 +3,8 @@
 import attrs
 import numpy as np
 
-from contactlab.fitting.parameters import LawOption
-from contactlab.fitting.problem import Problem
+from contactlab_fit.parameters import LawOption
+from contactlab_fit.problem import Problem
 
 X = np.array([1.0, 2.0, 3.0, 4.0])
 

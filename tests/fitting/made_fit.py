@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from contactlab.fitting import read_measurements
-from contactlab.fitting.fit_result import Estimate, Fit
+from contactlab_fit import read_measurements
+from contactlab_fit.fit_result import Estimate, Fit
 
 
 def made(**more):

@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlab import HalfSpace, Scene, Simulation, Sphere, create, fit
+from contactlab import HalfSpace, Scene, Simulation, Sphere, create
 from contactlab.outcome.columns import QUANTITIES
+from contactlab_fit import fit
 from tests.fitting.impacts import STEEL
 
 FRICTION, RESTITUTION = 0.12, 0.9

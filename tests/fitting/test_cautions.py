@@ -7,9 +7,9 @@ import attrs
 import numpy as np
 import pytest
 
-from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, create, fit
-from contactlab.fitting import rank, read_measurements
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, create
 from contactlab.outcome.columns import QUANTITIES
+from contactlab_fit import fit, rank, read_measurements
 from tests.fitting.draws import heading
 from tests.fitting.impacts import BODIES, STEEL, table
 from tests.longer import longer

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from contactlab import Simulation, fit
-from contactlab.fitting.diagnosis import error_notes, moved
-from contactlab.fitting.fit_result import Estimate
+from contactlab import Simulation
+from contactlab_fit import fit
+from contactlab_fit.diagnosis import error_notes, moved
+from contactlab_fit.fit_result import Estimate
 from tests.fitting.impacts import ANGLES, BODIES, restitution, scene, table
 from tests.fitting.lines import line, option
 from tests.longer import longer

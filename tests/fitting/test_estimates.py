@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import HalfSpace, Material, Simulation, Sphere, fit
-from contactlab.fitting import rank
-from contactlab.fitting.model import Model, scene_of
-from contactlab.fitting.parameters import Setup, parameter_named
+from contactlab import HalfSpace, Material, Simulation, Sphere
 from contactlab.numeric.checks import POSITIVE, quantity
+from contactlab_fit import fit, rank
+from contactlab_fit.model import Model, scene_of
+from contactlab_fit.parameters import Setup, parameter_named
 from tests.fitting.impacts import ANGLES, BODIES, STEEL, restitution, scene, table
 from tests.laws.outside_laws import Walton
 from tests.longer import longer

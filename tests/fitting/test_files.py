@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from contactlab import Simulation, read_scene
-from contactlab.fitting import read_measurements
 from contactlab.outcome import files
 from contactlab.outcome.columns import QUANTITIES
+from contactlab_fit import read_measurements
 from tests.fitting.impacts import scene
 
 PLAIN = "angle_deg,speed (m/s),rebound_angle_deg,rebound_spin (rpm)\n10,3.9,7.4,-1200\n20,3.9,12,\n"

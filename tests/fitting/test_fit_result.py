@@ -4,7 +4,7 @@ import attrs
 import numpy as np
 import pytest
 
-from contactlab.fitting.fit_result import Estimate
+from contactlab_fit.fit_result import Estimate
 from tests.fitting.made_fit import made
 
 

@@ -8,7 +8,7 @@ import pytest
 import contactlab
 from contactlab import Encounter, HalfSpace, Material, Scene, Sphere
 from contactlab.cli.main import main
-from contactlab.fitting import fit, read_flight
+from contactlab_fit import fit, read_flight
 
 G, RATE, NOISE = 9.80665, 240.0, 1e-3
 FRICTION = 0.12

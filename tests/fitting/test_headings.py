@@ -7,8 +7,8 @@ import shlex
 import numpy as np
 import pytest
 
-from contactlab.fitting.csv_columns import Heading, read_columns, read_heading, read_text
-from contactlab.fitting.measurements import read_measurements
+from contactlab_fit.csv_columns import Heading, read_columns, read_heading, read_text
+from contactlab_fit.measurements import read_measurements
 
 TURN = 2.0 * math.pi
 

@@ -6,8 +6,8 @@ import attrs
 import numpy as np
 import pytest
 
-from contactlab import HalfSpace, Material, Simulation, Sphere, create, fit
-from contactlab.fitting import rank
+from contactlab import HalfSpace, Material, Simulation, Sphere, create
+from contactlab_fit import fit, rank
 from tests.fitting.impacts import BODIES, STEEL, table
 from tests.longer import longer
 

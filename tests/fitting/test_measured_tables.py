@@ -7,8 +7,8 @@ import attrs
 import numpy as np
 import pytest
 
-from contactlab.fitting import read_measurements, with_measurements
 from contactlab.scene_file import read_scene
+from contactlab_fit import read_measurements, with_measurements
 
 BODIES = (
     "[sphere]\nradius = 0.01\nmaterial = 'steel'\n[target]\nkind = 'half-space'\n"

@@ -5,8 +5,9 @@ from typing import ClassVar
 import attrs
 import numpy as np
 
-from contactlab import Simulation, fit
-from contactlab.fitting.model import DIGITS
+from contactlab import Simulation
+from contactlab_fit import fit
+from contactlab_fit.model import DIGITS
 from tests.fitting.impacts import ANGLES, BODIES, restitution, table
 from tests.laws.outside_laws import Walton
 

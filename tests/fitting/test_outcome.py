@@ -4,9 +4,9 @@ import attrs
 import numpy as np
 import pytest
 
-from contactlab import Simulation, fit
-from contactlab.fitting import rank
-from contactlab.fitting.estimation import Ranked, in_order
+from contactlab import Simulation
+from contactlab_fit import fit, rank
+from contactlab_fit.estimation import Ranked, in_order
 from tests.fitting.impacts import ANGLES, BODIES, scene, table
 from tests.fitting.made_fit import made
 from tests.laws.outside_laws import Walton

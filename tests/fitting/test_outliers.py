@@ -8,9 +8,9 @@ import pytest
 from scipy.special import comb
 from scipy.stats import f as f_distribution
 
-from contactlab.fitting import outliers, patterns
-from contactlab.fitting.outliers import Outliers
-from contactlab.fitting.problem import Problem
+from contactlab_fit import outliers, patterns
+from contactlab_fit.outliers import Outliers
+from contactlab_fit.problem import Problem
 from tests.fitting.lines import line, option
 
 NOISE = 0.01 * np.array([1.0, -1.0, 0.5, -0.7, 0.9, -0.4, 0.3, -0.8, 0.6, -0.5, 0.2, -0.1])

@@ -4,9 +4,10 @@ import attrs
 import numpy as np
 from matplotlib.figure import Figure
 
-from contactlab import Simulation, fit
-from contactlab.figures.fitting import measured_and_laws
+from contactlab import Simulation
 from contactlab.figures.style import label
+from contactlab_fit import fit
+from contactlab_fit.figures import measured_and_laws
 from tests.fitting.impacts import ANGLES, BODIES, restitution, table
 
 

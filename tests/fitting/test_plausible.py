@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 
 from contactlab import Scene
-from contactlab.fitting import read_measurements
-from contactlab.fitting.model import Model, scene_of
-from contactlab.fitting.parameters import Setup, parameter_named
-from contactlab.fitting.plausible import unlikely_numbers, unlikely_parameters
-from contactlab.fitting.problem import Problem
+from contactlab_fit import read_measurements
+from contactlab_fit.model import Model, scene_of
+from contactlab_fit.parameters import Setup, parameter_named
+from contactlab_fit.plausible import unlikely_numbers, unlikely_parameters
+from contactlab_fit.problem import Problem
 from tests.fitting.impacts import BODIES
 
 E_T = "tangential_restitution"

@@ -6,11 +6,11 @@ import attrs
 import numpy as np
 import pytest
 
-from contactlab.fitting import read_measurements
-from contactlab.fitting.model import Model, scene_of
-from contactlab.fitting.parameters import Setup, parameter_named
-from contactlab.fitting.problem import Problem
-from contactlab.fitting.readings import readings, turned
+from contactlab_fit import read_measurements
+from contactlab_fit.model import Model, scene_of
+from contactlab_fit.parameters import Setup, parameter_named
+from contactlab_fit.problem import Problem
+from contactlab_fit.readings import readings, turned
 from tests.fitting.impacts import BODIES
 
 TURN = 2.0 * math.pi

@@ -5,9 +5,9 @@ import re
 import numpy as np
 import pytest
 
-from contactlab import Scene, Simulation, fit
-from contactlab.fitting import read_measurements
+from contactlab import Scene, Simulation
 from contactlab.scene_file import read_scene
+from contactlab_fit import fit, read_measurements
 from tests.fitting.impacts import BODIES, restitution, table
 from tests.longer import longer
 

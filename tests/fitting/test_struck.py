@@ -15,8 +15,8 @@ from contactlab import (
     read_scene,
 )
 from contactlab.cli.main import main
-from contactlab.fitting import fit, read_measurements
 from contactlab.outcome.columns import QUANTITIES
+from contactlab_fit import fit, read_measurements
 from tests.longer import longer
 
 STEEL = Material.named("steel")

@@ -22,7 +22,7 @@ def test_names_that_are_not_imported_yet_are_listed():
     assert set(listed) == {*contactlab.__all__, *contactlab.MODULES, "__version__"}
     for name in contactlab.__all__:
         assert getattr(contactlab, name) is not None
-    for package in ("contracts", "figures", "fitting", "study", "testing", "materials"):
+    for package in ("contracts", "figures", "study", "testing", "materials"):
         module = getattr(contactlab, package)
         assert set(getattr(module, "__all__", ())) <= set(dir(module))
 

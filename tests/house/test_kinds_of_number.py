@@ -16,7 +16,7 @@ from contactlab import (
     rebound,
     shapes,
 )
-from contactlab.fitting import read_flight, read_measurements
+from contactlab_fit import read_flight, read_measurements
 from tests.present import extra
 
 needs_pandas = extra("pandas")

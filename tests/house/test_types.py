@@ -8,7 +8,8 @@ import sys
 import pytest
 
 import contactlab
-from contactlab.cli.guide import PAGES, text
+from contactlab.cli.guide import pages as guide_pages
+from contactlab.cli.guide import text
 from contactlab.compose.registry import REGISTRY
 from tests.present import ROOT, needs_sources
 
@@ -169,7 +170,7 @@ def test_few_arguments_have_no_type():
 
 def programs():
     """Yield the code of each page, of the README and of the site, and each example, by name."""
-    pages = {name: text(name) for name in PAGES}
+    pages = {name: text(name) for name in guide_pages()}
     pages |= {"README": (ROOT / "README.md").read_text("utf-8")}
     pages |= {"site": (ROOT / ".ci" / "site" / "index.md").read_text("utf-8")}
     for name, page in pages.items():

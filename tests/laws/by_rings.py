@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from contactlab_laws.halfspace.axisymmetric import STEPS, follow_all
-from contactlab_laws.halfspace.instants import Instants, instants
+from contactlab_halfspace.axisymmetric import STEPS, follow_all
+from contactlab_halfspace.instants import Instants, instants
 
 
 def rebound(motions, which, psi1, chi, count):

@@ -11,7 +11,7 @@ import numpy as np
 
 from contactlab import Scene, create
 from contactlab.compose.normal_motion import normal_motion
-from contactlab_laws.halfspace.rings import rings, settle
+from contactlab_halfspace.rings import rings, settle
 
 HALVINGS = 60
 #: Numbers of rings, from whose answers the limit follows to 2e-4 in psi2.

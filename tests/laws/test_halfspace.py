@@ -7,7 +7,7 @@ from scipy.integrate import trapezoid
 import contactlab
 from contactlab import Scene, Simulation
 from contactlab.contracts.status import Status
-from contactlab_laws.halfspace import splitting, whole_impacts
+from contactlab_halfspace import splitting, whole_impacts
 from tests.longer import longer
 
 CHI = 49 / 34

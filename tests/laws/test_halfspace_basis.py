@@ -9,13 +9,13 @@ from scipy.special import ellipk, jv
 import contactlab
 from contactlab import Scene
 from contactlab.compose.normal_motion import normal_motion
-from contactlab_laws.halfspace.basis import basis
-from contactlab_laws.halfspace.hemispheres import displacement
-from contactlab_laws.halfspace.instants import instants
-from contactlab_laws.halfspace.march import follow
-from contactlab_laws.halfspace.modes import modes
-from contactlab_laws.halfspace.pressure import Answering, Contact, Prescribed
-from contactlab_laws.halfspace.splitting import TOLERANCE, settle
+from contactlab_halfspace.basis import basis
+from contactlab_halfspace.hemispheres import displacement
+from contactlab_halfspace.instants import instants
+from contactlab_halfspace.march import follow
+from contactlab_halfspace.modes import modes
+from contactlab_halfspace.pressure import Answering, Contact, Prescribed
+from contactlab_halfspace.splitting import TOLERANCE, settle
 from tests.longer import longer
 
 HERTZ = contactlab.create("normal.hertz")

@@ -7,7 +7,7 @@ import pytest
 
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
-from contactlab_laws.halfspace.instants import units
+from contactlab_halfspace.instants import units
 
 CHI = 49 / 34
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)

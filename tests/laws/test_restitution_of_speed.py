@@ -8,7 +8,7 @@ import pytest
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, create
 from contactlab.cli.main import main
-from contactlab.fitting import fit
+from contactlab_fit import fit
 
 STEEL = Material.named("steel")
 SPEEDS = np.array([0.1, 0.5, 2.0])

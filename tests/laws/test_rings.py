@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 import contactlab
-from contactlab_laws.halfspace.rings import rings, settle
+from contactlab_halfspace.rings import rings, settle
 from tests.laws import other_march
 from tests.laws.by_rings import rebound
 from tests.laws.other_march import motion

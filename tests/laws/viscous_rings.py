@@ -9,7 +9,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from contactlab_laws.halfspace.rings import rings, settle
+from contactlab_halfspace.rings import rings, settle
 
 #: Solutions of a step: the mean slip velocity of a step follows from its friction.
 PASSES = 3

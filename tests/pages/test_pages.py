@@ -17,7 +17,7 @@ import contactlab
 from contactlab.figures import animation
 from contactlab.figures.animation_panels import in_contact
 from contactlab.figures.stick_slip import STATES
-from contactlab.pages.explore import explore_page
+from contactlab_pages.explore import explore_page
 from tests.longer import longer
 
 

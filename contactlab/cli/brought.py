@@ -1,0 +1,180 @@
+"""What plug-ins bring beside laws, on the command line: rows of a list, and checks."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from contactlab.impact.bodies import HalfSpace, Sphere
+from contactlab.impact.material import Entry, Material
+from contactlab.impact.scene import Scene
+from contactlab.registration.hooks import PluginError, guarded
+from contactlab.registration.manager import MANAGER, Told
+from contactlab.registration.names import COMMAND, PluginInfo
+
+#: Arguments of the hooks that have some.
+NORMAL = np.array([0.0, 0.0, -1.0])
+
+
+class Checked(NamedTuple):
+    """One thing that a plug-in brought, and what is wrong with it; empty if nothing is."""
+
+    name: str
+    complaint: str
+
+
+def reference() -> Scene:
+    """Return a batch of two impacts of a steel ball."""
+    steel = Material.named("steel")
+    ball, plane = Sphere(radius=0.01, material=steel), HalfSpace(steel)
+    return Scene.at_angle(ball, plane, 0.2, speed=1.0, angle_deg=np.array([20.0, 60.0]))
+
+
+def items(info: PluginInfo) -> list[Told]:
+    """Return what one plug-in brings of its kind.
+
+    Raises
+    ------
+    PluginError
+        If it is broken.
+    """
+    MANAGER.load(info.kind)
+    MANAGER.plugin(info)
+    arguments: dict[str, Any] = {}
+    if info.kind == "cases":
+        from contactlab.study.bench_methods import methods
+
+        arguments = {"method": methods(None)[0], "quick": True}
+    if info.kind == "cautions":
+        from contactlab.compose.simulation import Simulation
+
+        arguments = {"scene": reference(), "laws": Simulation().laws}
+    if info.kind == "options":
+        arguments = {"command": "run", "parser": argparse.ArgumentParser()}
+    told = MANAGER.brought(info.kind, **arguments)
+    error = MANAGER.faults.get(info.qualified)
+    if error is not None:
+        raise error
+    return [each for each in told if each.info.module == info.module]
+
+
+def title(item: Any) -> str:
+    """Return the name of a thing."""
+    for attribute in ("name", "label", "__name__"):
+        if isinstance(name := getattr(item, attribute, None), str):
+            return name
+    return str(item)
+
+
+def check(info: PluginInfo) -> Iterator[Checked]:
+    """Check what a plug-in brings, each thing alone."""
+    if info.kind == COMMAND:
+        yield Checked(info.name, _complaint(_command, info))
+        return
+    seen: set[str] = set()
+    for told in items(info):
+        name = title(told.item)
+        complaint = _complaint(CHECKS[info.kind], told.item) if info.kind in CHECKS else ""
+        twice = f"{name} is brought twice" if name in seen else ""
+        seen.add(name)
+        yield Checked(name, complaint or twice)
+
+
+def _complaint(check: Callable[[Any], str], item: Any) -> str:
+    try:
+        with guarded(title(item), "raised"):
+            return check(item)
+    except PluginError as error:
+        return str(error)
+
+
+def _command(info: PluginInfo) -> str:
+    found = MANAGER.ask(info, parser=argparse.ArgumentParser())
+    return "" if callable(found) else f"returned {found!r}, which runs no command"
+
+
+def _material(item: Any) -> str:
+    if not isinstance(item, Entry):
+        return f"is {type(item).__name__}, no materials.Entry"
+    item.material()
+    return "" if item.elastic_source and item.density_source else "has no sources"
+
+
+def _column(item: Any) -> str:
+    from contactlab.compose.simulation import Simulation
+    from contactlab.outcome.columns import Column
+
+    if not isinstance(item, Column):
+        return f"is {type(item).__name__}, no Column"
+    scenes = [reference(), Scene.nondimensional(psi1=[0.5, 3.0], chi=1.44)]
+    for scene in scenes:
+        result = Simulation().run(scene).check()
+        value = item.read(result)
+        if value is None or not item.unit:
+            continue
+        together = np.asarray(value, dtype=float)
+        if together.shape[: len(scene.shape)] not in ((), scene.shape):
+            return f"has shape {together.shape} for impacts of shape {scene.shape}"
+        for place in range(scene.shape[0]):
+            alone = np.asarray(item.read(Simulation().run(scene.take(place)).check()), dtype=float)
+            both = np.broadcast_to(together, scene.shape)[place] if together.ndim < 2 else alone
+            if not np.allclose(alone, both, rtol=1e-12, equal_nan=True):
+                return f"gives {alone!r} for one impact and {both!r} for the same in a batch"
+    return ""
+
+
+def _shape(item: Any) -> str:
+    from contactlab.impact.rigid_body import RigidBody
+    from contactlab.impact.shapes import Shape
+
+    if not isinstance(item, Shape):
+        return f"is {type(item).__name__}, no Shape"
+    if not item.example:
+        return "has no example, so it was not made"
+    tilted = np.array([[0.8, 0.0, 0.6], [0.0, 1.0, 0.0], [-0.6, 0.0, 0.8]])
+    upright = tilted[:, 2] if item.oriented == "axis" else tilted
+    steel = Material.named("steel")
+    body, contact = item.make(
+        **item.example, material=steel, normal=NORMAL, **{item.oriented: upright}
+    )
+    if not isinstance(body, RigidBody):
+        return f"makes {type(body).__name__}, no RigidBody"
+    return "" if float(np.dot(contact, NORMAL)) > 0.0 else "has its contact on the wrong side"
+
+
+def _case(item: Any) -> str:
+    make = getattr(item, "make", None) or item.scene.make
+    try:
+        made = make()
+    except ValueError:
+        return ""  # a refusal is an outcome
+    return "" if isinstance(made, Scene) else f"makes {type(made).__name__}, no Scene"
+
+
+def _finding(item: Any) -> str:
+    found = item()
+    return "" if found.ok else f"{found.what}: {found.difference:.2g}, bound {found.bound:.2g}"
+
+
+def _measured(item: Any) -> str:
+    from contactlab.study.evidence import Source
+
+    if not isinstance(item, Source):
+        return f"is {type(item).__name__}, no Source"
+    file = item.read()
+    if not file.measured:
+        return "has no measured values"
+    return "" if file.citation else "has no citation"
+
+
+def _caution(item: Any) -> str:
+    return "" if isinstance(item, str) else f"is {item!r}, no sentence"
+
+
+CHECKS: dict[str, Callable[[Any], str]] = {
+    "materials": _material, "columns": _column, "shapes": _shape, "cases": _case,
+    "checks": _finding, "measurements": _measured, "cautions": _caution,
+}  # fmt: skip

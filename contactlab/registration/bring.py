@@ -1,0 +1,63 @@
+"""What plug-ins bring, by name: each name means one thing, and whose it is can be said.
+
+The names of things follow the rule of laws: ``distribution:name`` is unique, ``name`` alone means
+contactlab's own, else that of the only distribution that offers it; if several do, it is refused.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
+
+from contactlab.registration.hooks import PluginError
+from contactlab.registration.manager import MANAGER, Told
+from contactlab.registration.names import BLOCK_VARIABLE, HERE, PROJECT
+
+T = TypeVar("T")
+_KEPT: dict[str, tuple[object, dict[str, Any]]] = {}
+
+
+def state() -> object:
+    """Return what changes where plug-ins come, go or are blocked."""
+    return MANAGER.changes, os.environ.get(BLOCK_VARIABLE, "")
+
+
+def by_name(
+    kind: str, of: type[T], key: Callable[[T], str], *, again: bool = True
+) -> Mapping[str, T]:
+    """Return what plug-ins bring of a kind by name; what is not of the class ``of`` is told once.
+
+    A name of several distributions other than contactlab is left out, and each is under its name
+    with the distribution before it. With ``again``, what was installed meanwhile is looked for.
+    """
+    MANAGER.load(kind, again=again)
+    before, kept = _KEPT.get(kind, (None, {}))
+    if before == state():
+        return kept
+    offers: dict[str, list[Told]] = {}
+    for told in MANAGER.brought(kind):
+        if isinstance(told.item, of):
+            offers.setdefault(key(told.item), []).append(told)
+        else:
+            rule = f"brought {told.item!r}, which is no {of.__name__}"
+            MANAGER.tell(told.info, PluginError(f"{told.info.source} {rule}"))
+    found: dict[str, T] = {}
+    for name, rivals in offers.items():
+        one = meant_of(rivals)
+        if one is not None:
+            found[name] = one.item
+        for rival in rivals:
+            if rival is not one:
+                found[f"{rival.info.distribution}:{name}"] = rival.item
+    _KEPT[kind] = state(), found
+    return found
+
+
+def meant_of(rivals: list[Told]) -> Told | None:
+    """Return what a name means among things of that name, or None if it is refused."""
+    for origin in (HERE, PROJECT):  # who registers in a program means it
+        own = [told for told in rivals if told.info.distribution == origin]
+        if own:
+            return own[0]
+    return rivals[0] if len(rivals) == 1 else None

@@ -1,0 +1,76 @@
+"""Plug-ins among the installed distributions, found by their entry points without an import."""
+
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+from collections.abc import Iterable
+
+import attrs
+
+from contactlab.registration.hooks import short
+from contactlab.registration.names import (
+    PROJECT,
+    PluginInfo,
+    blocked_names,
+    blocks,
+    meant,
+    same_distribution,
+)
+
+
+class PluginWarning(UserWarning):
+    """A blocked name is not installed, or the entry points of a distribution are unreadable."""
+
+
+def entry_points(only: str | None = None) -> set[tuple[str, str, str, str]]:
+    """Return name, distribution, version and module of every entry point of the group.
+
+    Those of one distribution ``only`` take a tenth of the time.
+    """
+    from importlib import metadata  # takes 20 ms to import
+
+    entries, seen = set(), list[str]()
+    for distribution in metadata.distributions(name=only):
+        try:
+            points = list(distribution.entry_points.select(group=PROJECT))
+            if not points:  # metadata are read only then: each reading opens a file
+                continue
+            name, version = str(distribution.metadata["Name"]), distribution.version
+        except Exception as error:
+            where = getattr(distribution, "_path", "a distribution")
+            text = f"the entry points of {where} cannot be read and are passed over: {short(error)}"
+            warnings.warn(text, PluginWarning, stacklevel=4)
+            continue
+        if only and not same_distribution(name, only):  # metadata takes names that begin alike
+            continue
+        if not any(same_distribution(name, other) for other in seen):  # the first is imported
+            entries |= {(point.name, name, version, point.value) for point in points}
+        seen.append(name)
+    return entries
+
+
+def path_times() -> object:
+    """Return the folders of ``sys.path`` with their times: an installation changes the value."""
+    folders = [folder or "." for folder in sys.path]
+    return tuple((each, os.path.exists(each) and os.stat(each).st_mtime_ns) for each in folders)
+
+
+def by_name(infos: list[PluginInfo]) -> dict[str, list[PluginInfo]]:
+    """Return plug-ins by their names without a distribution."""
+    offers: dict[str, list[PluginInfo]] = {}
+    for info in infos:
+        offers.setdefault(info.name, []).append(info)
+    return offers
+
+
+def described(found: Iterable[tuple[str, str, str, str]]) -> list[PluginInfo]:
+    """Return what entry points offer, with what is blocked and which of one name is meant."""
+    blocking = blocked_names()
+    infos = [PluginInfo(*each, blocks(blocking, *each[:2])) for each in found]
+    return [
+        attrs.evolve(info, meant=info is meant(rivals))
+        for rivals in by_name(infos).values()
+        for info in rivals
+    ]

@@ -1,0 +1,218 @@
+"""Fit friction, stiffness ratio or options of laws to measured impacts, and rank laws by fit.
+
+Examples
+--------
+  contactlab fit examples/kharaz2001.toml --quantity tangential_restitution
+  contactlab fit impacts.csv bodies.toml --fit friction_coefficient,stiffness_ratio
+  contactlab fit impacts.csv bodies.toml --fit friction_coefficient,restitution,shear_loss
+  contactlab fit impacts.csv bodies.toml --laws exact,coulomb,mindlin_cap --figure fit.png
+  contactlab fit --flight film.csv bodies.toml --fit friction_coefficient,restitution
+  contactlab fit impacts.csv bodies.toml --normal viscoelastic,tsuji --fit restitution
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import sys
+from pathlib import Path
+from typing import Any, Unpack
+
+from contactlab.cli import arguments as shared
+from contactlab.cli.scene import add_allow_code
+from contactlab.compose.composition import DEFAULT_NORMAL
+from contactlab.compose.simulation import Simulation
+from contactlab.numeric.checks import whole
+from contactlab.outcome.files import distinct
+from contactlab.registration.hooks import Execute, hookimpl
+from contactlab.scene_file import LawChoice, SceneFile, read_scene
+from contactlab_fit import Fit, Ranked, fit, in_order, rank, read_flight
+from contactlab_fit.beside import as_met
+from contactlab_fit.estimation import default_laws, parameters_of
+from contactlab_fit.model import SOME_FRICTION
+from contactlab_fit.options import add_columns, read_impacts
+from contactlab_fit.parameters import RESTITUTION
+from contactlab_fit.printed import describe, further_cautions, ranking, write_residuals
+from contactlab_fit.tabulated import LOSSY
+
+#: Name of the exact elastic laws, computed from a table; no installed law has this name.
+EXACT = "exact"
+#: Samples of the bootstrap, unless another number is given.
+SAMPLES = 200
+
+
+@hookimpl
+def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
+    """Add the data, the parameters, the laws and the outputs."""
+    parser.add_argument(
+        "files",
+        nargs="+",
+        metavar="FILE",
+        help="DATA.csv and SCENE.toml, or a SCENE.toml that holds measured values",
+    )
+    words = (
+        "friction_coefficient (default), stiffness_ratio, restitution (one loss for pressure and "
+        "shear), shear_loss, or options of the laws chosen; each law fits those that it has"
+    )
+    shared.add_names(parser, "--fit", words, default=["friction_coefficient"])
+    words = (
+        "tangential laws, the first reported and all ranked; exact (default) is the exact elastic "
+        "law, computed from a table"
+    )
+    shared.add_names(parser, "--laws", words, default=[EXACT])
+    shared.add_names(parser, "--normal", "normal laws, as --laws; or file.py:Class")
+    shared.add_laws(parser, kinds=("integrator",))
+    add_allow_code(parser)
+    shared.add_names(parser, "--quantity", "measured quantities to fit (default: all)")
+    parser.add_argument(
+        "--bootstrap",
+        type=int,
+        default=SAMPLES,
+        metavar="SAMPLES",
+        help=f"samples of the bootstrap of the first law (default {SAMPLES}; 0 for none)",
+    )
+    parser.add_argument(
+        "--flight",
+        type=Path,
+        metavar="FILM.csv",
+        help="in place of DATA.csv: positions t, x, y (optional z, angle) of a ball that bounces",
+    )
+    add_columns(parser)
+    shared.add_figure(parser, "draw measured values, laws and residuals")
+    shared.add_file(parser, "--csv", ".csv", words="write the residuals")
+    shared.add_json(parser, "tables")
+    shared.add_progress(parser)
+    return shared.checked(execute)
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Fit and report; the status is 1 if one of several laws could not be fitted."""
+    whole("--bootstrap", arguments.bootstrap, least=0, most=100_000)
+    for number, name in enumerate(arguments.files, start=1):
+        distinct({f"FILE {number}": name, "--csv": arguments.csv, "--figure": arguments.figure})
+    data, path = _files(arguments.files, arguments.flight)
+    if arguments.flight is None:
+        impacts = read_impacts(data, arguments)
+    elif arguments.columns:
+        raise ValueError("--columns: names those of DATA.csv; of a film --column 'HEADING=x' does")
+    else:
+        impacts = read_flight(data, columns=dict(arguments.column))
+    impacts = as_met(impacts, path)
+    defaults = {"friction_coefficient": SOME_FRICTION}
+    allow = arguments.allow_code
+    file = read_scene(path, entries=impacts.given, defaults=defaults, allow_code=allow)
+    simulations = _simulations(arguments, file)
+    shared.tell_normal_spin(file.scene, *simulations.values())
+    own = parameters_of(impacts, path, simulations, arguments.fit)
+    selection: dict[str, Any] = {"quantities": arguments.quantity}
+    first, *others = simulations
+    reported = {"parameters": own[first], "simulation": simulations[first], **selection}
+    ranked: list[Ranked] = []
+    fitted: Fit | None = None
+    interrupted = False
+    try:
+        with shared.progress(arguments.progress, "searches") as progress:
+            fitted = fit(impacts, path, progress=progress, **reported)
+        with shared.progress(arguments.progress, "laws") as progress:
+            for done, name in enumerate(others, start=1):
+                if progress is not None:
+                    progress(done, len(simulations))
+                law = {name: simulations[name]}
+                ranked += rank(impacts, path, law, parameters=own[name], **selection)
+        if arguments.bootstrap:
+            with shared.progress(arguments.progress, "bootstrap") as progress:
+                options = {"bootstrap": arguments.bootstrap, "progress": progress}
+                fitted = fit(impacts, path, **reported, **options)
+    except KeyboardInterrupt:  # report what is done
+        if fitted is None:
+            raise
+        interrupted = True
+    interrupted |= 0 < fitted.samples < arguments.bootstrap
+    if ranked:
+        ranked = in_order([*ranked, Ranked(name=first, fit=fitted)])
+    shown = [law for law in ranked if law.fit] or [Ranked(name=first, fit=fitted)]
+    saved = shared.save(
+        (arguments.figure, lambda file: _draw(file, shown, **shared.look(arguments))),
+        (arguments.csv, lambda file: write_residuals(file, shown)),
+        progress_wanted=arguments.progress,
+        interrupted=interrupted,
+    )
+    _report(fitted, ranked, complete=not interrupted, as_json=arguments.json)
+    return shared.INTERRUPTED if interrupted else max(saved, _failures(ranked))
+
+
+def _report(fitted: Fit, ranked: list[Ranked], *, complete: bool, as_json: bool) -> None:
+    """Print the fit, and the ranking unless ``ranked`` is empty."""
+    if as_json:
+        rows = [
+            {"law": law.name, "refusal": law.refusal, "fit": law.fit and law.fit.to_dict()}
+            for law in ranked
+        ]
+        content = fitted.to_dict() | {"ranking": rows, "complete": complete}
+        shared.print_json(content)
+        return
+    print(describe(fitted))
+    if ranked:
+        print("\n\n".join(["", ranking(ranked), *further_cautions(fitted, ranked)])[1:])
+    if not complete:
+        print("\nnot complete: interrupted")
+
+
+def _failures(ranked: list[Ranked]) -> int:
+    """Report on stderr the laws that could not be fitted, and return the exit status."""
+    failed = [law for law in ranked if law.fit is None]
+    for law in failed:
+        print(f"contactlab fit: {law.name}: {law.refusal}", file=sys.stderr)
+    return shared.FAILED if failed else shared.OK
+
+
+def _files(names: list[str], film: Path | None) -> tuple[Any, Path]:
+    """Return the measured impacts, and the path of the scene file with the bodies."""
+    scenes = [name for name in names if name.lower().endswith(".toml")]
+    tables = [name for name in names if name not in scenes]
+    if len(scenes) != 1 or len(tables) > 1:
+        raise ValueError(
+            f"FILE = {' '.join(names)}: give the measured impacts as DATA.csv and the bodies as "
+            "SCENE.toml; or a SCENE.toml that holds measured values"
+        )
+    path = Path(scenes[0])
+    if film is not None:
+        if tables:
+            raise ValueError(f"FILE = {tables[0]}: --flight has the impacts; leave one of them out")
+        return film, path
+    return (Path(tables[0]) if tables else read_scene(path)), path
+
+
+def _simulations(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation | None]:
+    """Return a simulation for each pair of laws, None for the exact table.
+
+    The names are those of ``--laws``, of ``--normal`` if it is a list, or both.
+    """
+    normals = arguments.normal or [None]
+    own = file.laws.normal
+    settings = dict(arguments.settings)
+    if normals == [None] and own is None:
+        restituted = f"normal.{RESTITUTION}" in settings
+        if default_laws(arguments.fit, restituted=restituted) is not None:
+            normals = [LOSSY]
+    simulations: dict[str, Simulation | None] = {}
+    for normal, name in itertools.product(normals, arguments.laws):
+        exact = name == EXACT
+        told = [normal] if len(normals) > 1 else []
+        told += [name] if len(arguments.laws) > 1 or not told else []
+        if exact and (normal or own) in (None, DEFAULT_NORMAL) and not settings:
+            simulations[" ".join(told)] = None
+            continue
+        options = {k: v for k, v in file.laws.options.items() if k.startswith("normal")}
+        choice = LawChoice(normal=own, integrator=arguments.integrator, options=options).choose(
+            normal=normal, tangential=None if exact else name
+        )
+        simulations[" ".join(told)] = choice.set(settings).simulation()
+    return simulations
+
+
+def _draw(path: Path, shown: list[Ranked], **look: Unpack[shared.Drawing]) -> None:
+    """Draw measured values, laws and residuals."""
+    from contactlab_fit.figures import draw_fits  # matplotlib only when drawing
+
+    draw_fits(path, {law.name: law.fit for law in shown if law.fit}, **look)

@@ -1,0 +1,340 @@
+"""Impacts from a film: positions over time before and after each bounce."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from pathlib import Path
+from typing import NamedTuple
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.numeric.checks import refuse
+from contactlab.numeric.types import Array
+from contactlab_fit.csv_columns import (
+    CONVERSIONS,
+    name_and_unit,
+    read_numbers,
+    read_text,
+)
+from contactlab_fit.measurements import Measurements, column_of
+
+#: Columns of a film and their units; without z the flight stays in the plane of x and y.
+FILM = {"t": "s", "x": "m", "y": "m", "z": "m", "angle": "rad"}
+#: Other names of columns.
+ALSO = {"time": "t", "angle_deg": "angle", "rotation": "angle", "height": "y"}
+#: Standard gravity in m/s²; on the ground it differs from it by up to 0.3 %.
+GRAVITY = 9.80665
+#: Shares by which the flights may fall faster or slower before it is told, and before the film is
+#: refused.
+TOLD, REFUSED = 0.03, 0.15
+#: Columns before the impact.
+GIVEN = ("normal_speed", "tangential_velocity", "spin")
+#: Least count of frames of a flight.
+FRAMES = 5
+#: A pause of so many frames ends a throw, and so does a time that goes back.
+PAUSE = 8.0
+#: A lowest place counts as a touch if the ball rises by so many times the scatter on both sides.
+RISE = 6.0
+#: And by at least so many m.
+LEAST_RISE = 1e-6
+#: A normal distribution's standard deviation over its median deviation.
+NORMAL = 1.4826
+#: Scatter about parabolas over that of frames in turn, and over the range of y, that is refused.
+ROUGH, FLAT = 5.0, 2e-3
+#: Most passes that sort the frames next to a touch.
+PASSES = 20
+
+
+class Flight(NamedTuple):
+    """One flight: ``lines`` are (value, slope) over time of x, z, angle and of y + g t²/2.
+
+    ``rests`` are the residuals of each, shape (frames,); ``reach`` the root of the sum of the
+    squared times about their mean, in s, over which a scatter is the standard error of a slope.
+    """
+
+    lines: Mapping[str, tuple[float, float]]
+    rests: Mapping[str, Array]
+    reach: float
+
+
+def read_flight(
+    content: str | Path | Mapping[str, object], *, columns: Mapping[str, str] | None = None
+) -> Measurements:
+    """Return the bounces of a film as measured impacts, with standard errors.
+
+    Parameters
+    ----------
+    content : path or mapping
+        Columns ``t (s)``, ``x (m)`` and ``y (m)`` of the centre of the ball, ``y`` upwards from a
+        level floor; optionally ``z (m)`` and ``angle (deg)``, which grows from x to y. Any number
+        of bounces. A time that goes back, or a pause, begins another throw.
+    columns : mapping of str to str, optional
+        Names for headings of another kind, ``{"frame time [ms]": "t"}``; ``"-y"`` turns a sign.
+
+    Returns
+    -------
+    Measurements
+        Velocities along the normal and along the way of the ball over the floor in m/s, and with
+        ``angle`` spins in rad/s.
+
+    Raises
+    ------
+    ValueError
+        If the film cannot be read, has no bounce with enough frames on both sides, or does not
+        fall with the acceleration of gravity, as with a wrong unit or frame rate.
+
+    Notes
+    -----
+    Frames between touches are fitted by parabolas that fall with g, by least squares; a touch is
+    where two of them meet. Air and the duration of contact are left out. The scatter is that of
+    all frames of the film about their parabolas. Errors of velocities before the impact are added
+    to those after it.
+    """
+    names = {text.strip(): name for text, name in (columns or {}).items()}
+    source = ""
+    table: Mapping[str, object]
+    if isinstance(content, str | Path):
+        source = str(content)
+        table = read_numbers(read_text(Path(content)), source)
+    elif isinstance(content, Mapping):
+        table = content
+    else:
+        raise refuse("film", content, "must be a CSV file, or a mapping of columns")
+    try:
+        found = _bounces(_film(table, names))
+    except ValueError as error:
+        raise ValueError(f"{source}: {error}" if source else str(error)) from None
+    return attrs.evolve(found, source=source)
+
+
+def _film(table: Mapping[str, object], names: Mapping[str, str]) -> dict[str, Array]:
+    """Return the columns of a film in SI units, without frames that lack a number."""
+    film: dict[str, Array] = {}
+    for text, values in table.items():
+        alias = names.get(text.strip(), text)
+        sign = -1.0 if alias is not text and alias.startswith("-") else 1.0
+        _, name, unit = name_and_unit(alias.removeprefix("-") if sign < 0.0 else alias)
+        unit = unit or (name_and_unit(text)[2] if alias is not text else "")
+        if name == "angle_deg":
+            unit = unit or "deg"
+        name = ALSO.get(name, name)
+        if name not in FILM or alias.strip().startswith("#"):
+            continue
+        own = FILM[name]
+        if unit != own and (unit, own) not in CONVERSIONS:
+            known = ", ".join(f"({each})" for each, to in CONVERSIONS if to == own)
+            reason = f"is in {unit}, which is not known here" if unit else "has no unit"
+            raise ValueError(f"heading {text!r}: {reason}; write '{name} ({own})', or {known}")
+        numbers = column_of(text, values, gaps=True)
+        film[name] = sign * CONVERSIONS.get((unit, own), 1.0) * numbers
+    for name in ("t", "x", "y"):
+        if name not in film:
+            raise ValueError(
+                f"{name}: is missing; a film has the columns t (s), x (m) and y (m), and may have "
+                f"z (m) and angle (deg); name one by --column 'HEADING={name}'; "
+                f"had: {', '.join(table)}"
+            )
+    whole = np.all([np.isfinite(values) for values in film.values()], axis=0)
+    return {name: values[whole] for name, values in film.items()}
+
+
+def _bounces(film: dict[str, Array]) -> Measurements:
+    """Return the impacts of a film."""
+    throws = list(_throws(film))
+    step = float(np.median(np.concatenate([np.diff(throw["t"]) for throw in throws])))
+    pairs: list[tuple[Flight, Flight, float]] = []
+    notes: list[str] = []
+    every: list[Flight] = []
+    for throw in throws:
+        flights, times = _flights(throw, step)
+        every += [flight for flight in flights if flight]
+        for one, other, time in zip(flights, flights[1:], times, strict=False):
+            if one and other:
+                pairs.append((one, other, time))
+            else:
+                notes.append(
+                    f"bounces with fewer than {FRAMES} frames before or after are left out"
+                )
+    if not pairs:
+        raise ValueError(
+            f"no bounce has {FRAMES} frames before and after it; give more frames, or check that "
+            "y is the height of the centre and grows upwards (--column 'y=-y' turns it)"
+        )
+    fall = _fall(throws, step)
+    scatter = {
+        name: _scatter([flight.rests[name] for flight in every]) for name in film if name != "t"
+    }
+    noise = max(_noise(throw["t"], throw["y"]) for throw in throws if len(throw["t"]) > 2)
+    if scatter["y"] > ROUGH * noise + FLAT * float(np.ptp(film["y"])):
+        raise ValueError(
+            f"y: lies off the parabolas between touches by {scatter['y']:.2g} m (rms), the scatter "
+            f"of frames in turn is {noise:.2g} m; check that y is the height of the centre and "
+            "grows upwards (--column 'y=-y' turns it), and that the ball touches a level floor only"
+        )
+    rows = [_row(*pair, scatter) for pair in pairs]
+    columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    told = [name for name in columns if f"{name}_error" in columns]
+    measured = [name for name in told if columns[f"{name}_error"].all()]
+    notes += [
+        f"{name} is left out: its positions have no scatter, as a column of zeros has none"
+        for name in told
+        if name not in measured
+    ]
+    return Measurements(
+        given={name: columns[name] for name in GIVEN if name in columns},
+        measured={name: columns[name] for name in measured},
+        errors={name: columns[f"{name}_error"] for name in measured},
+        notes=(*dict.fromkeys(notes), *fall),
+    )
+
+
+def _throws(film: dict[str, Array]) -> Iterator[dict[str, Array]]:
+    """Yield the frames of each throw from time 0 on, with angles that do not jump by a turn."""
+    step = np.diff(film["t"])
+    forward = step[step > 0.0]
+    if not forward.size:
+        raise ValueError("t: does not grow; give the time of each frame")
+    ends = np.flatnonzero((step <= 0.0) | (step > PAUSE * float(np.median(forward)))) + 1
+    for frames in np.split(np.arange(len(film["t"])), ends):
+        throw = {name: values[frames] for name, values in film.items()}
+        throw["t"] = throw["t"] - throw["t"][0]
+        if "angle" in throw:
+            throw["angle"] = np.unwrap(throw["angle"])
+        yield throw
+
+
+def _flights(throw: dict[str, Array], step: float) -> tuple[list[Flight | None], list[float]]:
+    """Return the flights of a throw, None for those of too few frames, and the times of touch.
+
+    Frames within one interval of a touch are left out: the ball may deform in them.
+    """
+    t = throw["t"]
+    times = [float(t[frame]) for frame in _touches(throw["t"], throw["y"])]
+    flights: list[Flight | None] = []
+    for _ in range(PASSES):
+        ends = [-math.inf, *times, math.inf]
+        flights = [
+            _flight(throw, (t > start + step) & (t < end - step)) for start, end in pairwise(ends)
+        ]
+        met = [
+            _meeting(one, other) if one and other else time
+            for one, other, time in zip(flights, flights[1:], times, strict=False)
+        ]
+        if np.allclose(met, times, rtol=0.0, atol=1e-3 * step):
+            break
+        times = met
+    return flights, times
+
+
+def _touches(t: Array, y: Array) -> list[int]:
+    """Return the frames nearest to the touches: the lowest, from which y rises on both sides."""
+    from scipy.signal import find_peaks  # only a film needs it
+
+    if len(t) < 3:
+        return []
+    frames, _ = find_peaks(-y, prominence=max(RISE * _noise(t, y), LEAST_RISE))
+    return [int(frame) for frame in frames]
+
+
+def _noise(t: Array, y: Array) -> float:
+    """Return the scatter of y in m, from the bends of three frames in turn."""
+    step = np.diff(t)
+    bends = np.diff(np.diff(y) / step) * 0.5 * (step[1:] + step[:-1])
+    return NORMAL * float(np.median(np.abs(bends - np.median(bends)))) / math.sqrt(6.0)
+
+
+def _flight(throw: dict[str, Array], frames: NDArray[np.bool_]) -> Flight | None:
+    """Return the lines through some frames, by least squares; None if there are too few."""
+    from scipy.linalg import lstsq  # only a fit needs scipy
+
+    t = throw["t"][frames]
+    if len(t) < FRAMES:
+        return None
+    middle = float(np.mean(t))
+    names = [name for name in throw if name != "t"]
+    values = np.stack([throw[name][frames] for name in names], axis=-1)
+    values[:, names.index("y")] += 0.5 * GRAVITY * t**2
+    matrix = np.stack([np.ones_like(t), t - middle], axis=-1)
+    lines, *_ = lstsq(matrix, values)
+    rests = values - matrix @ lines
+    return Flight(
+        lines={
+            name: (float(lines[0, k] - lines[1, k] * middle), float(lines[1, k]))
+            for k, name in enumerate(names)
+        },
+        rests={name: rests[:, k] for k, name in enumerate(names)},
+        reach=float(np.sqrt(np.sum((t - middle) ** 2))),
+    )
+
+
+def _meeting(one: Flight, other: Flight) -> float:
+    """Return the time in s at which two parabolas with the same fall meet."""
+    (a, b), (c, d) = one.lines["y"], other.lines["y"]
+    return (a - c) / (d - b)
+
+
+def _scatter(rests: list[Array]) -> float:
+    """Return the standard deviation of frames about lines, each of two numbers."""
+    freedom = sum(len(each) - 2 for each in rests)
+    return math.sqrt(sum(float(each @ each) for each in rests) / freedom)
+
+
+def _row(one: Flight, other: Flight, time: float, scatter: Mapping[str, float]) -> dict[str, float]:
+    """Return the numbers of one impact."""
+    fall = GRAVITY * time
+    before, after = (
+        np.array([each.lines[name][1] for name in ("x", "z") if name in each.lines])
+        for each in (one, other)
+    )
+    way = np.ones(1)
+    if len(before) > 1:
+        way = before / (math.copysign(float(np.hypot(*before)), before[0]) or 1.0)
+    spread = np.array([scatter[name] for name in ("x", "z") if name in scatter])
+    both = math.hypot(1.0 / one.reach, 1.0 / other.reach)
+    row = {
+        "normal_speed": fall - one.lines["y"][1],
+        "tangential_velocity": float(before @ way),
+        "rebound_normal_velocity": fall - other.lines["y"][1],
+        "rebound_normal_velocity_error": scatter["y"] * both,
+        "rebound_tangential_velocity": float(after @ way),
+        "rebound_tangential_velocity_error": float(np.linalg.norm(spread * way)) * both,
+    }
+    if "angle" in one.lines:
+        row |= {
+            "spin": one.lines["angle"][1],
+            "rebound_spin": other.lines["angle"][1],
+            "rebound_spin_error": scatter["angle"] * both,
+        }
+    return row
+
+
+def _fall(throws: list[dict[str, Array]], step: float) -> list[str]:
+    """Return a note if the flights do not fall with g, and refuse what is far from it."""
+    numbers, weights = [], []
+    for throw in throws:
+        t = throw["t"]
+        ends = [-math.inf, *(t[frame] for frame in _touches(t, throw["y"])), math.inf]
+        for start, end in pairwise(ends):
+            frames = (t > start + step) & (t < end - step)
+            if np.sum(frames) > FRAMES:
+                part = t[frames] - np.mean(t[frames])
+                numbers.append(
+                    -2.0 * np.polynomial.polynomial.polyfit(part, throw["y"][frames], 2)[2]
+                )
+                weights.append(np.sum((part**2 - np.mean(part**2)) ** 2))
+    if not weights:
+        return []
+    mean = float(np.average(numbers, weights=weights))
+    told = f"the flights fall with {mean:.3g} m/s² in place of {GRAVITY:.3g}"
+    if abs(mean / GRAVITY - 1.0) > REFUSED:
+        raise ValueError(
+            f"y: {told}; check its unit, the frame rate behind t, and that y grows upwards "
+            "(--column 'y=-y' turns it)"
+        )
+    if abs(mean / GRAVITY - 1.0) > TOLD:
+        return [f"{told}: the scale of the film or its frame rate may be off, or air counts"]
+    return []

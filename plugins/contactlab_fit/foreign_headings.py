@@ -1,0 +1,183 @@
+"""Headings in the words of other programs, and the names that they probably mean."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Collection, Iterable, Mapping
+
+import numpy as np
+
+from contactlab.impact.scene import entry_unit
+from contactlab.numeric.names import nearest
+from contactlab.outcome.columns import QUANTITIES
+from contactlab.scene_file.entries import ENTRIES
+from contactlab_fit.csv_columns import (
+    CONVERSIONS,
+    HEADING,
+    measurable,
+    name_and_unit,
+)
+
+#: Words for the time after an impact, and for the time before it.
+AFTER = {"out", "after", "post", "rebound", "exit", "outgoing", "final", "reflected", "2", "r"}
+BEFORE = {"in", "before", "pre", "impact", "incident", "inbound", "incoming", "initial", "1", "i"}
+#: Words for directions; the last of the normal ones that a table has is taken.
+TANGENTIAL = {"x", "t", "tangential", "horizontal", "vx", "vt"}
+NORMAL = {"y", "z", "n", "normal", "vertical", "vy", "vz", "vn"}
+SPEEDS = {"v", "vel", "velocity", "speed", "vx", "vy", "vz", "vt", "vn", "u"}
+ANGLES = {"angle", "theta", "alpha"}
+SPINS = {"spin", "omega", "w", "rpm", "rotation", "backspin", "topspin", "wz", "wy"}
+#: All these words; a heading with any other one is not guessed.
+VOCABULARY = AFTER | BEFORE | TANGENTIAL | NORMAL | SPEEDS | ANGLES | SPINS | {"ball", "of", ""}
+#: Names for whole headings, as patterns. A launch monitor tells sizes: struck from above the
+#: contact, a ball leaves with the spin that is negative here.
+WHOLE = {
+    r"side_?spin": "",  # after the impact, about an axis that no scene of a plane has
+    r"spin_loft": "angle_deg",
+    r"attack_angle|angle_of_attack": "angle_deg",
+    r"club(head)?_speed": "speed",
+    r"back_?spin|(total_)?spin_rate": "-rebound_spin",
+    r"e|e_?n|cor|(coefficient_of_)?restitution": "normal_restitution",
+    r"e_?t|tangential_cor": "tangential_restitution",
+    r"t_?c|contact_(time|duration)|duration": "contact_time",
+    r"ball_speed": "rebound_speed",
+    r"launch_angle": "rebound_angle_deg",
+}
+#: Likeness of letters from which a heading is a misspelt name: "spni" for spin has 0.75.
+MISSPELT = 0.72
+#: Columns in the frame of the ground, of no use beside a club's speed.
+OF_THE_GROUND = ("rebound_speed", "rebound_angle_deg")
+
+
+class ForeignHeadingsError(ValueError):
+    """Headings of other words.
+
+    ``said`` tells so, ``columns`` has the names that they probably mean.
+    """
+
+    def __init__(self, said: str, columns: Mapping[str, str], command: str = "add") -> None:
+        options = (f"{text.strip()}={name}" for text, name in columns.items())
+        words = " ".join(f"--column {shlex.quote(option)}" for option in options)
+        super().__init__(f"{said}; if these names and units are right, {command} {words}")
+        self.said, self.columns = said, columns
+
+
+def foreign(
+    unknown: Mapping[str, object], known: Collection[str], refused: list[str]
+) -> tuple[str, ...]:
+    """Return a sentence on columns that are left out because nothing is known of them.
+
+    Parameters
+    ----------
+    unknown : mapping of str to array
+        Columns whose headings name nothing here.
+    known : collection of str
+        Names that other columns have.
+    refused : list of str
+        Sentences on headings that are refused whatever the others are.
+
+    Raises
+    ------
+    ValueError
+        If there are such sentences.
+    ForeignHeadingsError
+        If some of the headings look like other words for quantities.
+    """
+    guesses = _guesses(unknown, known)
+    rest = [heading for heading in unknown if heading not in guesses]
+    ground = [text for text in rest if _club(unknown) and _guess(text) in OF_THE_GROUND]
+    left_out = "; ".join(
+        f"left out, {why}: {', '.join(text.strip() for text in texts)}"
+        for why, texts in (
+            ("for they are of the ground, where the club's speed is relative", ground),
+            ("for nothing here has such names", [text for text in rest if text not in ground]),
+        )
+        if texts
+    )
+    if guesses:
+        parts = [left_out] if rest else []
+        parts = [*refused, "headings look like other words for quantities here", *parts]
+        raise ForeignHeadingsError("; ".join(parts), guesses)
+    if refused:
+        raise ValueError(". And ".join(refused))
+    return (left_out,) if left_out else ()
+
+
+def _guesses(unknown: Mapping[str, object], known: Collection[str]) -> dict[str, str]:
+    """Return probable names of columns, each name once."""
+    found: dict[str, str] = {}
+    taken = {*known}
+    headings = sorted(unknown, key=lambda text: "vz" not in text.lower())  # z before y
+    club = _club(unknown)
+    if any("loft" in text.lower() and "spin" in text.lower() for text in unknown):
+        headings.sort(key=lambda text: "loft" not in text.lower())
+    for text in headings:
+        guess = _guess(text)
+        if guess == "spin" and guess in taken:
+            guess = "rebound_spin"
+        name = guess.lstrip("-")
+        if not guess or name in taken or (club and name in OF_THE_GROUND):
+            continue
+        try:
+            numbers = np.asarray(unknown[text], dtype=float)
+        except (TypeError, ValueError):  # words
+            continue
+        sized = numbers[np.isfinite(numbers)]
+        if not sized.size:
+            continue
+        taken.add(name)
+        if name == "rebound_normal_velocity" and np.all(sized >= 0.0):
+            guess = f"-{name}"  # away from the target is negative here
+        if name == "normal_speed" and np.all(sized <= 0.0):
+            guess = f"-{name}"
+        found[text] = _with_unit(text, guess)
+    return {text: found[text] for text in unknown if text in found}
+
+
+def _club(headings: Iterable[str]) -> bool:
+    """Return whether headings are those of a launch monitor, which tells of a club."""
+    return any("club" in text.lower() for text in headings)
+
+
+def _guess(text: str) -> str:
+    """Return the name that a heading probably means, with its sign; empty for none."""
+    plain = re.sub(r"([a-z])([A-Z])", r"\1_\2", HEADING.sub(r"\1", text.strip()))
+    name = name_and_unit(plain)[1]
+    for pattern, meant in WHOLE.items():
+        if re.fullmatch(pattern, name):
+            return meant
+    words = set(re.split(r"[^a-z0-9]+", re.sub(r"(?<=[a-z])(\d)$", r"_\1", name)))
+    after = bool(words & AFTER)
+    if not words <= VOCABULARY:
+        return _nearest(name)
+    if words & SPINS:
+        sign = "-" if "topspin" in words else ""
+        return f"{sign}{'rebound_spin' if after else 'spin'}"
+    if words & ANGLES:
+        return "rebound_angle_deg" if after else "angle_deg"
+    if words & SPEEDS:
+        if words & TANGENTIAL:
+            return "rebound_tangential_velocity" if after else "tangential_velocity"
+        if words & NORMAL:
+            return "rebound_normal_velocity" if after else "normal_speed"
+        return "rebound_speed" if after else "speed"
+    return _nearest(name)
+
+
+def _nearest(name: str) -> str:
+    """Return the quantity that a misspelt name means; empty for none."""
+    near = re.search(
+        r"did you mean '([\w.]+)'", nearest(name, [*ENTRIES, *measurable()], alike=MISSPELT)
+    )
+    return near[1] if near else ""
+
+
+def _with_unit(text: str, guess: str) -> str:
+    """Return a name with the unit of its heading, or that of SI if the heading tells none."""
+    name = guess.lstrip("-")
+    own = entry_unit(name) if name in ENTRIES else QUANTITIES[name].unit
+    if own == "1" or (own == "deg" and name.endswith("_deg")):
+        return guess
+    stated = name_and_unit(text)[2] or ("rpm" if "rpm" in text.lower() else own)
+    return f"{guess} ({stated})" if (stated, own) in CONVERSIONS else f"{guess} ({own})"

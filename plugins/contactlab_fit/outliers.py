@@ -1,0 +1,168 @@
+"""A robust second fit, and outliers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.numeric.types import Array, Real
+from contactlab_fit.f_test import CHANCE, NUMERICAL
+from contactlab_fit.parameters import in_words
+from contactlab_fit.problem import Problem, grid, minimum
+
+#: Standard deviation of normal scatter over its median absolute deviation.
+NORMAL = 1.4826
+#: Candidate outliers have residuals beyond these, in units of the scatter of the robust fit; the
+#: fit without them decides.
+CUTS = (20.0, 10.0, 6.0, 4.5, 3.5)
+#: Largest share of outliers, and least count of numbers that shows a scatter.
+FEW, LEAST = 0.3, 6
+#: Most impacts that a sentence lists.
+LISTED = 8
+
+
+class Outliers(NamedTuple):
+    """Outliers, and the fit without them.
+
+    Attributes
+    ----------
+    chance : float
+        Chance that normal scatter makes such outliers; 1 without outliers.
+    places : mapping of str to array of int
+        Rows of the outliers, by quantity.
+    rest : Problem
+        The problem without the outliers.
+    values : array, shape (parameters,)
+        Best values of the rest.
+    """
+
+    chance: float
+    places: Mapping[str, NDArray[np.intp]]
+    rest: Problem
+    values: Array
+
+
+def robust(problem: Problem, values: Array) -> tuple[Array, dict[str, Array]]:
+    """Return robust values, shape (parameters,), and the scatter by quantity.
+
+    Notes
+    -----
+    ``scipy.optimize.least_squares`` with the loss "soft_l1": first at a small scale, which nearly
+    gives the least absolute deviations, then at the scatter of the first fit.
+    """
+    scales = {
+        name: 0.1 * np.asarray(scale)
+        for name, scale in problem.scales(problem.residuals(values[None])).items()
+    }
+    points = np.vstack([values, grid(problem.model.parameters)])
+    start = points[int(np.argmin(np.sum(np.abs(problem.weighted(points, scales)), axis=1)))]
+    first = minimum(problem, start, scales, loss="soft_l1")
+    scales = scatter(problem, first)
+    return minimum(problem, first, scales, loss="soft_l1"), scales
+
+
+def scatter(problem: Problem, values: Array) -> dict[str, Array]:
+    """Return the scatter of each quantity, in its unit, from its median absolute residual.
+
+    Stated errors set the ratios of the scatter within a quantity.
+    """
+    number = sum(problem.counts.values())
+    wider = math.sqrt(number / max(number - len(values), 1))
+    scales: dict[str, Array] = {}
+    sizes = problem.sizes()
+    for name, rows in problem.residuals(values[None]).items():
+        errors = problem.errors.get(name, np.ones(rows.shape[1]))
+        middle = float(np.nanmedian(np.abs(rows[0] / errors)))
+        scales[name] = errors * max(NORMAL * wider * middle, NUMERICAL * sizes[name] / errors.max())
+    return scales
+
+
+def outliers(problem: Problem, values: Array, scales: Mapping[str, Real]) -> Outliers:
+    """Return the numbers whose removal improves the fit beyond chance.
+
+    Notes
+    -----
+    The F test of k numbers with a mean of their own, times the number of ways to choose k
+    (Bonferroni). Candidates are the k numbers farthest from the robust fit, for growing k.
+    """
+    from scipy.special import fdtrc, gammaln  # only a fit needs scipy
+
+    off = {
+        name: np.abs(rows[0]) / scales[name]
+        for name, rows in problem.residuals(values[None]).items()
+    }
+    flat = np.concatenate([rows[np.isfinite(rows)] for rows in off.values()])
+    number, parameters = len(flat), len(values)
+    if number < LEAST + parameters - 1:
+        return none(problem, values)
+    least = sum((NUMERICAL * size / np.min(scales[q])) ** 2 for q, size in problem.sizes().items())
+    whole = math.nan
+    best = none(problem, values)
+    for count in sorted({int(np.sum(flat > cut)) for cut in CUTS} - {0}):
+        freedom = number - count - parameters
+        if count > max(1.0, FEW * number) or freedom < 3:
+            break
+        cut = np.sort(flat)[-count]
+        places = {name: np.flatnonzero(rows >= cut) for name, rows in off.items()}
+        rest = _without(problem, places)
+        if min(rest.counts.values()) <= parameters:
+            break
+        again = minimum(rest, values, scales)
+        square = _square(rest, again, scales)
+        if math.isnan(whole):
+            whole = _square(problem, minimum(problem, values, scales), scales)
+        ratio = (whole - square) / count / ((square + least) / freedom)
+        ways = gammaln(number + 1) - gammaln(count + 1) - gammaln(number - count + 1)
+        chance = float(fdtrc(count, freedom, max(ratio, 0.0)) * math.exp(min(ways, 500.0)))
+        if chance < min(best.chance, CHANCE):
+            best = Outliers(chance, {n: p for n, p in places.items() if len(p)}, rest, again)
+    return best
+
+
+def none(problem: Problem, values: Array) -> Outliers:
+    """Return the problem without outliers."""
+    return Outliers(1.0, {}, problem, values)
+
+
+def described(problem: Problem, far: Outliers) -> list[str]:
+    """Return a sentence for each quantity that has outliers."""
+    residuals = {
+        name: problem.measured[name] - rows[0]
+        for name, rows in problem.model.predicted(far.values[None], list(far.places)).items()
+    }
+    without = in_words(problem.model.parameters, far.values)
+    sentences = []
+    for name, places in far.places.items():
+        kept = np.delete(residuals[name], places)
+        rms = float(np.sqrt(np.nanmean(kept**2)))
+        largest = float(np.max(np.abs(residuals[name][places])))
+        rows = [str(place + 1) for place in places[:LISTED]]
+        if len(places) > LISTED:
+            rows.append(f"{len(places) - LISTED} more")
+        listed = " and ".join([", ".join(rows[:-1]), rows[-1]] if rows[1:] else rows)
+        impacts, are = ("impacts", "are") if len(places) > 1 else ("impact", "is")
+        sentences.append(
+            f"{name}: {impacts} {listed} {are} off by up to {largest:.3g}, the others by "
+            f"{rms:.2g} (rms); without what is off {without}; # before a line leaves it out"
+        )
+    return sentences
+
+
+def _square(problem: Problem, values: Array, scales: Mapping[str, Real]) -> float:
+    """Return the sum of squares of residuals over the scatter."""
+    weighted = problem.weighted(values[None], scales)[0]
+    return float(weighted @ weighted)
+
+
+def _without(problem: Problem, places: Mapping[str, NDArray[np.intp]]) -> Problem:
+    """Return the problem without some numbers."""
+    measured = {}
+    for name, values in problem.measured.items():
+        measured[name] = values.copy()
+        measured[name][places[name]] = np.nan
+    return attrs.evolve(problem, measured=measured)

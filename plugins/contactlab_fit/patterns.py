@@ -1,0 +1,151 @@
+"""Residuals that climb with a column or follow it, and numbers that decide alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from contactlab.numeric.types import Array, Real
+from contactlab.outcome.columns import QUANTITIES
+from contactlab_fit.f_test import NUMERICAL, SPARE, chance_of, orthonormal
+from contactlab_fit.problem import Problem
+
+#: Degree of the polynomial in the rank of a column.
+DEGREE = 3
+#: A column varies if its range exceeds this share of its greatest magnitude.
+VARIES = 0.1
+#: Leverage above which a single number determines the fit.
+ALONE = 0.95
+ORDER = "the order of the rows"
+LOOK = "look at that column, at what else has changed with it, and at other laws"
+
+
+class Pattern(NamedTuple):
+    """Residuals that follow a column: the chance that scatter makes them, and a sentence."""
+
+    chance: float
+    words: str
+
+
+#: No pattern: the chance is that of any scatter.
+NO_PATTERN = Pattern(1.0, "")
+
+
+def pattern(
+    problem: Problem, values: Array, scales: Mapping[str, Real], columns: Mapping[str, Array]
+) -> Pattern:
+    """Return the least likely dependence of residuals on a varying column, or on the order.
+
+    Notes
+    -----
+    F tests, beside the parameters, for each quantity: of a line and of a polynomial of third degree
+    in the rank of the column, and of a line through 0 that ends at a value of it, as where slip
+    begins; and of a parameter that changes between two rows. A test of runs of signs would
+    be too weak: no run in ten impacts is improbable enough. The chance is multiplied by the number
+    of tests (Bonferroni).
+    """
+    weighted, jacobian = problem.linearised(values, scales)
+    residuals, slopes = problem.by_quantity(weighted), problem.by_quantity(jacobian)
+    ranks = _ranked(columns, len(next(iter(problem.measured.values()))))
+    sizes = problem.sizes()
+    least = {n: (NUMERICAL * size / np.min(scales[n])) ** 2 for n, size in sizes.items()}
+    tests: list[Pattern] = []
+    ended: list[Pattern] = []
+    for name, numbers in problem.measured.items():
+        for column, rank in ranks.items():
+            x = rank[np.isfinite(numbers)]
+            terms = legendre.legvander(2.0 * (x - x.min()) / max(np.ptp(x), 1.0) - 1.0, DEGREE)
+
+            def test(words: str, added: Array, name: str = name) -> Pattern:
+                chance = chance_of(residuals[name], slopes[name], added, least[name])
+                return Pattern(chance, f"{name}: {words}: {LOOK}")
+
+            number = np.asarray(columns.get(column, rank + 1.0), dtype=float)[np.isfinite(numbers)]
+            row = problem.residuals(values[None])[name][0][np.isfinite(numbers)]
+            lows = [x < last for last in range(SPARE, int(x.max()) + 2)]
+            lines = [np.where(low, number, 0.0) for low in lows]
+            gains = [float((row @ one) ** 2 / (one @ one or 1.0)) for one in lines]
+            low = lows[int(np.argmax(gains))]  # the line that is nearest to the residuals
+            words = _climb(name, number[low], row[low], column)
+            ended += [test(words, one[:, None]) for one in lines]
+            tests.append(test(_climb(name, number, row, column), terms[:, 1:2]))
+            tests.append(test(f"residuals follow {column}", terms[:, 1:]))
+    same = [name for name in ranks if ORDER not in ranks and _in_order(ranks[name])]
+    tests += _changes(problem, weighted, jacobian, max(least.values()), same)
+    if not tests:
+        return NO_PATTERN
+    clearest, line = min(tests), min(ended, default=NO_PATTERN)
+    if 2.0 * line.chance < clearest.chance:  # not where a changed parameter makes the same line
+        clearest = line
+    return clearest._replace(chance=clearest.chance * (len(tests) + len(ended)))
+
+
+def _climb(name: str, x: Array, residuals: Array, column: str) -> str:
+    """Return how residuals grow with a column: the ends of the line through them."""
+    ends = float(x.min()), float(x.max())
+    if ends[0] == ends[1]:
+        return f"residuals are off at {column} {ends[0]:.3g}"
+    low, high = np.polyval(np.polyfit(x, residuals, 1), ends)
+    unit = QUANTITIES[name].unit if name in QUANTITIES else "1"
+    size = f"from {low:+.2g} to {high:+.2g}{'' if unit == '1' else ' ' + unit}"
+    way = "climb" if high > low else "fall"
+    return f"residuals {way} with {column}, {size} between {ends[0]:.3g} and {ends[1]:.3g}"
+
+
+def _changes(
+    problem: Problem, weighted: Array, jacobian: Array, least: float, same: list[str]
+) -> list[Pattern]:
+    """Return a pattern for each parameter and row after which the parameter may have changed."""
+    why = f"{ORDER}: what has changed meanwhile?"
+    if same:
+        why = (
+            f"{ORDER}, which is that of {same[0]}: has something changed meanwhile, or do the laws "
+            "not hold throughout?"
+        )
+    rows = np.concatenate([np.flatnonzero(np.isfinite(v)) for v in problem.measured.values()])
+    changes = []
+    for parameter, slope in zip(problem.model.parameters, jacobian.T, strict=True):
+        for last in range(SPARE, int(rows.max()) + 2 - SPARE):
+            terms = (slope * (rows >= last))[:, None]
+            words = (
+                f"{parameter.name} is another up to impact {last} than from impact {last + 1} on, "
+                f"in {why}"
+            )
+            changes.append(Pattern(chance_of(weighted, jacobian, terms, least), words))
+    return changes
+
+
+def leverage(problem: Problem, values: Array, scales: Mapping[str, Real]) -> list[str]:
+    """Return a sentence for each number that the fit meets at any value."""
+    _, jacobian = problem.linearised(values, scales)
+    shares = problem.by_quantity(np.sum(orthonormal(jacobian) ** 2, axis=1))
+    if len(jacobian) <= jacobian.shape[1]:
+        return []
+    return [
+        f"{name}: the fit runs through impact {row + 1} whatever was measured there (leverage "
+        f"{share:.2f}), so that an error in it would not show; measure more like it"
+        for name, numbers in problem.measured.items()
+        for row, share in zip(np.flatnonzero(np.isfinite(numbers)), shares[name], strict=True)
+        if share > ALONE
+    ]
+
+
+def _ranked(columns: Mapping[str, Array], count: int) -> dict[str, Array]:
+    """Return the ranks of varying columns, and the order of the rows if no rank equals it."""
+    ranks: dict[str, Array] = {}
+    for name, values in columns.items():
+        _, rank = np.unique(values, return_inverse=True)
+        if np.ptp(values) > VARIES * np.max(np.abs(values)) and rank.max() >= DEGREE:
+            ranks[name] = rank.reshape(-1).astype(float)
+    order = np.arange(count, dtype=float)
+    if count > DEGREE and not any(_in_order(rank) for rank in ranks.values()):
+        ranks[ORDER] = order
+    return ranks
+
+
+def _in_order(rank: Array) -> bool:
+    """Return whether a column grows or falls along the rows."""
+    return abs(float(np.corrcoef(np.arange(len(rank)), rank)[0, 1])) > 0.99

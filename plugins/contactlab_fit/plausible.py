@@ -1,0 +1,128 @@
+"""Implausible numbers of measurements and of materials, and restitutions that laws lack."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from contactlab.numeric.types import Array
+from contactlab_fit import tabulated
+from contactlab_fit.f_test import NUMERICAL
+from contactlab_fit.measurements import Measurements
+from contactlab_fit.problem import Problem
+
+#: Plausible ranges of parameters: from the lowest friction of lubricated solids to that of
+#: rubber on a rough plate; the ratio of stiffnesses for Poisson's ratios from 0.5 to 0.
+LIKELY = {
+    "friction_coefficient": (0.01, 2.0, "slides on thin ice or sticks like soft rubber"),
+    "stiffness_ratio": (0.66, 1.01, "has no Poisson's ratio from 0 to 0.5"),
+    "normal.restitution": (0.1, 1.0, "hardly rebounds"),
+}
+#: Plausible magnitudes before the impact: least and greatest.
+SET = {"speed": (1e-3, 300.0), "normal_speed": (1e-3, 300.0), "spin": (0.0, 1e5)}
+RADIUS = (1e-6, 0.5)
+#: Angles below this, in degrees, may be in radians.
+RADIANS = 1.58
+#: Possible restitutions with a margin for scatter, and the share outside that is reported.
+BOUNDS, SHARE = {"normal_restitution": (-0.1, 1.1), "slip_restitution": (-1.1, 1.1)}, 1 / 3
+#: A mean restitution lies above or below 1 if scatter makes that with less than this chance.
+DOUBT = 0.01
+#: Additional bounds without spin before the impact.
+WITHOUT_SPIN = {"tangential_restitution": (-0.1, 1.1)}
+
+
+def unlikely_numbers(problem: Problem, table: Measurements) -> list[str]:
+    """Return a sentence for each column of implausible numbers."""
+    scene, sentences = problem.model.setup.scene, []
+    for name, (least, most) in SET.items():
+        size: Any = np.abs(table.given.get(name, np.zeros(0)))
+        size = size[size > 0.0]
+        if size.size and (np.median(size) < least or np.median(size) > most):
+            sentences.append(f"{name} of about {np.median(size):.3g} is unlikely: look at its unit")
+    angle = table.given.get("angle_deg")
+    if angle is not None and len(angle) > 2 and 0.3 < np.max(np.abs(angle)) < RADIANS:
+        sentences.append(
+            f"angle_deg lies between {angle.min():.3g} and {angle.max():.3g} degrees: it may be "
+            "in radians"
+        )
+    if scene.sphere is not None:
+        radius = float(np.median(np.asarray(scene.sphere.radius)))
+        if not RADIUS[0] < radius < RADIUS[1]:
+            sentences.append(
+                f"the radius of the sphere, {radius:.3g} m, is unlikely: look at its unit"
+            )
+    bounds = BOUNDS | ({} if np.any(scene.spin) else WITHOUT_SPIN)
+    for name, values in table.measured.items():
+        if name not in bounds:
+            continue
+        least, most = bounds[name]
+        outside = np.sum((values < least) | (values > most))
+        if outside > SHARE * np.isfinite(values).sum():
+            sentences.append(
+                f"{name}: {outside} numbers lie beyond {least:g} and {most:g}, which no rebound "
+                "does: look at its unit, its sign and whether columns have moved"
+            )
+    return sentences
+
+
+def restitutions(problem: Problem, table: Measurements) -> list[str]:
+    """Return a sentence if the normal restitution is above 1, or below that of elastic laws."""
+    scene, laws = problem.model.setup
+    if scene.inverse_mass is not None:
+        return []  # friction changes the approach too
+    e = table.measured.get("normal_restitution")
+    error = table.errors.get("normal_restitution")
+    name = "normal_restitution"
+    if e is None and (out := table.measured.get("rebound_normal_velocity")) is not None:
+        name, error = "rebound_normal_velocity", table.errors.get("rebound_normal_velocity")
+        first: Any = scene.sphere if scene.encounter is None else scene.encounter.body
+        speed = np.asarray(scene.normal_speed)
+        change = speed * (scene.pair.normal_mass / first.mass)  # of a body that moves off, less
+        e, error = (speed - out) / change - 1.0, None if error is None else error / change
+    if e is None:
+        return []
+    mean, off = _mean(e, error)
+    if off > 0.0:
+        return [
+            f"{name}: a restitution of {mean:.3g}, above 1: no law here gains energy; look at the "
+            "speeds, the angle and the spin"
+        ]
+    lossless = laws is None or "elastic_hertz" in laws.normal.offers
+    if off < 0.0 and mean > 0.0 and lossless:
+        return [
+            f"{name}: a restitution of {mean:.3g}, under laws that lose nothing: {tabulated.TOO}"
+        ]
+    return []
+
+
+def _mean(e: Array, error: Array | None) -> tuple[float, float]:
+    """Return the mean of restitutions, and its distance from 1 if chance does not make that."""
+    from scipy.special import ndtri, stdtrit  # only a fit needs scipy
+
+    present = np.isfinite(e)
+    e, number = e[present], int(present.sum())
+    mean, reach = float(e.mean()), 0.0
+    if error is not None:
+        weights = error[present] ** -2.0
+        mean = float(np.average(e, weights=weights))
+        reach = float(ndtri(1.0 - DOUBT) / math.sqrt(weights.sum()))
+    elif number > 1:
+        reach = float(stdtrit(number - 1, 1.0 - DOUBT) * e.std(ddof=1) / math.sqrt(number))
+    off = mean - 1.0
+    return mean, off if abs(off) > max(reach, NUMERICAL) else 0.0
+
+
+def unlikely_parameters(
+    problem: Problem, intervals: Mapping[str, tuple[float, float]]
+) -> list[str]:
+    """Return a sentence for each parameter whose interval lies outside its plausible range."""
+    columns = ", ".join([*problem.measured, "speed", "the radius"])
+    return [
+        f"{name} from {low:.3g} to {high:.3g} is unlikely, as if a pair of materials that "
+        f"{LIKELY[name][2]}: look at the units of {columns}"
+        for name, (low, high) in intervals.items()
+        if name in LIKELY and (high < LIKELY[name][0] or low > LIKELY[name][1])
+    ]

@@ -1,0 +1,129 @@
+"""A page to play with: a ball is thrown at a block, with slow motion through the contact."""
+
+from __future__ import annotations
+
+import json
+import re
+from functools import cache
+from importlib import resources
+from typing import Any
+
+import numpy as np
+
+import contactlab
+from contactlab.compose.collide import collide
+from contactlab.compose.simulation import Simulation
+from contactlab.impact import shapes
+from contactlab.impact.bodies import HalfSpace
+from contactlab.impact.encounter import Encounter
+from contactlab.impact.material import Material, entry, names
+from contactlab.numeric.checks import refuse
+
+#: Springs and steps of the contact that the page draws; how the ball leaves is from the table.
+SPRINGS, STEPS = 100, 500
+#: Ranges of the sliders: least, most.
+RANGES = {"angle": (0.0, 85.0), "speed": (0.1, 10.0), "spin": (-600.0, 600.0),
+          "friction": (0.02, 1.0), "radius": (0.001, 0.1), "inertia": (0.25, 0.67),
+          "restitution": (0.0, 1.0)}  # fmt: skip
+#: Parts of the page and their files; the kernel is that for games, no module here.
+PARTS = {
+    "STYLE": "contactlab_pages/explore.css", "KERNEL": "contactlab/kernels/contactlab_bounce.mjs",
+    "OTHERS": "contactlab_pages/springs.js", "THROW": "contactlab_pages/throw.js",
+    "CLASS": "contactlab_pages/class.js", "PAGE": "contactlab_pages/explore.js",
+    "ROD": "contactlab_pages/rod.js",
+}  # fmt: skip
+#: Tilts of the rod from the vertical in degrees, and its friction coefficient.
+TILTS, ROD_FRICTION = range(76), 0.3
+
+
+@cache
+def rod_table() -> list[list[list[float]]]:
+    """Return how a rod that falls at 1 m/s leaves: [law][tilt][velocity x, z, spin], in SI."""
+    steel, down = Material.named("steel"), np.array([0.0, 0.0, -1.0])
+    rows: list[list[list[float]]] = [[], []]
+    for angle in np.radians(TILTS):
+        axis = [np.sin(angle), 0.0, np.cos(angle)]
+        body, contact = shapes.rod(length=1.0, radius=0.02, material=steel, normal=down, axis=axis)
+        met = Encounter(
+            body, HalfSpace(steel), ROD_FRICTION, normal=down, velocity=down, contact=contact
+        )
+        for law, simulation in zip(rows, (None, Simulation(tangential="coulomb")), strict=True):
+            after = collide(met, simulation).check()
+            left = after.velocity[0], after.velocity[2], after.spin[1]
+            law.append([round(float(number), 3) + 0.0 for number in left])
+    return rows
+
+
+def explore_page(
+    *,
+    angle: float = 35.0,
+    speed: float = 2.0,
+    spin: float = 200.0,
+    friction: float = 0.8,
+    radius: float = 0.01,
+    inertia: float = 0.4,
+    restitution: float = 1.0,
+    material: str = "pmma",
+    block: str | None = None,
+    predict: bool = False,
+) -> str:
+    """Return the page as HTML.
+
+    Parameters
+    ----------
+    angle : float
+        First angle of incidence from the normal, in degrees.
+    speed : float
+        First speed, in m/s.
+    spin : float
+        First spin, in rad/s, positive where it adds to the slip.
+    friction : float
+        First friction coefficient.
+    radius : float
+        First radius of the ball, in m.
+    inertia : float
+        First moment of inertia over m R², the square of the gyration ratio: 0.4 of a solid ball,
+        2/3 of a thin shell. The mass is that of a solid ball.
+    restitution : float
+        First coefficient of normal restitution, rebound over approach velocity.
+    material : str
+        First material of the ball, a name of the collection.
+    block : str, optional
+        First material of the block, by default that of the ball.
+    predict : bool
+        Ask for a prediction first.
+
+    Raises
+    ------
+    ValueError
+        If a number is beyond its slider, or the material unknown.
+    """
+    first: dict[str, Any] = {
+        "angle": angle, "speed": speed, "spin": spin, "friction": friction,
+        "radius": radius, "inertia": inertia, "restitution": restitution,
+    }  # fmt: skip
+    for name, value in first.items():
+        least, most = RANGES[name]
+        if not least <= value <= most:
+            raise refuse(name, value, f"must lie in [{least:g}, {most:g}], the range of the slider")
+    first |= {"material": entry(material).name, "block": entry(block).name if block else ""}
+    first |= {"predict": predict, "guess": 0}
+    page = resources.files("contactlab_pages").joinpath("explore.html").read_text("utf-8")
+    for part, file in PARTS.items():
+        package, _, name = file.partition("/")
+        text = resources.files(package).joinpath(name).read_text("utf-8").strip()
+        page = page.replace(f"/*{part}*/", re.sub("^export ", "", text, flags=re.MULTILINE))
+    entries = {
+        "/*MATERIALS*/null": json.dumps({name: entry(name).numbers() for name in names()}),
+        "/*FIRST*/null": json.dumps(first),
+        "/*TABLE*/null": json.dumps(rod_table(), separators=(",", ":")),
+        "/*SPRINGS*/0": str(SPRINGS),
+        "/*STEPS*/0": str(STEPS),
+        "/*RANGES*/null": json.dumps(RANGES),
+        "VERSION": contactlab.__version__,
+        "SPRINGS springs": f"{SPRINGS} springs",
+        "STEPS steps": f"{STEPS} steps",
+    }
+    for place, text in entries.items():
+        page = page.replace(place, text)
+    return page
