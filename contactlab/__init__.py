@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     from contactlab.registration.hooks import PluginError, hookimpl
     from contactlab.registration.manager import plugin_manager, register
     from contactlab.scene_file import read_scene
+    from contactlab_fit.estimation import fit as fit  # not in __all__: the folder can be taken out
 
 __version__ = "0.1.0"
 
@@ -132,6 +133,7 @@ MODULES = {
     "Status": "contracts.status",
     "SweepFolder": "outcome.sweep_folder",
     "collide": "compose.collide",
+    "fit": "contactlab_fit",
     "hookimpl": "registration.hooks",
     "load_path": "compose.load_path",
     "materials": "impact.material",

@@ -11,9 +11,9 @@ current folder. ``contactlab fit impacts.csv bodies.toml`` does the same without
 # would not be read.
 from pathlib import Path
 
-from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
-from contactlab_fit import fit, rank
-from contactlab_fit.figures import draw_fits
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, fit
+from contactlab.figures import draw_fits
+from contactlab_fit import rank
 
 impacts = {
     "angle_deg": [2.04, 3.95, 9.66, 20.1, 30.2, 39.4, 49.6, 59.9, 71.1, 79.2, 85.2],

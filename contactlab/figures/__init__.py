@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from contactlab.figures.paper import draw_paper
     from contactlab.figures.stick_slip import draw_stick_slip
     from contactlab.figures.style import law_style, ordered_colours, styled
+    from contactlab_fit.figures import draw_fits as draw_fits  # its folder can be taken out
 
 __all__ = [
     "draw_paper",
@@ -32,6 +33,7 @@ __all__ = [
 __getattr__, __dir__ = imported_on_use(
     __name__,
     {
+        "draw_fits": "contactlab_fit.figures",
         "draw_paper": "figures.paper",
         "draw_stick_slip": "figures.stick_slip",
         "law_style": "figures.style",

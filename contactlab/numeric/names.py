@@ -217,7 +217,18 @@ def imported_on_use(
                 hint = hint.replace("contactlab.contactlab", "contactlab")
             raise AttributeError(f"module {package!r} has no attribute {name!r}{hint}")
         place = modules[name]
-        module = import_module(place if place.startswith("contactlab_") else f"contactlab.{place}")
+        folder = place.partition(".")[0]
+        if not folder.startswith("contactlab_"):
+            place = f"contactlab.{place}"
+        try:
+            module = import_module(place)
+        except ModuleNotFoundError as error:
+            if error.name != folder:
+                raise
+            text = (
+                f"{package}.{name} is in {folder}, which is not installed; install contactlab whole"
+            )
+            raise ModuleNotFoundError(text, name=folder) from None
         value = getattr(module, name, module)
         setattr(sys.modules[package], name, value)
         return value
