@@ -145,6 +145,7 @@ MODULES = {
     # the public submodules
     "contracts": "contracts",
     "figures": "figures",
+    "plugin": "plugin",
     "study": "study",
     "testing": "testing",
 }

@@ -236,6 +236,46 @@ def test_third_party_plugin_on_the_command_line(plugin_path, tmp_path):
     assert "cundall (contactlab-cundall 1.0.0)" in told
 
 
+KNOWLEDGE = ("materials", "columns", "shapes", "cautions", "reports", "options")
+
+
+def test_third_party_plugin_brings_one_of_each_kind(plugin_path, tmp_path):
+    code = (
+        "import contactlab; from contactlab.cli.main import main; "
+        "kinds = 'materials columns shapes cautions cases checks measurements'.split(); "
+        "bad = [kind for kind in kinds if main(['plugins', 'check', kind + '.cundall'])]; "
+        "print('bad', bad, contactlab.Material.named('filled ptfe').density)"
+    )
+    ran = python("-c", code, folder=tmp_path, path=plugin_path)
+    assert ran.stdout.endswith("bad [] 2200.0\n"), ran.stdout + ran.stderr
+    scene = json.loads(
+        python(
+            *("-m", "contactlab", "run", EXAMPLES / "steel_ball.toml", "--json"),
+            folder=tmp_path,
+            path=plugin_path,
+        ).stdout
+    )
+    file = tomllib.loads((EXAMPLES / "steel_ball.toml").read_text("utf-8"))
+    radius = file["sphere"]["radius"]
+    steel = contactlab.Material(**file["sphere"]["material"])
+    stiffness = steel.young_modulus / (2.0 * (1.0 - steel.poisson_ratio**2))
+    mass = 4.0 / 3.0 * np.pi * radius**3 * steel.density
+    energy = 15.0 / 16.0 * mass * scene["normal_speed"] ** 2
+    contact = (radius * (energy / (stiffness * radius**0.5)) ** 0.4) ** 0.5  # Hertz
+    heated = 2.0 / 3.0 * np.pi * contact**3 * 3.6e6
+    assert scene["flash_temperature"] == pytest.approx(scene["friction_work"] / heated, rel=1e-6)
+
+
+def test_the_guide_shows_the_files_of_the_plugin():
+    page = (Path(contactlab.__file__).parent / "guide" / "extending-knowledge.md").read_text(
+        "utf-8"
+    )
+    for name in KNOWLEDGE:
+        source = (PLUGIN / "contactlab_cundall" / f"{name}.py").read_text("utf-8")
+        assert f"```python\n{source}```" in page, name
+        assert len(source.splitlines()) <= 40
+
+
 @pytest.mark.slow
 def test_third_party_plugin_is_put_through_the_stability_report(plugin_path, tmp_path):
     command = ("-m", "contactlab", "stability", "--quick", "--law", "tangential.cundall", "--json")

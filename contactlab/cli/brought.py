@@ -15,6 +15,8 @@ from contactlab.registration.hooks import PluginError, guarded
 from contactlab.registration.manager import MANAGER, Told
 from contactlab.registration.names import COMMAND, PluginInfo
 
+#: Kinds whose hooks may have nothing to say of the reference impacts.
+SILENT = ("cautions", "options")
 #: Arguments of the hooks that have some.
 NORMAL = np.array([0.0, 0.0, -1.0])
 
@@ -81,6 +83,9 @@ def check(info: PluginInfo) -> Iterator[Checked]:
         twice = f"{name} is brought twice" if name in seen else ""
         seen.add(name)
         yield Checked(name, complaint or twice)
+    if not seen:
+        silent = info.kind in SILENT
+        yield Checked(info.name, "" if silent else "brings nothing: the hook returned None or []")
 
 
 def _complaint(check: Callable[[Any], str], item: Any) -> str:

@@ -36,7 +36,7 @@ GROUPS = {
 PARTS = {
     "extending": (
         "extending-contact", "extending-impacts", "extending-integrator", "extending-kit",
-        "extending-command",
+        "extending-command", "extending-knowledge",
     ),
     "theory": (
         "theory-impact", "theory-springs", "theory-methods", "theory-coupling",

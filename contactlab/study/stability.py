@@ -17,7 +17,7 @@ from contactlab.compose.composition import DEFAULT_NORMAL
 from contactlab.impact.error_model import COARSE
 from contactlab.study.bench_methods import Method
 from contactlab.study.model_error import ModelError, model_error
-from contactlab.study.stability_cases import INCIDENCES, MAP, Case, all_cases, map_chis
+from contactlab.study.stability_cases import INCIDENCES, MAP, Cell, all_cases, map_chis
 from contactlab.study.stability_judge import ANSWERED, RAISED, SKIPPED, WRONG, Outcome, judge
 
 #: A case of more work than this, in steps of one part, is skipped. Work is not time: which cases
@@ -77,7 +77,7 @@ def stability(
     quick: bool = False,
     budget: float = np.inf,
     progress: Callable[[int, int], object] | None = None,
-    judge: Callable[[Case], Outcome] = judge,
+    judge: Callable[[Cell], Outcome] = judge,
 ) -> Stability:
     """Run every case of every method, and return outcomes and model errors.
 
@@ -131,7 +131,7 @@ def stability(
     )
 
 
-def work(case: Case) -> float:
+def work(case: Cell) -> float:
     """Return an estimate of the work of a case, in steps of one part.
 
     Under a tolerance the number of steps grows with the root of chi, and falls with the root of
@@ -148,6 +148,6 @@ def work(case: Case) -> float:
     return steps * (1.0 + float(max(parts.values(), default=0.0)) ** 2 / 1e4)
 
 
-def _skipped(case: Case) -> Outcome:
+def _skipped(case: Cell) -> Outcome:
     """Return the outcome of a case that is too much work."""
     return Outcome.of(case, SKIPPED, note="too much work")

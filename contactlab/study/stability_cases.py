@@ -55,7 +55,7 @@ MOST_STEPS = 3e4
 
 
 @attrs.frozen(kw_only=True)
-class Case:
+class Cell:
     """One cell: a scene under a method at one resolution.
 
     Attributes
@@ -70,27 +70,27 @@ class Case:
     label: str
     method: Method
     options: Options
-    scene: Extreme = attrs.field(repr=False)
+    scene: Case = attrs.field(repr=False)
     planned: bool = True
     normal: str = DEFAULT_NORMAL
 
 
-def all_cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
+def all_cases(method: Method, *, quick: bool = False) -> Iterator[Cell]:
     """Iterate over the cases of all plug-ins for a method; a plug-in may bring scenes alone."""
     for told in MANAGER.brought("cases", method=method, quick=quick):
-        if isinstance(told.item, Extreme):
+        if isinstance(told.item, Case):
             yield _case(method, told.item, {})
         else:
             yield told.item
 
 
 @hookimpl
-def contactlab_cases(method: Method, quick: bool) -> Iterator[Case]:
+def contactlab_cases(method: Method, quick: bool) -> Iterator[Cell]:
     """Return contactlab's own cases."""
     return cases(method, quick=quick)
 
 
-def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
+def cases(method: Method, *, quick: bool = False) -> Iterator[Cell]:
     """Iterate over the cases of a method, under its normal law and then under the others.
 
     A method whose normal law is not the default has only the cases of every normal law.
@@ -113,7 +113,7 @@ def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
         yield from _under(method, normal, quick=quick)
     if tried_coupled(method):
         for label, make in coupled_scenes(quick=quick):
-            yield _case(method, Extreme("eccentric", label, make), {})
+            yield _case(method, Case("eccentric", label, make), {})
     if method.whole:
         return
     for psi1, chi in QUICK_LADDER if quick else LADDER:
@@ -121,7 +121,7 @@ def cases(method: Method, *, quick: bool = False) -> Iterator[Case]:
     yield from _map(method, integrator, quick=quick)
 
 
-def _under(method: Method, normal: str, *, quick: bool) -> Iterator[Case]:
+def _under(method: Method, normal: str, *, quick: bool) -> Iterator[Cell]:
     """Iterate over the cases that are tried under every normal law."""
     for scene in normal_scenes(quick=quick):
         case = _case(method, scene, {})
@@ -146,7 +146,7 @@ def other_normal_laws(method: Method) -> Iterator[str]:
 
 def _ladder(
     method: Method, part: str | None, integrator: type[Law], psi1: float, chi: float, *, quick: bool
-) -> Iterator[Case]:
+) -> Iterator[Cell]:
     """Yield the cases of one impact at several resolutions."""
     scene = partial(_plain, label=f"psi1={psi1:g} chi={chi:.4g}", psi1=psi1, chi=chi)
     step = integrator.resolution
@@ -169,7 +169,7 @@ def _ladder(
                 yield _case(method, scene("parts"), both)
 
 
-def _map(method: Method, integrator: type[Law], *, quick: bool) -> Iterator[Case]:
+def _map(method: Method, integrator: type[Law], *, quick: bool) -> Iterator[Cell]:
     """Yield the impacts of each resolution and chi, marched in the steps asked for."""
     word = integrator.resolution
     if word is None:
@@ -190,10 +190,10 @@ def map_chis(*, quick: bool = False) -> tuple[float, ...]:
     return QUICK_MAP_CHIS if quick else MAP_CHIS
 
 
-def _case(method: Method, scene: Extreme, options: Options, *, planned: bool = True) -> Case:
+def _case(method: Method, scene: Case, options: Options, *, planned: bool = True) -> Cell:
     """Return the case of a scene at one resolution."""
     words = [f"{name}={value:g}" for part in options.values() for name, value in part.items()]
-    return Case(
+    return Cell(
         family=scene.family,
         label=", ".join([scene.label, *words, *([] if planned else ["marched"])]),
         method=method,
@@ -203,7 +203,7 @@ def _case(method: Method, scene: Extreme, options: Options, *, planned: bool = T
     )
 
 
-class Extreme(NamedTuple):
+class Case(NamedTuple):
     """A scene with its family and label; a ``ValueError`` of ``make`` is an outcome too."""
 
     family: str
@@ -211,7 +211,7 @@ class Extreme(NamedTuple):
     make: Callable[[], Scene]
 
 
-def extreme_scenes(*, quick: bool = False) -> list[Extreme]:
+def extreme_scenes(*, quick: bool = False) -> list[Case]:
     """Return the scenes tried under the default normal law; ``quick`` takes about a third."""
     incidences = (0.0, 1e-300, 1e-12, 1e-3, 0.5, -1.2, 1e6, 1e15, 1e16)
     scenes = [_plain("psi1", f"psi1={psi1:g}", psi1, CHI) for psi1 in incidences[:: 1 + quick]]
@@ -225,12 +225,12 @@ def extreme_scenes(*, quick: bool = False) -> list[Extreme]:
     return [*scenes, *_sizes(quick=quick), *_types()]
 
 
-def normal_scenes(*, quick: bool = False) -> list[Extreme]:
+def normal_scenes(*, quick: bool = False) -> list[Case]:
     """Return the scenes tried under every normal law."""
     scenes = [
         _plain("normal", "psi1=3", 3.0, CHI),
         _plain("normal", "psi1=1.2 chi=3", 1.2, 3.0),
-        Extreme("normal", "steel ball", _ball),
+        Case("normal", "steel ball", _ball),
     ]
     if quick:
         return scenes
@@ -241,12 +241,12 @@ def normal_scenes(*, quick: bool = False) -> list[Extreme]:
     return scenes + [extreme._replace(family="normal") for extreme in others]
 
 
-def _plain(family: str, label: str, psi1: Number, chi: Number) -> Extreme:
+def _plain(family: str, label: str, psi1: Number, chi: Number) -> Case:
     """Return a scene defined by psi1 and chi."""
-    return Extreme(family, label, lambda: Scene.nondimensional(psi1=psi1, chi=chi))
+    return Case(family, label, lambda: Scene.nondimensional(psi1=psi1, chi=chi))
 
 
-def _regimes(chi: float, sides: tuple[float, ...]) -> Iterator[Extreme]:
+def _regimes(chi: float, sides: tuple[float, ...]) -> Iterator[Case]:
     """Yield scenes at and beside psi1 = 1 and psi1 = 4 chi - 1, where the regime changes."""
     for name, edge in (("1", 1.0), ("4chi-1", 4.0 * chi - 1.0)):
         for side in sides:
@@ -271,15 +271,14 @@ def _ball(
     return Scene(sphere, target, friction, speed, slip * speed, 0.0)
 
 
-def _balls(family: str, label: str, argument: str, values: Sequence[float]) -> list[Extreme]:
+def _balls(family: str, label: str, argument: str, values: Sequence[float]) -> list[Case]:
     """Return steel balls that differ in one argument of ``_ball``."""
     return [
-        Extreme(family, label.format(value), partial(_ball, **{argument: value}))
-        for value in values
+        Case(family, label.format(value), partial(_ball, **{argument: value})) for value in values
     ]
 
 
-def _sizes(*, quick: bool) -> Iterator[Extreme]:
+def _sizes(*, quick: bool) -> Iterator[Case]:
     """Yield scenes over speed, radius (at the least and the greatest speed too), and mass."""
     speeds = (1e-12, 1e4) if quick else (1e-165, 1e-12, 1e-6, 1e-2, 1e2, 1e4)
     radii = (1e-9, 1e9) if quick else (1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e9)
@@ -289,11 +288,11 @@ def _sizes(*, quick: bool) -> Iterator[Extreme]:
         yield from _balls("radius", "R={:g} m", "radius", [radius])
         for speed in (speeds[0], speeds[-1]):
             label = f"R={radius:g} m, v1={speed:g} m/s"
-            yield Extreme("radius", label, partial(_ball, radius=radius, speed=speed))
+            yield Case("radius", label, partial(_ball, radius=radius, speed=speed))
     yield from _balls("mass", "m2/m1={:g}", "mass_ratio", masses)
 
 
-def _types() -> list[Extreme]:
+def _types() -> list[Case]:
     """Return scenes of single-precision numbers and of integers."""
     single = np.float32
     singles: Any = {"friction": single(0.2), "slip": single(0.3), "poisson": single(0.3)}
@@ -301,6 +300,6 @@ def _types() -> list[Extreme]:
         _plain("types", "float32", single(1.2), single(CHI)),
         _plain("types", "int", 1, 3),
         _plain("types", "int64", np.int64(2), np.int64(3)),
-        Extreme("types", "float32, SI", partial(_ball, **singles)),
-        Extreme("types", "int, SI", partial(_ball, friction=1, slip=1, poisson=0)),
+        Case("types", "float32, SI", partial(_ball, **singles)),
+        Case("types", "int, SI", partial(_ball, friction=1, slip=1, poisson=0)),
     ]

@@ -20,7 +20,7 @@ from contactlab.impact.scene import Scene
 from contactlab.outcome.motion import Motion, sound
 from contactlab.outcome.plan import MARCHED, Plan, PlanColumns
 from contactlab.outcome.result import ImpactResult
-from contactlab.study.stability_cases import Case
+from contactlab.study.stability_cases import Cell
 from contactlab.study.stability_coupled import RIGID_DISTANCE, STIFF, distance
 from contactlab.study.stability_references import (
     SETTLED,
@@ -79,7 +79,7 @@ class Outcome:
     @classmethod
     def of(
         cls,
-        case: Case,
+        case: Cell,
         outcome: str,
         *,
         error: float = np.nan,
@@ -100,7 +100,7 @@ class Outcome:
         )
 
 
-def judge(case: Case) -> Outcome:
+def judge(case: Cell) -> Outcome:
     """Return the outcome of one case."""
     try:
         scene = case.scene.make()
@@ -111,7 +111,7 @@ def judge(case: Case) -> Outcome:
 
 
 def judge_run(
-    case: Case,
+    case: Cell,
     simulation: Simulation,
     scene: Scene,
     reference: Reference | None = None,
@@ -120,7 +120,7 @@ def judge_run(
 
     Parameters
     ----------
-    case : Case
+    case : Cell
         Names the outcome; without ``planned`` the integrator marches the impact.
     simulation : Simulation
     scene : Scene

@@ -20,6 +20,7 @@ PUBLIC_MODULES = (
     "contactlab.testing",
     "contactlab.study",
     "contactlab.figures",
+    "contactlab.plugin",
 )
 ROOMS = re.findall(r"^``(\w+)`` ", contactlab.__doc__, flags=re.MULTILINE)
 #: Imports that still point upward, from a file to a room. The list may only become shorter.

@@ -12,7 +12,7 @@ from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.study.bench_methods import Method, methods
 from contactlab.study.error_map import error_map, error_maps
 from contactlab.study.model_error import model_error
-from contactlab.study.stability_cases import Case, Extreme
+from contactlab.study.stability_cases import Case, Cell
 from contactlab.study.stability_judge import ANSWERED, UNDECLARED, WRONG, judge_run
 from contactlab.study.stability_references import continuum
 
@@ -62,9 +62,9 @@ def test_laws_that_converge_to_the_continuum_have_none(law):
 @pytest.mark.parametrize(("reference", "expected"), [(continuum, ANSWERED), (no_change, WRONG)])
 def test_the_error_of_a_law_that_declares_none_is_judged_by_the_estimate(reference, expected):
     """One spring is off by more than a hundredth of the range, as the estimate says."""
-    scene = Extreme("map", "", lambda: Scene.nondimensional(psi1=1.2, chi=CHI))
+    scene = Case("map", "", lambda: Scene.nondimensional(psi1=1.2, chi=CHI))
     method = Method(tangential="springs", integrator="symplectic")
-    case = Case(family="map", label="", method=method, options={}, scene=scene, planned=False)
+    case = Cell(family="map", label="", method=method, options={}, scene=scene, planned=False)
     law = contactlab.create("tangential.springs", springs=1)
     simulation = Simulation(tangential=law, integrator="symplectic")
     outcome = judge_run(case, simulation, scene.make(), reference)

@@ -21,7 +21,7 @@ from contactlab.study.stability_cases import (
     QUICK_STEPS,
     STEPS,
     Case,
-    Extreme,
+    Cell,
     cases,
     extreme_scenes,
     normal_scenes,
@@ -121,9 +121,9 @@ class Bouncy(NormalLaw):
 
 
 def judged(tangential, psi1=1.2, chi=CHI, normal="hertz", reference=continuum):
-    scene = Extreme("test", "", lambda: Scene.nondimensional(psi1=psi1, chi=chi))
+    scene = Case("test", "", lambda: Scene.nondimensional(psi1=psi1, chi=chi))
     method = Method(tangential="annulus", integrator="symplectic")
-    case = Case(family="test", label="", method=method, options={}, scene=scene, planned=False)
+    case = Cell(family="test", label="", method=method, options={}, scene=scene, planned=False)
     simulation = Simulation(normal=normal, tangential=tangential, integrator="symplectic")
     return judge_run(case, simulation, scene.make(), reference)
 
@@ -166,8 +166,8 @@ def test_a_normal_law_that_makes_energy_is_found():
 @pytest.mark.parametrize("normal", ["tsuji", "thornton", "jkr"])
 def test_laws_under_other_normal_laws_are_judged_by_another_law(normal, factor):
     method = Method(tangential="springs", integrator="symplectic")
-    scene = Extreme("normal", "", lambda: Scene.nondimensional(psi1=1.2, chi=CHI))
-    case = Case(
+    scene = Case("normal", "", lambda: Scene.nondimensional(psi1=1.2, chi=CHI))
+    case = Cell(
         family="normal", label="", method=method, options={}, scene=scene, planned=False,
         normal=normal,
     )  # fmt: skip
@@ -344,8 +344,8 @@ def test_an_eccentric_answer_that_is_wrong_is_found():
     """Half the friction in a stiff contact: not as rigid bodies, and energy from nothing."""
     scene, exact = rod(-30.0, 0.3, 0.5, kappa=1e4), Simulation()
     method = Method(tangential="fronts", integrator="events")
-    extreme = Extreme("eccentric", "", lambda: scene)
-    case = Case(family="eccentric", label="", method=method, options={}, scene=extreme)
+    extreme = Case("eccentric", "", lambda: scene)
+    case = Cell(family="eccentric", label="", method=method, options={}, scene=extreme)
     sound = exact.run(scene).check()
     outcome = judge_run(case, exact, scene)
     assert outcome.outcome == ANSWERED
@@ -366,8 +366,8 @@ def test_an_eccentric_answer_that_is_wrong_is_found():
 
 def test_bad_input_is_a_refusal():
     method = Method(tangential="coulomb", integrator="symplectic")
-    scene = Extreme("test", "", lambda: Scene.nondimensional(psi1=np.nan, chi=1.0))
-    outcome = judge(Case(family="test", label="", method=method, options={}, scene=scene))
+    scene = Case("test", "", lambda: Scene.nondimensional(psi1=np.nan, chi=1.0))
+    outcome = judge(Cell(family="test", label="", method=method, options={}, scene=scene))
     assert outcome.outcome == REFUSED
     assert "psi1" in outcome.note
 
