@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import warnings
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -56,7 +55,6 @@ class Registry:
     def __init__(self) -> None:
         self._loaded: dict[str, tuple[type[Law], PluginInfo]] = {}
         self._meant: dict[tuple[str, str, int], str] = {}
-        self._warned: set[str] = set()
 
     @cached_property
     def _modules(self) -> list[tuple[str, str]]:
@@ -66,7 +64,6 @@ class Registry:
     def installed(self) -> list[PluginInfo]:
         """Return every law, installed or registered, sorted by kind and name, without an import."""
         infos = MANAGER.installed()
-        self._warn_of_unknown(infos)
         here = self._here()
         laws = [info for info in infos if info.kind not in (COMMAND, PAGE, *COLLECTIONS)]
         laws += [info for _, info in here.values()]
@@ -82,17 +79,6 @@ class Registry:
             own = PluginInfo(name, HERE, "", law.__module__, blocks(blocking, name, HERE))
             found[own.qualified] = (checked(law, own.kind, own.source), own)
         return found
-
-    def _warn_of_unknown(self, infos: list[PluginInfo]) -> None:
-        """Warn once of each blocked name that is not installed: a misspelt name blocks nothing."""
-        for entry in sorted(blocked_names() - self._warned):
-            if any(blocks({entry}, info.name, info.distribution) for info in infos):
-                continue
-            self._warned.add(entry)
-            known = {name for info in infos for name in (info.name, info.distribution)}
-            told = f"{BLOCK_VARIABLE} names {entry!r}, which is not installed; "
-            text = (told + nearest(entry, known)).rstrip("; ")
-            warnings.warn(text, PluginWarning, stacklevel=4)
 
     def names(self, kind: str | None = None) -> list[str]:
         """Return the shortest names of laws that can be made, of one kind or of all kinds."""

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import pluggy
 
+from contactlab.numeric.names import nearest
 from contactlab.registration import hooks
 from contactlab.registration.hooks import (
     FURTHER,
@@ -75,6 +76,7 @@ class Manager(pluggy.PluginManager):
         self._seen: object = None
         self._found: set[tuple[str, str, str, str]] = set()
         self._stamp: object = None
+        self._warned: set[str] = set()
 
     def installed(self, *kinds: str) -> list[PluginInfo]:
         """Return every installed plug-in, or those of kinds, sorted by kind, without an import."""
@@ -86,10 +88,23 @@ class Manager(pluggy.PluginManager):
                 del self._infos[name]
                 if self.has_plugin(name):
                     self.unregister(name=name)
-        infos = [info for info in described(self._found) if not kinds or info.kind in kinds]
+        everything = described(self._found)
+        self._warn_of_unknown(everything)
+        infos = [info for info in everything if not kinds or info.kind in kinds]
         return sorted(
             infos, key=lambda each: (RANK.get(each.kind, len(RANK)), each.name, each.distribution)
         )
+
+    def _warn_of_unknown(self, infos: list[PluginInfo]) -> None:
+        """Warn once of each blocked name that is not installed: a misspelt name blocks nothing."""
+        for entry in sorted(blocked_names() - self._warned):
+            if any(blocks({entry}, info.name, info.distribution) for info in infos):
+                continue
+            self._warned.add(entry)
+            known = {name for info in infos for name in (info.name, info.distribution)}
+            told = f"{BLOCK_VARIABLE} names {entry!r}, which is not installed; "
+            text = (told + nearest(entry, known)).rstrip("; ")
+            warnings.warn(text, PluginWarning, stacklevel=5)
 
     def register(self, plugin: object, name: str | None = None) -> str | None:
         """Register an object with hooks, and return its name.

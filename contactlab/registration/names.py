@@ -168,7 +168,12 @@ class PluginInfo:
 
 
 def meant(rivals: list[PluginInfo]) -> PluginInfo | None:
-    """Return the law that a name means, among laws of that name; None if the name is refused."""
+    """Return the law that a name means, among laws of that name; None if the name is refused.
+
+    The name of a command of contactlab's own means no other, even where contactlab is blocked.
+    """
+    if rivals[0].kind == COMMAND and any(info.distribution == PROJECT for info in rivals):
+        rivals = [info for info in rivals if info.distribution == PROJECT]
     free = [info for info in rivals if not info.blocked] or rivals
     ours = [info for info in free if info.distribution == PROJECT]
     return (ours or free)[0] if 1 in (len(free), len(ours)) else None
@@ -180,6 +185,9 @@ def clash(rivals: list[PluginInfo]) -> str:
     origins = " and ".join(f"{info.distribution} {info.version}" for info in rivals)
     others = [info for info in rivals if info is not law]
     written = " or ".join(repr(info.qualified) for info in others)
+    if law is None and rivals[0].kind == COMMAND:
+        calls = (f"contactlab {info.distribution}:{short_name(name)}" for info in rivals)
+        return f"name = {name!r}: is offered by {origins}; write {' or '.join(calls)}"
     meaning = f"means {law.qualified!r}" if law else "is refused"
     return (
         f"name = {name!r}: is offered by {origins}, and {meaning}; write {written}, or block all "

@@ -113,7 +113,10 @@ def test_a_name_of_two_distributions_is_neithers(hello, install, run):
     install(
         "greetings", "contactlab_greetings", HELLO.replace("Hello", "Greetings"), "command.hello"
     )
-    assert run("hello", "Ada").status == 2
+    refused = run("hello", "Ada")
+    assert refused.status == 2
+    calls = [f"contactlab {name}:hello" for name in ("contactlab-hello", "greetings")]
+    assert all(call in refused.err for call in calls)
     assert run("greetings:hello", "Ada").out.startswith("Greetings Ada")
     assert run("contactlab-hello:hello", "Ada").out.startswith("Hello Ada")
 
@@ -164,3 +167,11 @@ def test_own_commands_are_the_modules_that_have_the_hook():
     assert own.keys() >= with_hook
     modules = {f"contactlab.cli.{name}" for name in with_hook}
     assert {info.module for info in own.values()} >= modules
+
+
+def test_a_blocked_name_of_contactlabs_own_goes_to_no_other(install, run, monkeypatch):
+    install("greetings", "contactlab_greetings", HELLO, "command.run")
+    monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "contactlab")
+    assert run("run", "Ada").status == 2
+    assert run("greetings:run", "Ada").out.startswith("Hello Ada")
+    assert "\n    run " not in run("--help").out
