@@ -8,6 +8,7 @@ from typing import Any
 
 import attrs
 
+from contactlab.compose.acceptance import may_refuse
 from contactlab.compose.loading import outdated
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.contracts.integrator import Integrator
@@ -64,6 +65,11 @@ class Laws:
     tangential: TangentialLaw
     integrator: Integrator
     named: frozenset[str] = frozenset(KINDS)
+    #: The laws that may refuse a scene, found once for all runs.
+    choosy: tuple[Law, ...] = attrs.field(init=False, eq=False, repr=False)
+
+    def __attrs_post_init__(self) -> None:
+        object.__setattr__(self, "choosy", tuple(filter(may_refuse, self)))
 
     def __iter__(self) -> Iterator[Law]:
         return iter((self.normal, self.tangential, self.integrator))

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose import composition
+from contactlab.compose.acceptance import accept
 from contactlab.compose.path_steps import Followed, Points, followed
 from contactlab.contracts import faults
 from contactlab.contracts.normal import NormalLaw
@@ -205,7 +206,7 @@ def _laws(scene: Scene, normal: object, tangential: object) -> tuple[Any, Any]:
     if (complaint := composition.misfit(first, second)) is not None:
         raise ValueError(complaint)
     for law in (first, second):
-        law.accept(scene)
+        accept(law, scene)
     return first, second
 
 

@@ -11,6 +11,7 @@ import attrs
 import numpy as np
 
 from contactlab.compose import composition, solve
+from contactlab.compose.acceptance import accept
 from contactlab.compose.composition import Laws
 from contactlab.compose.error_estimate import estimated
 from contactlab.compose.normal_motion import normal_or_failed
@@ -306,8 +307,14 @@ class Simulation:
         ----------
         scene : Scene
             One impact or a batch.
+
+        Raises
+        ------
+        ValueError
+            If ``scene`` is not a Scene, or the law cannot run it.
         """
-        return normal_or_failed(self.normal, _scene(scene).central)
+        accept(self.normal, _scene(scene).central)
+        return normal_or_failed(self.normal, scene.central)
 
 
 def _result(

@@ -7,13 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from contactlab.compose import stand_ins
+from contactlab.compose.acceptance import accept
 from contactlab.compose.composition import Laws, versions
 from contactlab.compose.coupled import Coupled
 from contactlab.compose.decoupled import Decoupled
 from contactlab.compose.pieces import Piece
 from contactlab.compose.way import Way, blocks
-from contactlab.contracts import faults
-from contactlab.contracts.law import Law
 from contactlab.impact.scene import Scene
 from contactlab.outcome.chunk_forms import Chunk
 from contactlab.outcome.history import Recorder
@@ -39,21 +38,9 @@ def accept_scene(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]
     """Return the ways in which a scene is solved, or refuse one that a law cannot run."""
     found = ways(laws, scene, as_one=as_one)
     for _, part, used in found:
-        for law in used:
-            if type(law).accept is not Law.accept:
-                _accept(law, part.central)
+        for law in used.choosy:
+            accept(law, part.central)
     return found
-
-
-def _accept(law: Law, scene: Scene) -> None:
-    """Let a law refuse a scene; whatever else it raises is a refusal too."""
-    try:
-        law.accept(scene)
-    except ValueError:
-        raise
-    except Exception as error:
-        told = f"{law.kind} = {type(law).__name__}: its accept raised {faults.raised(error)}"
-        raise ValueError(told) from error
 
 
 def versions_of(found: Sequence[Way]) -> dict[str, str]:

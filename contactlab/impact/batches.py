@@ -30,6 +30,7 @@ class Batches(Motions):
         sphere: Any
         encounter: Any
         unit_friction: bool
+        has_units: bool
         _index: Any
         _axes: tuple[tuple[str, Array], ...]
         _varied: tuple[tuple[str, Array], ...]
@@ -101,6 +102,13 @@ class Batches(Motions):
                     scene,
                     "must have a sphere if, and only if, scenes[0] has: else spin would be lost",
                     "give all of spheres, all of other bodies, or all by psi1 and chi",
+                )
+            if scene.has_units != scenes[0].has_units:
+                raise refuse(
+                    f"scenes[{position}]",
+                    scene,
+                    "must have units if, and only if, scenes[0] has",
+                    "give all in SI, or all by Scene.nondimensional",
                 )
             if scene.unit_friction != scenes[0].unit_friction:
                 raise refuse(

@@ -78,7 +78,7 @@ def entries(
         "dundurs_beta": 0.0 if coupling_number is None else coupled * mu / kappa,
         "cross_stiffness_ratio": cross,
     }
-    scene: dict[str, Any] = {"friction_coefficient": mu, "normal_speed": 1.0}
+    scene: dict[str, Any] = {"friction_coefficient": mu, "normal_speed": 1.0, "has_units": False}
     if np.any(rim):
         if not np.all(turning):
             remedy = "chi_w = (kappa/2) M_n a²/J; 5/7 chi (a/R)² for a solid sphere"

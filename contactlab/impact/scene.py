@@ -92,6 +92,9 @@ class Scene(Batches):
     unit_friction : bool
         True if the friction coefficient is 1 by choice of units, as in ``nondimensional`` without a
         friction coefficient. A law that needs mu itself refuses such a scene.
+    has_units : bool
+        False if lengths, masses and speeds are 1 by choice, as in ``nondimensional``. A law with an
+        option in m, s or kg is refused in such a scene.
     encounter : Encounter, optional
         The encounter in space, which cautions and velocities in space look at.
     frame : array, shape (..., 3, 3), optional
@@ -128,6 +131,7 @@ class Scene(Batches):
         Pair, remedy="or leave it out", optional=True, default=None, kw_only=True, repr=False
     )
     unit_friction: bool = instance(bool, default=False, kw_only=True, repr=False)
+    has_units: bool = instance(bool, default=True, kw_only=True, repr=False)
     encounter: Any = attrs.field(default=None, eq=False, repr=False, kw_only=True)
     frame: Array | None = attrs.field(default=None, eq=False, repr=False, kw_only=True)
     along: tuple[float, float, float] | None = attrs.field(
@@ -157,6 +161,7 @@ class Scene(Batches):
         normal_spin: Numbers = 0.0,
         pair: Pair | None = None,
         unit_friction: bool = False,
+        has_units: bool = True,
         encounter: object = None,
         frame: Array | None = None,
         along: tuple[float, float, float] | None = None,
@@ -359,7 +364,8 @@ class Scene(Batches):
     ) -> Scene:
         """Return the scene of the paper's two parameters, eqs (29) and (38), and of theory §14.
 
-        The units are chosen so that v1 = R = C = M = 1, and mu = kappa = 1 unless they are given.
+        The units are chosen so that v1 = R = C = M = 1, and mu = kappa = 1 unless they are given;
+        laws with an option in other units are refused.
         Velocities of the results are then the paper's V and psi; with mu and kappa the slip
         velocity is mu/kappa times psi. The scene has no sphere, hence no spin and no velocity of a
         centre.

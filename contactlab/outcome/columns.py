@@ -272,9 +272,8 @@ def components(name: str, values: object, shape: tuple[int, ...]) -> list[tuple[
 
 
 def unit_in(unit: str, scene: Scene) -> str:
-    """Return the unit of a column in ``scene``; without bodies only angles have one."""
-    bodies = scene.encounter is not None or scene.sphere is not None
-    return unit if bodies or unit in ("rad", "deg") else "1"
+    """Return the unit of a column in ``scene``; in one without units only angles have one."""
+    return unit if scene.has_units or unit in ("rad", "deg") else "1"
 
 
 def csv_heading(name: str, unit: str, scene: Scene) -> str:

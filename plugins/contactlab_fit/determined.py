@@ -186,6 +186,8 @@ def _candidates(scene: Scene) -> tuple[Scene, Array, str]:
     """Return candidate impacts at the measured speed, their incidence, and its name."""
     if scene.along is not None:
         return _candidates_of_bodies(scene), ANGLES_DEG, ANGLES_IN_WORDS
+    if scene.sphere is None and scene.has_units:
+        return _candidates_in_units(scene.take(0).central), INCIDENCES, "psi1"
     if scene.sphere is None:
         chi = float(np.median(scene.chi))
         return Scene.nondimensional(psi1=INCIDENCES, chi=chi), INCIDENCES, "psi1"
@@ -199,6 +201,12 @@ def _candidates(scene: Scene) -> tuple[Scene, Array, str]:
         spin=0.0,
     )
     return impacts, ANGLES_DEG, ANGLES_IN_WORDS
+
+
+def _candidates_in_units(first: Scene) -> Scene:
+    """Return impacts at the angles of ``INCIDENCES`` of the bodies of one."""
+    slip = INCIDENCES / first.psi_scale
+    return Scene(None, None, first.friction_coefficient, first.normal_speed, slip, pair=first.pair)
 
 
 def _candidates_of_bodies(scene: Scene) -> Scene:

@@ -118,9 +118,6 @@ class Viscoelastic(Relaxing, Tabulated):
         """Return e of each impact at its speed of approach."""
         if self.restitution is not None:
             return self.restitution
-        if scene.sphere is None and scene.encounter is None:
-            rule = "has no speed in m/s, of which e is a function"
-            raise refuse("psi1", scene.psi1, rule, "give bodies and speeds, or one restitution")
         speed = np.asarray(scene.normal_speed)
         e: Any
         if self.restitutions is None:
