@@ -223,7 +223,7 @@ def test_a_ball_of_the_collection_comes_to_rest(told, which):
     assert (course[-1, 3:] == 0.0).all()
     assert course[-1, 2] == body["radius"]
     assert one["after"] == course[-1].tolist()
-    inertia = body.get("inertia", 0.4 * body["mass"] * body["radius"] ** 2)
+    inertia = body["mass"] * (body.get("gyration_ratio", 0.4**0.5) * body["radius"]) ** 2
     squares = (course[:, 3:6] ** 2).sum(axis=1), (course[:, 6:] ** 2).sum(axis=1)
     energy = body["mass"] * (9.81 * course[:, 2] + 0.5 * squares[0]) + 0.5 * inertia * squares[1]
     assert (np.diff(energy) <= 1e-12).all()

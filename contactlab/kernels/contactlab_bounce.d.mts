@@ -16,8 +16,8 @@ export interface Body {
   young?: number;
   /** Poisson's ratio. If the other body has none, both are of one material. */
   poisson?: number;
-  /** Moment of inertia; by default that of a solid sphere. */
-  inertia?: number;
+  /** sqrt(inertia/(mass radius²)), from 0.01 to 1; by default that of a solid sphere, sqrt(2/5). */
+  gyration_ratio?: number;
 }
 
 /** The first body, which has a radius and Poisson's ratio. */

@@ -19,9 +19,10 @@
 
 #include <math.h>
 
-/* A body in SI units. With radius 0 it is a wall, with mass 0 nothing moves it; inertia 0 is that of a solid
- * sphere. Of young only the ratio of both bodies counts. */
-typedef struct { double radius, mass, inertia, young, poisson; } contactlab_body;
+/* A body in SI units. With radius 0 it is a wall, with mass 0 nothing moves it. gyration_ratio is sqrt(inertia/(mass
+ * radius^2)), from 0.01 to 1; 0 stands for that of a solid sphere, sqrt(2/5). Of young only the ratio of both bodies
+ * counts. */
+typedef struct { double radius, mass, gyration_ratio, young, poisson; } contactlab_body;
 
 /* The terms of both cuts and of the seam, and the patches: `python -m table_builders elastic thin` writes them. */
 static const double contactlab_bounce_table[] = {
@@ -357,17 +358,16 @@ static inline double contactlab_bounce_marched(double psi1, double chi)
 static inline double contactlab_bounce_loses(double psi1, double chi, double e)
 {
   const double least = 0.008; /* restitution whose course is followed */
-  double none;                /* the change at e = 0 */
-  if (chi >= 0.5 && chi <= 2) return e > 0 ? contactlab_bounce_restituted(psi1, chi, e) : -psi1;
+  const double none = -psi1;  /* the change at e = 0 */
+  if (chi <= 2) return e > 0 ? contactlab_bounce_restituted(psi1, chi, e) : none;
   if (e >= least) return contactlab_bounce_followed(psi1, chi, e);
-  none = chi < 0.5 ? (1 - 2 * chi) * pow(psi1, 1 / (1 - 2 * chi)) - psi1 : -psi1;
   if (!(e > 0)) return none;
   if (psi1 >= fmax(1, 2 * chi * (1 + least) - least)) return none + e / least * (-2 * chi * (1 + least) - none);
   return none + e / least * (contactlab_bounce_followed(psi1, chi, least) - none);
 }
 
-/* Returns psi2 - psi1 for psi1 >= 0 (theory section 1) and a restitution e. For chi from 0.5 to 2.5, which all spheres
- * have but those with a dense core, psi2 to 1e-6 max(1, psi1) at e = 1, and below it to 1e-4 for chi up to 2. By
+/* Returns psi2 - psi1 for psi1 >= 0 (theory section 1) and a restitution e; no sphere has chi below 2/3. For chi up to
+ * 2.5, which all spheres have but those with a dense core, psi2 to 1e-6 max(1, psi1) at e = 1, and below it to 1e-4 for chi up to 2. By
  * springs else: to 0.006 up to chi = 4, 0.02 up to 10, and below e = 1 to 0.004 and 0.008. */
 static inline double contactlab_bounce_change(double psi1, double chi, double e)
 {
@@ -398,19 +398,19 @@ static inline int contactlab_bounce(const contactlab_body *one, const contactlab
     double *other_spin)
 {
   const contactlab_body *body[2];
-  double n[3], along[3], arm[2], light[2], turn[2]; /* radius, 1 over mass, radius over inertia */
+  double n[3], along[3], arm[2], light[2], turn[2]; /* radius, 1 over mass, radius over moment of inertia */
   double soft = 0, stiff = 0, mobility = 0, masses = 0, approach = 0, slip = 0, drag = 0, kappa, chi, unit, size;
   int i, k;
   body[0] = one;
   body[1] = other;
   for (i = 0; i < 2; ++i) {
     const contactlab_body *it = body[i];
-    const double shear = it->young / (1 + it->poisson);
-    if (!(it->radius >= 0 && it->mass >= 0 && it->inertia >= 0)) return -1;
+    const double shear = it->young / (1 + it->poisson), ratio = it->gyration_ratio;
+    if (!(it->radius >= 0 && it->mass >= 0 && (ratio == 0 || (ratio >= 0.01 && ratio <= 1)))) return -1;
     if (!(it->young > 0 && it->poisson > -1 && it->poisson <= 0.5)) return -1;
     arm[i] = it->radius;
     light[i] = it->radius > 0 && it->mass > 0 ? 1 / it->mass : 0;
-    turn[i] = it->inertia > 0 ? it->radius / it->inertia : light[i] > 0 ? 2.5 * light[i] / it->radius : 0;
+    turn[i] = light[i] > 0 ? light[i] / it->radius * (ratio > 0 ? 1 / (ratio * ratio) : 2.5) : 0;
     masses += light[i];
     mobility += light[i] + arm[i] * turn[i];
     soft += (1 - it->poisson) / shear;

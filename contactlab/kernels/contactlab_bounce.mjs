@@ -17,9 +17,9 @@
 /**
  * Returns velocities and spins of two bodies after their collision. SI units; vectors are arrays of three numbers.
  *
- * A body is {radius, mass, young, poisson, inertia}. Without a radius it is a wall, without a mass nothing
- * moves it; inertia is by default that of a solid sphere. If the other has no poisson, both are of one
- * material. Of young only the ratio counts; bodies of one material need none.
+ * A body is {radius, mass, young, poisson, gyration_ratio}. Without a radius it is a wall, without a mass nothing
+ * moves it; gyration_ratio is sqrt(inertia/(mass radius²)), at most 1, and by default that of a solid sphere,
+ * sqrt(2/5). If the other has no poisson, both are of one material. Of young only the ratio counts; bodies of one material need none.
  *
  * @param {object} one              a sphere
  * @param {object} other            a sphere or a wall
@@ -102,12 +102,14 @@ export const BALLS = {
 
 /** Returns a thin shell of rubber and its contact. */
 function shell(radius, mass, contact) {
-  return {body: {radius, mass, inertia: 2 / 3 * mass * radius ** 2, poisson: 0.5}, contact};
+  return {body: {radius, mass, gyration_ratio: Math.sqrt(2 / 3), poisson: 0.5}, contact};
 }
 
 /** The largest chi, the largest speed, and the least restitution whose course is followed. */
 const MOST = 1e4, LARGE = 1e300, LEAST = 0.008;
-const ZERO = [0, 0, 0], BODY = ["radius", "mass", "young", "poisson", "inertia"];
+const ZERO = [0, 0, 0], BODY = ["radius", "mass", "young", "poisson", "gyration_ratio"];
+/** The least gyration ratio, that of a dense core, and what the ratio is. */
+const CORE = 0.01, INERTIA = "gyration_ratio is sqrt(inertia/(mass radius²))";
 const CONTACT = ["friction", "restitution"];
 
 /** Returns whether all keys of a body or a contact are among some; a number has none. */
@@ -138,7 +140,8 @@ function refuse([one, other, contact, normal, velocity, spin = ZERO, otherVeloci
   ]) {
     demand(Object(given) === given || name === "contact" && typeof given === "number", name, given, form);
     for (const key in given) {
-      const remedy = CONTACT.includes(key) ? beside : "what else a game knows of it stays outside";
+      const remedy = CONTACT.includes(key) ? beside : key === "inertia" ? INERTIA
+        : "what else a game knows of it stays outside";
       demand(keys.includes(key), `${name}.${key}`, given[key], `is not among ${keys.join(", ")}; ${remedy}`);
     }
   }
@@ -148,13 +151,13 @@ function refuse([one, other, contact, normal, velocity, spin = ZERO, otherVeloci
   demand(Math.hypot(...normal) > 0, "normal", normal, "must lead from the centre of the first body to the other's");
   demand(one.radius > 0, "one.radius", one.radius, "must be positive, in m: the first body is a sphere");
   for (const [name, body] of Object.entries({one, other})) {
-    for (const key of ["radius", "mass", "inertia", "young"]) {
+    for (const key of ["radius", "mass", "young"]) {
       const value = body[key];
       demand(value === undefined || value > 0, `${name}.${key}`, value, "must be positive, in SI units, or left out");
     }
-    const [radius, light, turns] = inertias(body);
-    demand(!(light > 0 && radius * turns > MOST * light), `${name}.inertia`, body.inertia,
-      "must be above 1e-4 mass radius², or left out for a solid sphere");
+    const ratio = body.gyration_ratio;
+    demand(ratio === undefined || ratio >= CORE && ratio <= 1, `${name}.gyration_ratio`, ratio,
+      `must be from ${CORE} to 1: ${INERTIA}; or left out for a solid sphere`);
     const {poisson} = body, left = poisson === undefined && name === "other";
     demand(left || poisson > -1 && poisson <= 0.5, `${name}.poisson`, poisson,
       "must be above -1 and at most 0.5; take 0.3 for metals, 0.5 for rubber");
@@ -170,9 +173,12 @@ function refuse([one, other, contact, normal, velocity, spin = ZERO, otherVeloci
   demand(false, "one", one, "and the other, with their velocities, are of a size that rounds away; use SI units");
 }
 
-/** Returns radius, 1 over mass, and radius over inertia of a body: 0 of a wall. */
-const inertias = ({radius, mass = Infinity, inertia = 0.4 * mass * radius * radius}) =>
-  radius === undefined ? [0, 0, 0] : [radius > 0 ? radius : NaN, mass > 0 ? 1 / mass : NaN, inertia > 0 ? radius / inertia : NaN];
+/** Returns radius, 1 over mass, and radius over the moment of inertia of a body: 0 of a wall. */
+function inertias({radius, mass = Infinity, gyration_ratio: ratio}) {
+  const square = ratio === undefined ? 0.4 : ratio >= CORE && ratio <= 1 ? ratio * ratio : NaN;
+  if (radius === undefined) return [0 * square, 0, 0];
+  return [radius > 0 ? radius : NaN, mass > 0 ? 1 / mass : NaN, radius / (square * mass * radius * radius)];
+}
 
 /** Returns kappa = G* over E* of two bodies, from 2/3 to 4/3; NaN if a number is none. */
 function stiffnesses(one, other) {

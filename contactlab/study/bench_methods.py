@@ -16,6 +16,7 @@ from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.registration.names import KINDS, full_name, is_place, kind_of, short_name
+from contactlab.study.posed import posed
 from contactlab.testing.load_paths import scene as ball
 
 #: psi1 and chi of the scenes: every regime of theory §2 but slip throughout, which every law
@@ -139,7 +140,7 @@ def scenes(*, quick: bool = False, sized: bool = False, elsewhere: bool = False)
     quick : bool
         Fewer scenes.
     sized : bool
-        Scenes of a ball in SI instead of dimensionless ones, for normal laws with options in SI.
+        Scenes of a ball in SI instead of dimensionless ones, for laws with options in SI.
     elsewhere : bool
         Scenes beyond solid spheres instead, without the steel ball.
     """
@@ -235,7 +236,9 @@ def _makes_no_force(tangential: str) -> bool:
     if not issubclass(_law("tangential", tangential), WholeImpactTangentialLaw):
         return False
     try:
-        result = Simulation(tangential=tangential).run(Scene.nondimensional(psi1=1.0, chi=1.0))
+        simulation = Simulation(tangential=tangential)
+        scene = posed(Scene.nondimensional(psi1=1.0, chi=1.0), simulation.laws)
+        result = simulation.run(scene)
     except ValueError:
         return False
     return bool(result.psi_change == 0.0)

@@ -16,6 +16,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array
 from contactlab.registration.names import full_name
 from contactlab.study.bench_methods import Method
+from contactlab.study.posed import posed
 from contactlab.study.stability_cases import INCIDENCES
 from contactlab.study.stability_references import REFERENCE_TOLERANCES, converges
 
@@ -82,8 +83,8 @@ def error_map(method: Method, *, quick: bool = False) -> ErrorMap:
     """
     steps, chis = (QUICK_STEPS, QUICK_CHIS) if quick else (STEPS, CHIS)
     psi1, chi = (each.ravel() for each in np.meshgrid(INCIDENCES, chis, indexing="ij"))
-    scene = Scene.nondimensional(psi1=psi1, chi=chi)
     law = REGISTRY.create(full_name("tangential", method.tangential))
+    scene = posed(Scene.nondimensional(psi1=psi1, chi=chi), (law,))
     limit = _psi2(_limit(law), scene)
     rows = []
     for count in steps:

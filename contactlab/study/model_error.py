@@ -18,6 +18,7 @@ from contactlab.impact.error_model import range_of
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array
 from contactlab.registration.names import full_name
+from contactlab.study.posed import posed
 from contactlab.study.stability_references import continuum, converges, reference_for
 
 #: Numerical error of any answer, over the range of psi2.
@@ -66,8 +67,8 @@ def model_error(law: str, chis: Sequence[float], incidences: Sequence[float]) ->
 
 def _error(law: TangentialLaw, psi1: float, chi: float) -> float:
     """Return the model error of one impact, over the range of psi2; NaN without exact answer."""
-    scene = Scene.nondimensional(psi1=psi1, chi=chi)
-    normal = Simulation(tangential=law).normal
+    laws = Simulation(tangential=law).laws
+    scene, normal = posed(Scene.nondimensional(psi1=psi1, chi=chi), laws), laws.normal
     exact, own = continuum(scene, law), reference_for(law, normal)(scene, law)
     unit, width, _ = range_of(scene)
     uncertain = 0.0

@@ -21,6 +21,7 @@ from contactlab.outcome.motion import Motion, sound
 from contactlab.outcome.plan import MARCHED, Plan, PlanColumns
 from contactlab.outcome.result import ImpactResult
 from contactlab.study.stability_cases import Cell
+from contactlab.study.posed import posed
 from contactlab.study.stability_coupled import RIGID_DISTANCE, STIFF, distance
 from contactlab.study.stability_references import (
     SETTLED,
@@ -105,6 +106,7 @@ def judge(case: Cell) -> Outcome:
     try:
         scene = case.scene.make()
         simulation = case.method.simulation(case.options, normal=case.normal)
+        scene = posed(scene, simulation.laws)
     except (ValueError, PluginError) as error:
         return Outcome.of(case, REFUSED, note=f"bad input: {error}")
     return judge_run(case, simulation, scene)

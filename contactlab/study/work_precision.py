@@ -23,6 +23,7 @@ from contactlab.outcome.result import ImpactResult
 from contactlab.study.bench_methods import Method, Options, scenes
 from contactlab.study.benchmark import ALIKE, ROUNDING, Benchmark, Row
 from contactlab.study.interrupts import uninterrupted
+from contactlab.study.posed import need_units, posed
 from contactlab.study.stability_references import converges, reference_for
 
 #: Tolerance of the exact answers: finer than the default, which is measured too.
@@ -113,25 +114,28 @@ class Truth(NamedTuple):
     result: ImpactResult | None
 
 
-def _limit(method: Method) -> tuple[str, str]:
-    """Return the normal law of a method, and the friction law whose limit it is judged by.
+def _limit(method: Method) -> tuple[str, str, bool]:
+    """Return the normal law of a method, the friction law of its limit, and whether it needs units.
 
     The limit is the law's own if it converges to the continuum, and that of the default law
     otherwise. Under elastic Hertz contact all limits are one; the name is empty.
     """
-    normal = composition.law("normal", method.normal)
+    laws = method.simulation({"tangential": {}, "integrator": {}}).laws
+    normal, sized = laws.normal, method.normal != composition.DEFAULT_NORMAL or need_units(laws)
     if "elastic_hertz" in normal.offers:
-        return method.normal, ""
+        return method.normal, "", sized
     own = converges(composition.law("tangential", method.tangential))
-    return method.normal, method.tangential if own else composition.preferred("tangential", normal)
+    other = method.tangential if own else composition.preferred("tangential", normal)
+    return method.normal, other, sized
 
 
-def _truths(normal: str, tangential: str, *, quick: bool, elsewhere: bool = False) -> list[Truth]:
+def _truths(
+    normal: str, tangential: str, sized: bool, *, quick: bool, elsewhere: bool = False
+) -> list[Truth]:
     """Return scenes with true answers: exact, or by a fine law of the same limit."""
     law = composition.law("normal", normal)
     truths = []
     elastic = "elastic_hertz" in law.offers
-    sized = normal != composition.DEFAULT_NORMAL
     for scene in scenes(quick=quick, sized=sized, elsewhere=elsewhere):
         if elastic:
             exact = Simulation(normal=law, **composition.exact(EXACT_TOLERANCE))
@@ -145,17 +149,17 @@ def _truths(normal: str, tangential: str, *, quick: bool, elsewhere: bool = Fals
     return truths
 
 
-@lru_cache(maxsize=2)
-def _elsewhere(*, quick: bool) -> list[Truth]:
+@lru_cache(maxsize=4)
+def _elsewhere(*, sized: bool, quick: bool) -> list[Truth]:
     """Return the scenes beyond solid spheres under elastic Hertz contact, with exact answers."""
-    return _truths(composition.DEFAULT_NORMAL, "", quick=quick, elsewhere=True)
+    return _truths(composition.DEFAULT_NORMAL, "", sized, quick=quick, elsewhere=True)
 
 
 def _elsewhere_rms(simulation: Simulation, method: Method, *, quick: bool) -> float:
     """Return the rms error beyond solid spheres; NaN under other normal laws than the default."""
     if method.normal != composition.DEFAULT_NORMAL:
         return np.nan
-    truths = _elsewhere(quick=quick)
+    truths = _elsewhere(sized=need_units(simulation.laws), quick=quick)
     results = [simulation.run(truth.scene) for truth in truths]
     if not all(result.status for result in results):
         return np.nan
@@ -171,7 +175,7 @@ def _rms(errors: Iterable[float]) -> float:
 
 def _rebound_row(*, quick: bool) -> Row:
     """Return error and run time of ``contactlab.rebound``, which no simulation runs."""
-    truths = _truths(composition.DEFAULT_NORMAL, "", quick=quick)
+    truths = _truths(composition.DEFAULT_NORMAL, "", False, quick=quick)
     pairs = [(float(truth.scene.psi1), float(truth.scene.chi)) for truth in truths]
 
     def off(truth: Truth) -> Any:
@@ -190,7 +194,7 @@ def _rebound_row(*, quick: bool) -> Row:
         method=REBOUND,
         error_rms=_rms(errors),
         error_worst=float(np.max(np.abs(errors))),
-        elsewhere_rms=_rms(off(truth) for truth in _elsewhere(quick=quick)),
+        elsewhere_rms=_rms(off(truth) for truth in _elsewhere(sized=False, quick=quick)),
         time_s=_least(one_by_one, repeats=REPEATS) / (CALLS * len(pairs)),
         sweep_time_s=_least(lambda: rebound(psi1, chi), repeats=CALLS) / SWEEP,
     )
@@ -311,7 +315,7 @@ def _swept_scenes(size: int = SWEEP) -> Scene:
 def _sweep_time(simulation: Simulation, alone: float) -> float:
     """Return the least time per impact of a sweep of solid spheres; ``alone`` is one's, in s."""
     size = int(np.clip(SWEEP_BUDGET / alone, FEWEST, SWEEP))
-    batch = _swept_scenes(size)
+    batch = posed(_swept_scenes(size), simulation.laws)
     return _least(lambda: uninterrupted(simulation.sweep(batch)), repeats=2) / size
 
 

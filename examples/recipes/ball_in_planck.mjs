@@ -36,14 +36,14 @@ export function bounces(world) {
 
 /** Returns a world with a floor, and a ball that flies towards it. */
 export function thrown(ball, velocity, spin, {gravity = 9.81, ours = true} = {}) {
-  const {radius, mass, inertia = 0.4 * mass * radius ** 2} = ball.body;
+  const {radius, mass, gyration_ratio: ratio = Math.sqrt(0.4)} = ball.body;
   const {friction, restitution} = ball.contact;
   const world = new World({gravity: new Vec2(0, -gravity)});
   world.createBody().createFixture({shape: new Edge(new Vec2(-100, 0), new Vec2(100, 0)), friction, restitution});
   const position = new Vec2(0, radius + 0.2);
   const body = world.createDynamicBody({position, linearVelocity: new Vec2(...velocity), angularVelocity: spin});
   body.createFixture({shape: new Circle(radius), friction, restitution, userData: ball});
-  body.setMassData({mass, center: new Vec2(0, 0), I: inertia});
+  body.setMassData({mass, center: new Vec2(0, 0), I: mass * (ratio * radius) ** 2});
   if (ours) bounces(world);
   return {world, body};
 }

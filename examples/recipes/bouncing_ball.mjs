@@ -34,7 +34,7 @@ export function frame(ball, gravity = 9.81) {
 
 /** Moves a ball on the floor: friction ends its slip, then it rolls until rolling resistance ends that. */
 function roll({body, contact, position: x, velocity: v, spin: w}, gravity, time) {
-  const {radius, mass, inertia = 0.4 * mass * radius ** 2} = body, ease = mass * radius ** 2 / inertia;
+  const {radius, gyration_ratio: ratio = Math.sqrt(0.4)} = body, ease = 1 / ratio ** 2;
   const slip = [v[0] - radius * w[1], v[1] + radius * w[0]], speed = Math.hypot(...slip);
   const slides = speed > 0 ? Math.min(speed / (contact.friction * gravity * (1 + ease)), time) : 0;
   for (const k of [0, 1]) {

@@ -12,7 +12,7 @@ function bodies(set) {
   });
   one.radius = set.radius;
   one.mass = 4 / 3 * Math.PI * set.radius ** 3 * one.density;
-  one.inertia = set.inertia * one.mass * set.radius ** 2;
+  one.gyration_ratio = Math.sqrt(set.inertia);
   return [one, other];
 }
 
@@ -45,7 +45,7 @@ function leaving(met, set, psi2) {
 
 /* Return how the ball leaves; spin about the third axis is positive where it adds to the slip. */
 function bouncing(met, set) {
-  const [ball, block] = met.pair.map(({radius, mass, inertia, young, poisson}) => ({radius, mass, inertia, young, poisson}));
+  const [ball, block] = met.pair.map(({radius, mass, gyration_ratio, young, poisson}) => ({radius, mass, gyration_ratio, young, poisson}));
   const left = bounce(ball, block, {friction: set.friction, restitution: set.restitution}, [0, -1, 0],
     [met.along, -met.normal, 0], [0, 0, set.spin]);
   return leaving(met, set, met.scale * (left.velocity[0] + left.spin[2] * met.R));

@@ -5,8 +5,8 @@ import {bounce} from "contactlab";
 const bytes = readFileSync(process.argv[2]), answers = [];
 const rows = new Float64Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));
 const given = value => (value === 0 ? undefined : value);
-const body = ([radius, mass, inertia, young, poisson]) => ({
-  radius: given(radius), mass: given(mass), inertia: given(inertia), young, poisson,
+const body = ([radius, mass, ratio, young, poisson]) => ({
+  radius: given(radius), mass: given(mass), gyration_ratio: given(ratio), young, poisson,
 });
 for (let k = 0; k < rows.length; k += 27) {
   const row = Array.from(rows.subarray(k, k + 27)), part = at => row.slice(at, at + 3);

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
+import attrs
 import numpy as np
 
 from contactlab.compose.normal_motion import normal_motion
@@ -19,7 +20,7 @@ from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.scene import Scene
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab_laws.differences.table import FILE, NODES, key
 
 #: The impacts of the choice of a law: least and number of psi1, up to slip throughout and 1 more,
@@ -35,7 +36,7 @@ RINGS = 96
 #: Laws whose restitution is an option, and its values.
 CALIBRATED = ("tsuji", "hunt_crossley", "kuwabara_kono", "linear", "walton_braun")
 RESTITUTION = (1.0, 0.99, 0.95, 0.9, 0.8, 0.65, 0.5, 0.4, 0.3, 0.2, 0.1)
-#: Options of the other laws, in units of ``Scene.nondimensional``; they give some restitutions.
+#: Options of the other laws, in the units of ``impact``; they give some restitutions.
 OTHERS: tuple[tuple[str, str, tuple[float, ...]], ...] = (
     ("thornton", "yield_velocity", (0.6, 0.3, 0.1, 0.03, 0.01)),
     ("jkr", "work_of_adhesion", (1e-3, 1e-2, 5e-2)),
@@ -51,9 +52,14 @@ def impacts(e: float) -> tuple[Array, Array]:
     return psi1, np.tile(CHI, 2 * COUNT)
 
 
+def impact(psi1: Real, chi: Real) -> Scene:
+    """Return the impacts of psi1 and chi of a ball of 1 kg and 1 m at 1 m/s, C = 1."""
+    return attrs.evolve(Scene.nondimensional(psi1=psi1, chi=chi), has_units=True)
+
+
 def springs(law: NormalLaw, psi1: Array, chi: Array, *, shear_loss: float = 1.0) -> Array:
     """Return psi2 by springs, extrapolated in their number, shape (impacts,)."""
-    scene = Scene.nondimensional(psi1=psi1, chi=chi)
+    scene = impact(psi1, chi)
     psi2 = []
     for count in (SPRINGS // 2, SPRINGS):
         simulation = Simulation(
@@ -68,7 +74,7 @@ def springs(law: NormalLaw, psi1: Array, chi: Array, *, shear_loss: float = 1.0)
 def pointwise(law: NormalLaw, psi1: Array, chi: Array) -> Array:
     """Return psi2 with Coulomb's law at every point, shape (impacts,), by the half-space."""
     half_space = REGISTRY.create("tangential.halfspace", angles=1, rings=RINGS)
-    scene = Scene.nondimensional(psi1=psi1, chi=chi)
+    scene = impact(psi1, chi)
     return np.asarray(Simulation(normal=law, tangential=half_space).sweep(scene).check().psi2)
 
 
@@ -105,7 +111,7 @@ def tsuji_sharing(e: float) -> Array:
 
 def row(law: NormalLaw) -> list[str]:
     """Return the class of a law, its restitution, and the largest differences of psi2."""
-    motion = normal_motion(law, Scene.nondimensional(psi1=1.0, chi=1.0))
+    motion = normal_motion(law, impact(1.0, 1.0))
     e = round(-float(motion.final_rate), 6)
     psi1, chi = impacts(e)
     exact = pointwise(law, psi1, chi)
