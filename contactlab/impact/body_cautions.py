@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from contactlab.impact.bodies import Sphere
+from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.rigid_body import FLAT, RigidBody
 from contactlab.impact.scene import Scene
-from contactlab.numeric.types import Real
+from contactlab.numeric.types import Array, Real
 
-#: Mass over that of a solid sphere below which it is a shell, with a wall below a fifth of R; and
-#: above which the unit of the mass is suspect.
+#: Mass over that of a solid sphere, or ellipsoid, below which it is a shell, with a wall below a
+#: fifth of R; and above which the unit of the mass of a sphere is suspect.
 SHELL, HEAVY = 0.5, 20.0
 #: Radius of gyration over R above which most mass lies in a shell; 0.632 of a solid sphere, 0.816
 #: of a thin shell.
@@ -32,24 +33,32 @@ LEAST_SPIN, MOST_RIM = 50.0, 8.0
 
 
 @np.errstate(all="ignore")
-def shells(scene: Scene) -> list[str]:
-    """Return the caution of each sphere that is a shell, or far heavier than a solid one."""
+def shells(scene: Scene, bodies: Mapping[str, Sphere | HalfSpace | RigidBody]) -> list[str]:
+    """Return the caution of each body that is a shell, and of spheres far heavier than solid ones.
+
+    ``bodies`` are those of the scene by the names of their arguments.
+    """
     said = []
-    for name, body in (("sphere", scene.sphere), ("target", scene.target)):
-        if not isinstance(body, Sphere):
+    for name, body in bodies.items():
+        if isinstance(body, HalfSpace):
             continue
-        density = body.material.density
-        radius = np.asarray(body.radius)  # the cube of a float raises OverflowError
-        solid = None if density is None else 4.0 / 3.0 * math.pi * radius**3 * density
-        share = 1.0 if solid is None else float(np.min(body.mass / solid))
-        if solid is not None and float(np.max(body.mass / solid)) > HEAVY:
+        share = _of_solid(body)
+        if isinstance(body, RigidBody):
+            if (least := float(np.fmin.reduce(share, initial=math.inf))) < SHELL:
+                said.append(
+                    f"{name}.mass is {least:.2g} of a solid ellipsoid's of its inertia and "
+                    "density: if it is of one material it is a shell, whose wall bends, and "
+                    "Hertz's contact is that of a solid (model, of a size that is not known)"
+                )
+            continue
+        if (most := float(np.fmax.reduce(share, initial=0.0))) > HEAVY:
             said.append(
-                f"unit: {name}.mass = {_most(body.mass):.4g} kg is {_most(body.mass / solid):.3g} "
+                f"unit: {name}.mass = {_most(body.mass):.4g} kg is {most:.3g} "
                 "times that of a solid sphere of its density: is it in g?"
             )
-        if share < SHELL:
+        if (least := float(np.fmin.reduce(share, initial=math.inf))) < SHELL:
             said.append(
-                f"{name}.mass is {share:.2g} of a solid sphere's of its density: a shell, whose "
+                f"{name}.mass is {least:.2g} of a solid sphere's of its density: a shell, whose "
                 f"wall bends, and Hertz's contact is that of a solid; {_spring(scene, body)}"
             )
         elif _most(body.gyration_ratio) > HOLLOW:
@@ -59,6 +68,26 @@ def shells(scene: Scene) -> list[str]:
                 "a solid (model, of a size that is not known)"
             )
     return said
+
+
+def _of_solid(body: Sphere | RigidBody) -> Array:
+    """Return the masses over those of solid bodies of their density, 1 of unknown density.
+
+    Of a rigid body the solid is the ellipsoid of its mass and inertia: its semi-axes squared are 5
+    times the mean squares of x, y and z of its mass. Of a cylinder it has 1.08 of the volume,
+    whatever the length, and of a box 1.13.
+    """
+    density: Any = body.material.density
+    if density is None:
+        return np.ones(1)
+    if isinstance(body, Sphere):
+        product = np.asarray(body.radius) ** 3  # the cube of a float raises OverflowError
+    else:
+        moments = np.linalg.eigvalsh(body.inertia)
+        squares = 0.5 * moments.sum(axis=-1)[..., None] - moments
+        per_mass = 5.0 * np.maximum(squares, 0.0) / np.asarray(body.mass)[..., None]
+        product = np.sqrt(per_mass.prod(axis=-1))
+    return np.ravel(body.mass / (4.0 / 3.0 * math.pi * product * density))
 
 
 def _spring(scene: Scene, body: Sphere) -> str:

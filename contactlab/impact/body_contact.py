@@ -437,7 +437,9 @@ def _elastic(encounter: _Meeting, gap: Gap) -> dict[str, Any]:
         return round_
     from contactlab.impact.elliptic import ellipse  # scipy, which few scenes need
 
-    shape = ellipse(np.where(gap.elliptic, gap.least / gap.most, 1.0))
+    # t1 differs from impact to impact where one pair of bodies meets at many velocities
+    flatness = np.where(gap.elliptic, gap.least / gap.most, 1.0) + np.zeros(np.shape(gap.minor))
+    shape = ellipse(flatness)
     weights = np.where(gap.minor, (shape.weight_minor, shape.weight_major), shape[4:])
     along, across = (
         (1.0 - first.poisson_ratio * weight) / (2.0 * first.shear_modulus)

@@ -310,7 +310,7 @@ def unlikely(scene: Scene) -> list[str]:
     bodies = named(scene)
     if not bodies:
         return []
-    slips, speed = shells(scene), _most(scene.normal_speed)
+    slips, speed = shells(scene, bodies), _most(scene.normal_speed)
     if (friction := _most(scene.friction_coefficient)) > MOST_FRICTION:
         slips.append(
             f"friction_coefficient = {friction:.4g}: above {MOST_FRICTION:g} surfaces stick like "

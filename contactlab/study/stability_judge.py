@@ -106,7 +106,6 @@ def judge(case: Cell) -> Outcome:
     try:
         scene = case.scene.make()
         simulation = case.method.simulation(case.options, normal=case.normal)
-        scene = posed(scene, simulation.laws)
     except (ValueError, PluginError) as error:
         return Outcome.of(case, REFUSED, note=f"bad input: {error}")
     return judge_run(case, simulation, scene)
@@ -130,6 +129,7 @@ def judge_run(
         Returns the exact change of slip velocity in m/s, or None if there is none; by default
         ``reference_for`` the laws.
     """
+    scene = posed(scene, simulation.laws)
     before = time.perf_counter()
     try:
         with np.errstate(all="ignore"):

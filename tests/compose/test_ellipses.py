@@ -365,3 +365,22 @@ def test_an_elongated_contact_is_not_small_by_its_own_axes():
     assert "not small against the radius" in cautions
     told = float(cautions.partition("C = ")[2].partition(",")[0])
     assert told > 2.0 * size
+
+
+@pytest.mark.parametrize("count", [2, 3, 5])
+def test_one_pair_of_bodies_meets_at_many_velocities_as_at_each(count):
+    """Slip along either axis of the ellipse, and between: the axes of the contact differ."""
+    nylon = Material(young_modulus=2.5e9, poisson_ratio=0.4, density=1140.0)
+    body, contact = shapes.ellipsoid(
+        semi_axes=[0.02, 0.03, 0.05], material=nylon, normal=[0, 0, -1]
+    )
+    slips = np.array([[1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.0, -0.5], [0.2, 0.0]])[:count]
+    velocities = np.column_stack([slips, np.full(count, -2.0)])
+
+    def after(velocity):
+        return collide(
+            Encounter(body, HalfSpace(nylon), 0.2, normal=[0, 0, -1], contact=contact,
+                      velocity=velocity)
+        ).velocity  # fmt: skip
+
+    assert after(velocities) == pytest.approx(np.array([*map(after, velocities)]), rel=1e-9)

@@ -16,7 +16,7 @@ from contactlab.contracts import (
 from contactlab.outcome.columns import QUANTITIES, columns_of
 from contactlab.outcome.export import write_csv
 from contactlab.outcome.plan import PSI2_ERROR
-from tests.laws.normal_laws import LinearSpring
+from tests.laws.normal_laws import LinearSpring, in_si
 from tests.laws.tangential_laws import Creator
 
 SYMPLECTIC = type(contactlab.create("integrator.symplectic"))
@@ -82,7 +82,7 @@ class Usual(LinearSpring):
 
 
 def test_the_plan_tells_options_that_have_their_defaults():
-    scene = Scene.nondimensional(psi1=1.0, chi=1.0)
+    scene = in_si(Scene.nondimensional(psi1=1.0, chi=1.0))
 
     def said(law):
         return str(Simulation(normal=law, tangential="coulomb").plan(scene).computed[0])
@@ -98,7 +98,7 @@ def test_the_error_of_a_solved_motion_is_that_of_its_load_impulse():
     for psi1 in (0.0, 1.2, 9.0):
         one, many = (
             Simulation(normal=LinearSpring(), tangential="coulomb").plan(
-                Scene.nondimensional(psi1=each, chi=2.0)
+                in_si(Scene.nondimensional(psi1=each, chi=2.0))
             )
             for each in (psi1, [psi1, psi1])
         )

@@ -14,7 +14,7 @@ from contactlab import ImpactError, Scene, Simulation, Status
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 from contactlab.impact.hertz import hertz_scales
 from tests.compose.spoiled import SpoiledMotion
-from tests.laws.normal_laws import LinearSpring
+from tests.laws.normal_laws import LinearSpring, in_si
 from tests.longer import longer
 
 HERTZ = contactlab.compose.registry.REGISTRY.law_class("normal.hertz")
@@ -190,7 +190,7 @@ def test_adaptive_steps_are_stable_where_slip_is_too_small_to_see(law, chi):
 @pytest.mark.parametrize("stiffer", [1e4, 1e-8])
 def test_steps_divide_the_contact_that_there_is(integrator, stiffer):
     """In 200 steps of a Hertz duration a contact of a hundredth of it lasts 2: e was 0.54."""
-    scene = Scene.nondimensional(psi1=[0.5, 1.2], chi=1.44)
+    scene = in_si(Scene.nondimensional(psi1=[0.5, 1.2], chi=1.44))
     hertz = float(hertz_scales(scene).duration)
     spring = LinearSpring(stiffness=stiffer * float(scene.pair.normal_mass) * (np.pi / hertz) ** 2)
     for refine in (True, False):
@@ -259,7 +259,7 @@ class AnswersInTuples(LinearSpring):
 def test_a_normal_law_that_gives_no_contact_is_a_status(answer):
     law = AnswersInTuples(answer=answer)
     result = Simulation(normal=law, tangential="coulomb").run(
-        Scene.nondimensional(psi1=1.2, chi=1.44)
+        in_si(Scene.nondimensional(psi1=1.2, chi=1.44))
     )
     assert result.status is Status.LAW_RAISED
     assert "not a NormalContact" in result.failures[0]

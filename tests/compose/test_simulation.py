@@ -14,7 +14,7 @@ from contactlab.contracts import (
     SteppedTangentialLaw,
     TangentialResponse,
 )
-from tests.laws.normal_laws import ForceFree, LinearSpring
+from tests.laws.normal_laws import ForceFree, LinearSpring, in_si
 
 CHI = 1.4411764706
 
@@ -87,7 +87,7 @@ def test_a_normal_law_without_closed_form_is_solved_whatever_the_steps(integrato
         tangential="frictionless",
         integrator=contactlab.create(f"integrator.{integrator}", steps=steps),
     )
-    result = sim.run(scene()).check()
+    result = sim.run(in_si(scene())).check()
     assert result.motion.duration == pytest.approx(np.pi, rel=1e-8)
     assert result.normal_restitution == pytest.approx(1.0, rel=1e-8)
 

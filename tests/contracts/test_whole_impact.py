@@ -7,6 +7,7 @@ import contactlab
 from contactlab import Scene, Simulation, Status
 from contactlab.impact.hertz import rigid_body_rebound
 from tests.laws.ending_laws import Raising
+from tests.laws.normal_laws import in_si
 from tests.laws.outside_laws import Plastic, Tsuji, Walton
 
 CHI = 49.0 / 34.0
@@ -39,7 +40,7 @@ def test_a_batch_of_one_is_the_impact_to_the_last_bit(integrator, shape, psi1):
 def test_a_whole_law_needs_no_march_under_any_normal_law(normal, law):
     """The same numbers whatever integrator is named, alone and in a batch."""
     psi1 = np.array([-9.0, -0.3, 0.0, 0.3, 2.0, 9.0])
-    scene = Scene.nondimensional(psi1=psi1, chi=CHI)
+    scene = in_si(Scene.nondimensional(psi1=psi1, chi=CHI))
     found = [
         Simulation(normal=normal, tangential=law, integrator=name).run(scene).check()
         for name in ("symplectic", "paper", "adaptive", "events")
@@ -56,7 +57,7 @@ def test_a_whole_law_needs_no_march_under_any_normal_law(normal, law):
         assert found[0].psi2 == pytest.approx(np.sign(psi1) * (np.abs(psi1) - slips), abs=1e-6)
     for index, value in enumerate(psi1.tolist()):
         alone = Simulation(normal=normal, tangential=law).run(
-            Scene.nondimensional(psi1=value, chi=CHI)
+            in_si(Scene.nondimensional(psi1=value, chi=CHI))
         )
         assert alone.check().psi2 == pytest.approx(found[0].psi2[index], abs=1e-12)
     assert np.abs(found[0].energy.relative_imbalance).max() < 1e-9

@@ -10,6 +10,7 @@ from contactlab import (
     Encounter,
     HalfSpace,
     Material,
+    RigidBody,
     Scene,
     Simulation,
     Sphere,
@@ -18,6 +19,7 @@ from contactlab import (
 )
 from contactlab.impact import material as materials
 from contactlab.impact.cautions import unit_slips
+from contactlab.scene_file import read_scene
 
 STEEL = Material.named("steel")
 BALL = Scene(Sphere(6.35e-3, STEEL), HalfSpace(STEEL), 0.15, 1.0, 0.5)
@@ -194,3 +196,76 @@ def test_bodies_as_they_are_are_not_cautioned():
     thin = of_rod({"length": 2.0, "radius": 0.001})
     for met in (of_rod(), thin, of_rod(spin=[0, -20.0, 0])):
         assert unit_slips(met.scene) == []
+
+
+NYLON = Material(young_modulus=2.5e9, poisson_ratio=0.4, density=1140.0)
+#: Bodies some 40 mm wide of 2.7 g; solid ones have 16 to 73 g.
+TABLE_TENNIS = {
+    "ellipsoid": lambda mass: shapes.ellipsoid(
+        semi_axes=[0.02, 0.02, 0.02], material=NYLON, normal=DOWN, mass=mass
+    ),
+    "rod": lambda mass: shapes.rod(
+        length=0.1, radius=0.02, end_radius=0.02, material=NYLON, normal=DOWN, axis=[0, 0, 1],
+        mass=mass,
+    ),
+    "disc": lambda mass: shapes.disc(
+        radius=0.02, thickness=0.02, rim_radius=2e-3, material=NYLON, normal=DOWN,
+        axis=[0.3, 0, 1], mass=mass,
+    ),
+    "box": lambda mass: shapes.box(
+        sides=[0.04, 0.04, 0.04], corner_radius=2e-3, material=NYLON, normal=[1, 2, -3], mass=mass
+    ),
+    "numbers": lambda mass: (
+        RigidBody(
+            mass=7.6e-2 if mass is None else mass,
+            inertia=0.4 * (7.6e-2 if mass is None else mass) * 0.025**2 * np.eye(3),
+            material=NYLON, curvature_radius=0.02,
+        ),
+        np.array([0.0, 0.0, -0.02]),
+    ),
+}  # fmt: skip
+OF_SHELL = "if it is of one material it is a shell"
+
+
+def met_with(name, mass, target=None, count=None):
+    """Return the encounter of a body of a mass in kg, one or many, with a plane or a target."""
+    body, contact = TABLE_TENNIS[name](mass)
+    outward = [1, 2, -3] if name == "box" else DOWN
+    velocity = np.array([0.5, 0.0, -2.0]) if count is None else np.full((count, 3), (0.5, 0, -2.0))
+    return Encounter(body, target or HalfSpace(NYLON), 0.2, normal=outward, contact=contact,
+                     velocity=velocity)  # fmt: skip
+
+
+@pytest.mark.parametrize("count", [None, 3])
+@pytest.mark.parametrize("name", TABLE_TENNIS)
+def test_a_shell_of_any_shape_is_cautioned_and_a_solid_is_not(name, count):
+    hollow, solid = met_with(name, 2.7e-3, count=count), met_with(name, None, count=count)
+    for said in (Simulation().plan(hollow.scene), collide(hollow).plan, collide(hollow)):
+        assert OF_SHELL in str(said.cautions)
+    assert "shell" not in str(Simulation().plan(solid.scene))
+    thick = met_with(name, 0.75 * float(solid.body.mass), count=count)
+    assert "shell" not in str(collide(thick).plan)
+
+
+def test_a_shell_is_cautioned_beside_any_other_body_and_of_a_density_that_is_known_of_some():
+    ball = Sphere(0.02, NYLON, mass=2.7e-3)
+    struck = met_with("box", None, target=ball)
+    assert "target.mass is 0.071 of a solid sphere's" in str(collide(struck).plan.cautions)
+    box = met_with("box", 2.7e-3, target=Sphere(0.02, NYLON))
+    assert "body.mass is 0.0" in str(collide(box).plan.cautions)
+    some = attrs.evolve(NYLON, density=[1140.0, np.nan])
+    scene = Scene(Sphere(0.02, some, mass=2.7e-3), HalfSpace(NYLON), 0.2, [1.0, 2.0])
+    assert "sphere.mass is 0.071 of a solid sphere's" in str(Simulation().plan(scene).cautions)
+
+
+def test_a_shell_in_a_file_is_cautioned(tmp_path):
+    path = tmp_path / "shell.toml"
+    path.write_text(
+        "[body]\nmass = 0.0027\nprincipal = [4.3e-7, 4.3e-7, 4.3e-7]\ncurvature_radius = 0.02\n"
+        "material = {young_modulus = 2.5e9, poisson_ratio = 0.4, density = 1140.0}\n"
+        "[target]\nkind = 'half-space'\nmaterial = 'steel'\n"
+        "[impact]\nfriction_coefficient = 0.2\nnormal = [0, 0, -1]\ncontact = [0, 0, -0.02]\n"
+        "velocity = [0.5, 0, -2]\n",
+        encoding="utf-8",
+    )
+    assert OF_SHELL in str(Simulation().plan(read_scene(path).scene).cautions)

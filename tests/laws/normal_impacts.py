@@ -5,6 +5,7 @@ import numpy as np
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
 from contactlab.compose.normal_motion import normal_motion
+from tests.laws.normal_laws import in_si
 from tests.longer import longer
 
 STEEL = Material(shear_modulus=80e9, poisson_ratio=0.3, density=7850.0)
@@ -30,4 +31,5 @@ def psi2(law, psi1, chi, *, springs=200, steps=None):
     tangential = contactlab.create("tangential.springs", springs=springs, shear_loss=0.0)
     march = contactlab.create("integrator.symplectic", steps=steps or 4 * springs)
     sim = Simulation(normal=law, tangential=tangential, integrator=march)
-    return sim.run(Scene.nondimensional(psi1=np.array(psi1, dtype=float), chi=chi)).check().psi2
+    scene = in_si(Scene.nondimensional(psi1=np.array(psi1, dtype=float), chi=chi))
+    return sim.run(scene).check().psi2

@@ -9,6 +9,11 @@ from contactlab.contracts import NormalContact, NormalLaw
 from contactlab.numeric.checks import quantity
 
 
+def in_si(scene):
+    """Return a scene of psi1 and chi with its numbers in SI: a body of 1 m and 1 kg at 1 m/s."""
+    return attrs.evolve(scene, has_units=True)
+
+
 @attrs.frozen(kw_only=True)
 class LinearSpring(NormalLaw):
     """P = k u_z, without radius or closed form: the impact lasts pi sqrt(M/k), and e = 1."""

@@ -9,6 +9,7 @@ import contactlab
 from contactlab import Encounter, HalfSpace, Material, Scene, Simulation, shapes
 from contactlab.compose.normal_motion import normal_motion
 from tests.laws.normal_impacts import restitution, scene
+from tests.laws.normal_laws import in_si
 
 GAMMA = 0.2
 
@@ -174,7 +175,7 @@ def test_tabor_says_which_theory():
 @pytest.mark.slow
 def test_the_books_contain_the_energy_of_the_shear_that_is_lost_as_jkr_breaks():
     """That energy is 0.046 of the energy at the start, beside psi2 of the half-space."""
-    scene = Scene.nondimensional(psi1=1.2, chi=3.0)
+    scene = in_si(Scene.nondimensional(psi1=1.2, chi=3.0))
     truth = Simulation(normal=jkr(0.05), tangential="halfspace").run(scene).check()
     for name in ("symplectic", "paper", "adaptive"):
         result = Simulation(normal=jkr(0.05), tangential="springs", integrator=name).run(scene)

@@ -8,12 +8,13 @@ from contactlab import Scene, Simulation, create
 from contactlab.impact.hertz import hertz_scales
 from contactlab_laws.hunt_crossley import damping_number
 from contactlab_laws.thornton import Thornton
+from tests.laws.normal_laws import in_si
 
 
 def restitution(scene=None, **laws):
     """Return e of an impact under the one law given: its options by its name."""
     ((name, options),) = laws.items()
-    scene = Scene.nondimensional(psi1=1.0, chi=1.2) if scene is None else scene
+    scene = in_si(Scene.nondimensional(psi1=1.0, chi=1.2)) if scene is None else scene
     motion = Simulation(normal=create(f"normal.{name}", **options)).normal_motion(scene)
     return -float(motion.final_rate) / float(scene.normal_speed)
 
@@ -24,7 +25,7 @@ def test_the_damping_number_of_hunt_and_crossley(e):
     d = damping_number(e)
     assert d * (1.0 + e) == pytest.approx(math.log((1.0 + d) / (1.0 - e * d)), rel=1e-9)
     assert (1.0 - e) / e < d < 1.0 / e
-    scene = Scene.nondimensional(psi1=1.0, chi=1.2)
+    scene = in_si(Scene.nondimensional(psi1=1.0, chi=1.2))
     found = restitution(hunt_crossley={"damping": d / float(scene.normal_speed)})
     assert found == pytest.approx(e, abs=1e-6)
     assert damping_number(1.0) == 0.0
@@ -33,7 +34,7 @@ def test_the_damping_number_of_hunt_and_crossley(e):
 @pytest.mark.parametrize(("number", "e"), [(0.0, 1.0), (0.02, None)])
 def test_a_relaxation_time_is_a_number_of_the_impact(number, e):
     """A v1/z_max: the loss is, to first order, the work of the damping along Hertz's motion."""
-    scene = Scene.nondimensional(psi1=1.0, chi=1.2)
+    scene = in_si(Scene.nondimensional(psi1=1.0, chi=1.2))
     unit = hertz_scales(scene).approach / scene.normal_speed
     found = restitution(kuwabara_kono={"relaxation_time": number * unit})
     if e is not None:

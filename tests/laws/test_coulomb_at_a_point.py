@@ -11,6 +11,7 @@ import contactlab
 from contactlab import Scene, Simulation
 from contactlab_laws.differences.table import LEAST, key, rows
 from tests.laws.coulomb_at_a_point import NORMAL, TANGENTIAL, limit, reference
+from tests.laws.normal_laws import in_si
 
 RECORDED = Path(__file__).with_name("coulomb_at_a_point.csv")
 #: Half of what the half-space and extrapolated laws may be off by themselves, and what annuli are.
@@ -18,7 +19,7 @@ NUMERICAL, ANNULI = 5e-4, 2.5e-3
 #: Springs with elastic shear: those that share a loss are Coulomb's law at every point.
 ELASTIC = contactlab.create("tangential.springs", shear_loss=0.0)
 #: The scene of most tests below.
-OBLIQUE = Scene.nondimensional(psi1=2.0, chi=49 / 34)
+OBLIQUE = in_si(Scene.nondimensional(psi1=2.0, chi=49 / 34))
 
 
 def figures():

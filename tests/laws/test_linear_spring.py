@@ -7,7 +7,7 @@ import contactlab
 from contactlab import Scene, Simulation
 from contactlab.contracts import Increment
 from tests.laws.exact_laws import order
-from tests.laws.normal_laws import LinearSpring
+from tests.laws.normal_laws import LinearSpring, in_si
 
 #: Above it no slip ends the oscillation: the cap is 1e6 of what the spring needs.
 STUCK = 1e-6
@@ -17,7 +17,7 @@ def answer(psi1, chi, steps, **options):
     """psi2 over an elastic linear contact, which lasts pi by its own clock."""
     law = contactlab.create("tangential.linear_spring", **options)
     march = contactlab.create("integrator.symplectic", steps=steps)
-    scene = Scene.nondimensional(psi1=psi1, chi=chi)
+    scene = in_si(Scene.nondimensional(psi1=psi1, chi=chi))
     sim = Simulation(normal=LinearSpring(), tangential=law, integrator=march)
     return sim.run(scene).check()
 
@@ -40,7 +40,7 @@ def test_a_contact_that_sticks_is_a_damped_oscillator(damping):
 def free(psi1, chi, steps, **options):
     """psi2/psi1 with the cap taken away: the law is asked with a friction load without end."""
     law = contactlab.create("tangential.linear_spring", **options)
-    scene = Scene.nondimensional(psi1=psi1, chi=chi)
+    scene = in_si(Scene.nondimensional(psi1=psi1, chi=chi))
     normal = Simulation(normal=LinearSpring()).normal_motion(scene)
     state, velocity, mass = law.start(scene, normal), psi1, scene.pair.tangential_mass
     step = float(normal.duration) / steps

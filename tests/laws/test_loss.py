@@ -13,6 +13,7 @@ from contactlab_laws.dashpot.oscillator import restitution as of_damping
 from contactlab_laws.viscoelastic.relaxation import restitution_of
 from tests.compose.test_eccentric import random_in_space, random_planar, rod
 from tests.laws.exact_laws import order
+from tests.laws.normal_laws import in_si
 from tests.longer import longer
 
 PLANAR = Scene.nondimensional
@@ -103,7 +104,7 @@ def test_the_order_is_two():
 @pytest.mark.parametrize(("name", "number", "expected"), OTHERS)
 def test_psi2_of_other_viscous_laws(name, number, expected):
     """They share their loss too, known by force, radius, approach and rate alone."""
-    scene = PLANAR(psi1=np.array(OTHERS_AT), chi=CHI)
+    scene = in_si(PLANAR(psi1=np.array(OTHERS_AT), chi=CHI))
     off = [
         np.abs(springs(other(name, number), parts, 4 * parts).run(scene).psi2 - expected).max()
         for parts in (50, 100)

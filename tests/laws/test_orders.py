@@ -6,7 +6,7 @@ import pytest
 import contactlab
 from contactlab import Scene, Simulation
 from tests.laws.exact_laws import CHI, grid, order, rebound, rms
-from tests.laws.normal_laws import Damped
+from tests.laws.normal_laws import Damped, in_si
 from tests.laws.reference import TABLE
 from tests.longer import longer
 
@@ -88,7 +88,7 @@ def test_a_rigid_law_is_exact_at_any_step(law):
 @pytest.mark.parametrize("integrator", ["symplectic", "paper"])
 def test_a_normal_force_that_depends_on_the_rate_leaves_the_order(integrator):
     """Psi2 of a damped impact, against many more steps; its restitution needs none."""
-    scene = Scene.nondimensional(psi1=1.2, chi=CHI)
+    scene = in_si(Scene.nondimensional(psi1=1.2, chi=CHI))
     springs = contactlab.create("tangential.springs", springs=100)
 
     def answer(steps):

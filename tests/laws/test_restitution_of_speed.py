@@ -82,10 +82,7 @@ def test_what_is_no_function_of_the_speed(words, told, tmp_path, capsys):
     assert told in capsys.readouterr().err
 
 
-def test_a_scene_without_a_speed_and_two_losses_are_refused():
-    law = create("normal.viscoelastic", speed_loss=0.02)
-    with pytest.raises(ValueError, match="has no speed in m/s, of which e is a function"):
-        Simulation(normal=law).run(Scene.nondimensional(psi1=1.0, chi=1.4))
+def test_two_losses_are_refused():
     with pytest.raises(ValueError, match="only one of them may be given"):
         create("normal.viscoelastic", speed_loss=0.02, restitution=0.9)
 

@@ -11,7 +11,7 @@ from contactlab import Scene, Simulation
 from contactlab_laws.stronge import stages
 from contactlab_laws.stronge.stages import rebound
 from tests.laws.exact_laws import order
-from tests.laws.normal_laws import LinearSpring
+from tests.laws.normal_laws import LinearSpring, in_si
 
 CASES = [
     (psi1, chi, e)
@@ -68,7 +68,7 @@ def test_closed_form_against_direct_integration(psi1, chi, e):
 
 def test_over_a_linear_spring_it_is_the_linear_spring_marched():
     """The lumped model is the spring and slider over an elastic linear contact; order 2."""
-    scene = Scene.nondimensional(psi1=np.linspace(0.05, 6.0, 40), chi=49 / 34)
+    scene = in_si(Scene.nondimensional(psi1=np.linspace(0.05, 6.0, 40), chi=49 / 34))
     exact = Simulation(normal=LinearSpring(), tangential="stronge").run(scene).check().psi2
     found, steps = [], (100, 200, 400, 800)
     for count in steps:
@@ -162,6 +162,6 @@ def test_restitution_under_adhesion_is_that_of_the_motion(normal, speed):
 
 def test_no_caution_of_a_pull_where_the_normal_law_has_none():
     for normal in ("hertz", "tsuji", "thornton"):
-        scene = Scene.nondimensional(psi1=0.7, chi=1.2)
+        scene = in_si(Scene.nondimensional(psi1=0.7, chi=1.2))
         plan = Simulation(normal=normal, tangential="stronge").plan(scene)
         assert not any("does not pull" in str(text) for text in plan.cautions)

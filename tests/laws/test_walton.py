@@ -5,7 +5,7 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation
-from tests.laws.normal_laws import Damped
+from tests.laws.normal_laws import Damped, in_si
 
 
 @pytest.mark.parametrize("normal", ["hertz", Damped()])
@@ -13,7 +13,9 @@ from tests.laws.normal_laws import Damped
 def test_the_lesser_of_two_impulses(normal, slip_restitution):
     chi, psi1 = 1.2, np.array([-3.0, 0.1, 1.0, 2.5, 5.0, 40.0])
     law = contactlab.create("tangential.walton", slip_restitution=slip_restitution)
-    result = Simulation(normal=normal, tangential=law).run(Scene.nondimensional(psi1=psi1, chi=chi))
+    result = Simulation(normal=normal, tangential=law).run(
+        in_si(Scene.nondimensional(psi1=psi1, chi=chi))
+    )
     e = result.check().normal_restitution
     lost = np.minimum(2.0 * chi * (1.0 + e), (1.0 + slip_restitution) * np.abs(psi1))
     assert result.psi2 == pytest.approx(psi1 - np.sign(psi1) * lost, abs=1e-9)

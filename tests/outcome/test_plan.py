@@ -19,7 +19,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.whole_impact import no_force
 from contactlab.outcome.plan import PSI2_ERROR, TANGENTIAL_MOTION
-from tests.laws.normal_laws import Damped, ForceFree, LinearSpring
+from tests.laws.normal_laws import Damped, ForceFree, LinearSpring, in_si
 
 CHI = 1.4411764706
 MIXED = [0.0, 1.2, 9.0, 50.0]
@@ -125,7 +125,7 @@ class Clutches(NormalLaw):
 
 def test_a_solved_normal_motion_is_not_declared_exact():
     """Its load impulse is good to 1e-7, and friction can change psi by 4 chi."""
-    plan = Simulation(normal=LinearSpring(), tangential="coulomb").plan(scene(MIXED))
+    plan = Simulation(normal=LinearSpring(), tangential="coulomb").plan(in_si(scene(MIXED)))
     assert plan.psi2_error == pytest.approx(np.full(4, 4e-7 * CHI), rel=1e-3)
     assert "integrated from first touch to separation" in str(plan)
 
@@ -149,7 +149,7 @@ def test_impacts_that_do_not_part_are_left_out_and_nothing_is_said_of_their_numb
 
 def test_undeclared_errors_are_said_of_the_impacts_that_are_marched():
     """Of a damped contact the springs declare nothing; a central impact is known without them."""
-    plan = Simulation(normal=Damped(), **SPRINGS).plan(scene([0.0, 1.2]))
+    plan = Simulation(normal=Damped(), **SPRINGS).plan(in_si(scene([0.0, 1.2])))
     told = said(plan.computed)
     assert told[f"numerical error of psi2: {UNDECLARED}"] == [False, True]
     declared = [text for text, where in told.items() if where == [True, False]]

@@ -358,7 +358,9 @@ def test_an_eccentric_answer_that_is_wrong_is_found():
             slip_velocity_change=share * motion.slip_velocity_change,
         )
         spoiled = attrs.evolve(sound, motion=moved)
-        laws = SimpleNamespace(run=lambda _, spoiled=spoiled: spoiled, tangential=exact.tangential)
+        laws = SimpleNamespace(
+            run=lambda _, spoiled=spoiled: spoiled, tangential=exact.tangential, laws=exact.laws
+        )
         outcome = judge_run(case, laws, scene)
         assert outcome.outcome == WRONG
         assert words in outcome.note
