@@ -19,6 +19,7 @@ from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import CoupledTangentialLaw, TangentialLaw, shares_loss
 from contactlab.contracts.tangential_motion import Observer
+from contactlab.impact.cautions import OUTSIDE
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import chosen, every, greater, spread
 from contactlab.numeric.types import Array, Real
@@ -213,7 +214,7 @@ def _near_singular(scene: Scene) -> list[str]:
     if least > NEAR_SINGULAR[0][0]:
         return []
     sizes = [f"by up to {error:g}" for share, error in NEAR_SINGULAR if least > share / 10.0]
-    known = sizes[0] if sizes else "by more than the whole answer"
+    known = sizes[0] if sizes else f"by an amount {OUTSIDE}"
     return [
         "friction can jam and W is nearly singular, "
         f"1 - W_nt²/(W_nn W_tt) = {least:.2g}: 50 springs in 200 steps were off {known} there "

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.impact.normal_spin import NormalSpin, normal_spin
+from contactlab.impact.cautions import OUTSIDE
+from contactlab.impact.normal_spin import LARGEST_W, NormalSpin, normal_spin
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import some
 from contactlab.numeric.types import Mask
@@ -17,8 +18,8 @@ TURNS = "spin about the normal: its friction is left out"
 LEAST_SHIFT, LEAST_LOSS = 1e-3, 1e-2
 #: What the sizes of a caution are measured for.
 MEASURED = (
-    "model, not numerical error; by a table of elastic impacts, psi1 to 7, w to 5, chi from 1 to "
-    "1.75, beyond a rough guide"
+    "model, not numerical error; by a table of elastic impacts, chi from 1 to 1.75, and its "
+    f"continuation, w to {LARGEST_W:g}"
 )
 
 
@@ -56,18 +57,27 @@ def _sizes(spin: NormalSpin, *, batch: bool) -> Clauses:
     number = "w = kappa omega a/(mu v1) = {:.2g}"
     shifts = size >= LEAST_SHIFT
     slows = ~shifts & (percent >= 100.0 * LEAST_LOSS)
+    known = np.asarray(spin.known)
+    beyond = (shifts | slows) & ~known
     clauses = (
         Clause(
             f"spin about the normal: its friction, left out, shifts psi2 by {about} {{:.2g}} "
             f"({number}), and the spin would lose {about} {{:.2g}} % ({MEASURED})",
-            shifts,
+            shifts & known,
             (size, w, percent),
+            NORMAL_SPIN,
+        ),
+        Clause(
+            f"spin about the normal: its friction, left out, shifts psi2, and takes spin, by "
+            f"amounts {OUTSIDE} ({number}; {MEASURED})",
+            beyond,
+            (w,),
             NORMAL_SPIN,
         ),
         Clause(
             f"spin about the normal: the spin would lose {about} {{:.2g}} % by its friction, left "
             f"out ({number}), which shifts psi2 by less than {LEAST_SHIFT:g} ({MEASURED})",
-            slows,
+            slows & known,
             (percent, w),
             NORMAL_SPIN,
         ),

@@ -24,8 +24,11 @@ FIRST_YIELD = 1.6
 GPA = 1e9
 #: Above this ratio of contact radius to R the theory of half-spaces is doubtful (theory §8).
 DOUBTFUL_SIZE_RATIO = 0.1
-#: Growth of e_T of deep contacts over C² = z/R (theory §15).
-DEEPER = (0.8, 2.0)
+#: Growth of e_T of deep contacts over C² = z/R, and the deepest of the 13 bounces of a superball
+#: from which it is (theory §15; ``study/measured/superball.toml``).
+DEEPER, DEEPEST = (0.8, 2.0), 0.175
+#: What a caution says in place of a size beyond its measurements.
+OUTSIDE = "outside what was measured"
 #: Range of attraction of surfaces in m, about the distance between atoms.
 RANGE = 3e-10
 #: Sphere radius in m from which the unit was probably mm.
@@ -56,11 +59,14 @@ def large_contact(ratio: float) -> tuple[str, ...]:
     if not ratio > DOUBTFUL_SIZE_RATIO:
         return ()
     low, high = (rate * ratio * ratio for rate in DEEPER)
+    here = f"by {low:.2g} to {high:.2g}"
+    if ratio * ratio > DEEPEST:
+        here = f"{OUTSIDE}, C² up to {DEEPEST:g}"
     return (
         f"C = {ratio:.3g}, contact radius over R: the contact is not small against the "
         f"radius, the theory of half-spaces is doubtful above {DOUBTFUL_SIZE_RATIO}; of balls "
-        f"e_T = -psi2/psi1 grows by {DEEPER[0]:g} to {DEEPER[1]:g} times C², here by {low:.2g} to "
-        f"{high:.2g} (model; theory §15)",
+        f"e_T = -psi2/psi1 grows by {DEEPER[0]:g} to {DEEPER[1]:g} times C², here "
+        f"{here} (model; theory §15)",
     )
 
 

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from contactlab.impact.cautions import OUTSIDE
 from contactlab.impact.scene import Scene
 from contactlab.impact.table import between_nodes, read_rows
 from contactlab.numeric.types import Array
@@ -19,6 +20,8 @@ FILE = Path(__file__).with_name("coupling.csv")
 LEFT_OUT = "unlike bodies: the elastic coupling of pressure and slip is left out"
 #: Smallest shift of psi2 with a caution.
 LEAST_SHIFT = 1e-3
+#: Excess over an axis of the table that counts as rounding, over its end.
+ROUNDING = 1e-9
 
 
 class Nodes(NamedTuple):
@@ -74,29 +77,49 @@ def coupling_shift(scene: Scene) -> Any:
     return np.where(np.asarray(scene.friction_coefficient) == 0.0, 0.0, shift)
 
 
+def coupling_measured(scene: Scene) -> Any:
+    """Return where the table of ``coupling_shift`` has an impact; theory goes beyond its psi1.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    bool or array of bool, shape (...,)
+    """
+    (_, *axes), kappa = nodes().axes, np.asarray(scene.pair.stiffness_ratio)
+    nu = (2.0 - 2.0 * kappa) / (2.0 - kappa)
+    within: Any = True
+    for entry, axis in zip((scene.chi, nu, coupling_number(scene)), axes, strict=True):
+        slack = ROUNDING * axis[-1]
+        within = within & (entry >= axis[0] - slack) & (entry <= axis[-1] + slack)
+    return within
+
+
 def coupling(scene: Scene) -> tuple[str, ...]:
     """Return the cautions of unlike bodies, whose normal pressure shears the contact."""
     beta = scene.pair.dundurs_beta
     if beta == 0.0 if isinstance(beta, float) else not np.any(beta):
         return ()
     shape = np.broadcast_shapes(scene.shape, (1,))
-    number, shift, chi = (
+    number, shift, known = (
         np.broadcast_to(each, shape).ravel()
-        for each in (
-            coupling_number(scene),
-            coupling_shift(scene),
-            scene.chi,
-        )
+        for each in (coupling_number(scene), coupling_shift(scene), coupling_measured(scene))
     )
-    upto = "up to " if scene.shape else ""
-    if not np.any(shift >= LEAST_SHIFT):
+    told = shift >= LEAST_SHIFT
+    if not told.any():
         return ()
-    worst, (axes, _) = int(np.argmax(shift)), nodes()
-    beyond = "at least " if number[worst] > axes[3][-1] else "about "
-    low, high = axes[1][0], axes[1][-1]
-    rough = "" if low <= chi[worst] <= high else f"; a rough guide at chi = {chi[worst]:.3g}"
+    sized = np.where(told & known, shift, 0.0)
+    worst = int(np.argmax(sized if sized.any() else shift))
+    size = f"by {'up to ' if scene.shape else ''}about {shift[worst]:.1g}"
+    if not sized.any():
+        size = f"by an amount {OUTSIDE}"
+    elif np.any(told & ~known):
+        size += f", and in other impacts by an amount {OUTSIDE}"
+    _, (low, high), _, (_, most) = ((axis[0], axis[-1]) for axis in nodes().axes)
     return (
-        f"{LEFT_OUT}, Lambda = kappa beta/mu = {number[worst]:.2g}; it moves psi2 by "
-        f"{upto}{beyond}{shift[worst]:.1g} (model, not numerical error; by a table "
-        f"of half-space solutions, chi from {low:g} to {high:g}{rough})",
+        f"{LEFT_OUT}, Lambda = kappa beta/mu = {number[worst]:.2g}; it moves psi2 {size} (model, "
+        f"not numerical error; by a table of half-space solutions, chi from {low:g} to {high:g}, "
+        f"Lambda to {most:g})",
     )

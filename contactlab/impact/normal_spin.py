@@ -22,6 +22,8 @@ FILE = Path(__file__).with_name("normal_spin.csv")
 ALL_SLIPS = 2.1100237
 #: Points of the sums over a gross slip; 16 hold the closed forms to 1e-6.
 POINTS = 16
+#: Largest w at which the continuation beyond the table was measured, by half-space solutions.
+LARGEST_W = 50.0
 
 
 class Nodes(NamedTuple):
@@ -46,12 +48,15 @@ class NormalSpin(NamedTuple):
         Shift of psi2, with the sign in which slip before the impact is positive.
     loss : float or array
         Part of the relative spin about the normal that friction takes.
+    known : bool or array of bool
+        True where shift and loss are those of the table, or of its closed form of gross slip.
     """
 
     acts: Any
     w: Any
     shift: Any
     loss: Any
+    known: Any
 
 
 @cache
@@ -69,8 +74,9 @@ def shift_and_loss(psi1: Real, chi: Real, w: Real, chi_w: Real) -> tuple[Any, An
 
     Both are linear between the nodes of a table of half-space solutions with psi1 up to 7, chi
     from 1 to 1.75 and w up to 5. Where the shift exceeds 0.01 it lies within 0.6 to 1.9 times that
-    of random impacts, nu from 0 to 0.49. Gross slip beyond the table has a closed form. Other
-    entries are clipped to the range of the table: a rough guide.
+    of random impacts, nu from 0 to 0.49. Gross slip beyond the table has a closed form, and larger
+    w a continuation that holds up to ``LARGEST_W``. Other entries are clipped to the table's range:
+    ``NormalSpin.known`` is False there.
 
     Parameters
     ----------
@@ -157,4 +163,14 @@ def normal_spin(scene: Scene, *, answered: Mask = False) -> NormalSpin | None:
         chi_w = inertia * inverse * (radius / central.pair.radius) ** 2
         shift, loss = shift_and_loss(central.psi1, central.chi, w, chi_w)
         part = np.where(acts, loss / np.where(w > 0.0, w, 1.0), 0.0)
-    return NormalSpin(acts, w, np.where(acts, shift, 0.0), part)
+    known = _known(np.abs(central.psi1), np.asarray(central.chi), w)
+    return NormalSpin(acts, w, np.where(acts, shift, 0.0), part, known)
+
+
+def _known(psi1: Array, chi: Array, w: Array) -> Mask:
+    """Return where the table has an impact, or it slips throughout beyond the table."""
+    slips, ratios, _ = (axis[[0, -1]] for axis in nodes().axes)
+    tabled = (psi1 <= slips[1]) & (chi >= ratios[0]) & (chi <= ratios[1])
+    gross = psi1 > np.maximum(slips[1], 4.0 * chi)
+    known: Mask = (tabled | gross) & (w <= LARGEST_W)
+    return known

@@ -9,7 +9,8 @@ from collections.abc import Collection, Mapping
 import attrs
 import numpy as np
 
-from contactlab.impact.coupling import LEFT_OUT, coupling_shift
+from contactlab.impact.cautions import OUTSIDE
+from contactlab.impact.coupling import LEFT_OUT, coupling_measured, coupling_shift
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.columns import QUANTITIES
 from contactlab_fit import outliers, patterns, plausible
@@ -121,6 +122,11 @@ def cautions(problem: Problem, values: Array) -> list[str]:
     said = [*said, *_sheared(problem)]
     if not (any(text.startswith(LEFT_OUT) for text in said) and result.scene.planar):
         return said
+    if not np.all(coupling_measured(result.scene)):
+        return [
+            *said,
+            f"left out, the coupling of unlike bodies moves the values by amounts {OUTSIDE}",
+        ]
     change = coupling_shift(result.scene) / np.asarray(result.scene.psi_scale)
     velocity = result.motion.slip_velocity_change + change
     motion = attrs.evolve(result.motion, slip_velocity_change=velocity)

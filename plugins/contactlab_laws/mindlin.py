@@ -19,6 +19,7 @@ from contactlab.contracts import (
     WholeImpact,
     sliding,
 )
+from contactlab.impact.cautions import OUTSIDE
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import shaped, spread
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, choice, quantity
@@ -83,6 +84,8 @@ ELASTIC = {
     "displacement_rescaled": _MADE.format("by up to 7.5 % of the energy of slip"),
     "increment": _MADE.format("and bodies slip up to 5.2 % faster than they met"),
 }
+#: Largest chi of these, elastic and damped, and the least restitution of the damped ones.
+ELASTIC_CHI, DAMPED_CHI, LEAST_E = 300.0, 30.0, 0.5
 _DAMPED = "and bodies slip faster than they met: by up to {} under damped normal laws of e = 0.5"
 DAMPED_GAIN = {
     "displacement": _MADE.format(_DAMPED.format("14 % (26 % for chi near 30)")),
@@ -219,8 +222,12 @@ class MindlinCap(CausalTangentialLaw):
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of every law, of partial slip, and of energy that the form makes."""
-        gains = ELASTIC if "elastic_hertz" in normal.offers else DAMPED_GAIN
+        elastic = "elastic_hertz" in normal.offers
+        gains, most = (ELASTIC, ELASTIC_CHI) if elastic else (DAMPED_GAIN, DAMPED_CHI)
         made = [gains[self.form]] if self.form in gains else []
+        least = LEAST_E * (1.0 - 1e-5) * scene.normal_speed
+        if made and not np.all((scene.chi <= most) & (-normal.final_rate >= least)):
+            made = [_MADE.format(f"by an amount {OUTSIDE}")]
         return (*super().cautions(scene, normal), PARTIAL_SLIP, *made)
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:

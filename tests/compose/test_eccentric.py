@@ -742,7 +742,7 @@ def test_cautions_of_any_two_bodies(changes, words):
     """Of eccentric impacts and, in the last row, where friction does not change the approach."""
     material, period = changes.pop("material", STEEL), changes.pop("bending_period", None)
     body = RigidBody(
-        mass=1.0, principal=(4e-3, 4e-3, 4e-3), material=material, curvature_radius=0.05,
+        mass=33.0, principal=(0.132, 0.132, 0.132), material=material, curvature_radius=0.05,
         bending_period=period,
     )  # fmt: skip
     met = Encounter(

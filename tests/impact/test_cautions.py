@@ -10,7 +10,10 @@ import pytest
 
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
+from contactlab.impact.cautions import DEEPEST
 from contactlab.impact.coupling import coupling_shift
+from contactlab.impact.hertz import hertz_scales
+from contactlab.study.evidence import SOURCES
 
 GUIDE = Path(contactlab.__file__).parent / "guide" / "theory-coupling.md"
 CHI = 49.0 / 34.0
@@ -18,9 +21,9 @@ PSI1 = (0.5, 1.0, 1.5, 2.0, 3.0)
 SOLID, SHELL = np.sqrt(0.4), np.sqrt(2.0 / 3.0)
 
 
-def coupled(strength, psi1):
+def coupled(strength, psi1, *, chi=CHI):
     """Return the scene of psi1 whose Lambda = kappa beta/mu is ``strength``."""
-    return Scene.nondimensional(psi1=psi1, chi=CHI, poisson_ratio=0.3, coupling_number=strength)
+    return Scene.nondimensional(psi1=psi1, chi=chi, poisson_ratio=0.3, coupling_number=strength)
 
 
 def table():
@@ -71,7 +74,11 @@ def test_the_plan_says_the_worst_of_a_batch():
     assert "Lambda = kappa beta/mu = 0.5; it moves psi2 by about 0.05 (model" in alone
     batch = str(simulation.plan(coupled(0.5, np.array([2.0, 1.0, 3.0]))))
     assert "Lambda = kappa beta/mu = 0.5; it moves psi2 by up to about 0.05 (model" in batch
-    assert "by at least 0.4" in str(simulation.plan(coupled(4.5, 1.0)))
+    for number, chi in ((4.5, 49 / 34), (0.5, 0.7), (0.5, 3.0)):
+        beyond = str(simulation.plan(coupled(number, 1.0, chi=chi)))
+        assert "moves psi2 by an amount outside what was measured (model" in beyond
+    mixed = str(simulation.plan(coupled(np.array([0.5, 4.5]), 1.0)))
+    assert "= 0.5; it moves psi2 by up to about 0.05, and in other impacts by an amount" in mixed
     assert "unlike bodies" not in str(simulation.plan(coupled(0.02, 0.1)))
     assert "unlike bodies" not in str(simulation.plan(coupled(0.0, 1.0)))
 
@@ -110,10 +117,81 @@ def test_without_friction_there_is_no_caution():
 def test_a_deep_contact_is_told_with_the_growth_of_its_error():
     """Theory §15: each 0.1 of z/R = C² adds 0.08 to 0.2 to e_T; C by Hertz's maximum radius."""
     soft = Material(young_modulus=1e7, poisson_ratio=0.45, density=1130.0)
-    scene = Scene(Sphere(0.0214, soft), HalfSpace(Material.named("steel")), 0.3, 10.0, 1.0)
-    result = Simulation().run(scene)
-    ratio = float(result.motion.maximum_radius) / 0.0214
-    told = next(str(each) for each in result.plan.cautions if "not small" in str(each))
-    assert ratio > 0.3
-    words = f"here by {0.8 * ratio**2:.2g} to {2.0 * ratio**2:.2g} (model; theory §15)"
-    assert words in told
+
+    def at(speed):
+        ball = Sphere(0.0214, soft)
+        scene = Scene(ball, HalfSpace(Material.named("steel")), 0.3, speed, 0.1 * speed)
+        result = Simulation().run(scene)
+        told = next(str(each) for each in result.plan.cautions if "not small" in str(each))
+        return float(result.motion.maximum_radius) / 0.0214, told
+
+    ratio, told = at(5.0)
+    assert 0.3 < ratio < 0.4
+    assert f"here by {0.8 * ratio**2:.2g} to {2.0 * ratio**2:.2g} (model; theory §15)" in told
+    ratio, told = at(40.0)
+    assert ratio**2 > 0.5
+    assert "here outside what was measured, C² up to 0.175 (model" in told
+
+
+def test_the_deepest_contact_with_a_size_is_the_deepest_that_was_measured():
+    file = next(each for each in SOURCES if each.name == "superball").read()
+    series = file.measured[0]
+    scales = hertz_scales(scene := file.scene_at(**{series.against: series.x}))
+    deepest = float(np.max(scales.approach / scene.pair.radius))
+    assert pytest.approx(deepest, abs=1e-3) == DEEPEST
+
+
+SOFT = Material(young_modulus=3e6, poisson_ratio=0.45, density=1000.0)
+
+
+def dropped(speed, *, angle_deg=20.0, mass=None):
+    """Return a ball of rubber that meets steel at an angle."""
+    ball = Sphere(0.03, SOFT, mass=mass)
+    return Scene.at_angle(
+        ball, HalfSpace(Material.named("steel")), 0.5, speed=speed, angle_deg=angle_deg
+    )
+
+
+def of_groups(chi):
+    return Scene.nondimensional(psi1=1.0, chi=chi)
+
+
+def turning(w, chi=CHI):
+    return Scene.nondimensional(psi1=1.0, chi=chi, spin=w, spin_inertia=0.01)
+
+
+#: Laws, a scene within the measurements of a caution's size and one beyond, and words of both.
+SIZES = [
+    ({"normal": ("viscoelastic", 0.8)}, dropped(3.0), dropped(30.0), "deep contact", "by about"),
+    ({"normal": ("viscoelastic", 0.8)}, of_groups(1.4), of_groups(4.0), "one loss", "is trusted"),
+    ({"normal": ("tsuji", 0.8)}, of_groups(1.4), of_groups(4.0), "alone does not", "by up to"),
+    ({"normal": ("hunt_crossley", 0.5)}, of_groups(1.4), of_groups(0.5), "alone does not", "up to"),
+    ({"tangential": "mindlin_cap"}, of_groups(30.0), of_groups(400.0), "from nothing", "% faster"),
+    ({}, turning(0.5), turning(100.0), "spin about the normal: its friction, left", "by about"),
+    ({}, turning(0.5), turning(0.5, chi=3.0), "spin about the normal: its friction", "by about"),
+]
+
+
+@pytest.mark.parametrize(("laws", "inside", "outside", "about", "size"), SIZES)
+def test_a_size_ends_where_its_measurements_end(laws, inside, outside, about, size):
+    named = dict(laws)
+    if "normal" in named:
+        name, e = named["normal"]
+        named["normal"] = contactlab.create(f"normal.{name}", restitution=e)
+
+    def said(scene):
+        cautions = map(str, Simulation(**named).plan(scene).cautions)
+        return [text for text in cautions if about in text]
+
+    (within,), (beyond,) = said(inside), said(outside)
+    assert size in within
+    assert "outside what was measured" not in within
+    assert size not in beyond
+    assert "outside what was measured" in beyond
+
+
+@pytest.mark.parametrize("normal", ["viscoelastic", "tsuji"])
+def test_below_the_measured_restitutions_e_t_has_no_size(normal):
+    law = contactlab.create(f"normal.{normal}", restitution=0.05)
+    told = str(Simulation(normal=law, tangential="springs").plan(of_groups(1.4)).cautions)
+    assert "e_T = -psi2/psi1 at e = 0.05 is outside what was measured" in told

@@ -74,9 +74,9 @@ def test_what_was_not_measured_has_no_number():
     for chi, e in ((30.0, 0.5), (0.01, 0.5), (1.2, 0.05)):
         told = cautions(1.0, chi, normal=create("normal.tsuji", restitution=e))
         (text,) = [each for each in told if "limited separately" in each]
-        assert "not measured" in text
+        assert "outside what was measured" in text
     motion = SimpleNamespace(law=Unknown(), final_rate=-1.0, scene=SCENE, offers=frozenset())
-    assert "not measured" in springs(SCENE, motion)[0]
+    assert "outside what was measured" in springs(SCENE, motion)[0]
     assert choice(SCENE, motion) == ()
 
 

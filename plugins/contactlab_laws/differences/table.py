@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from decimal import ROUND_CEILING, Decimal
 from functools import cache
 from pathlib import Path
@@ -12,8 +13,9 @@ import numpy as np
 
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
+from contactlab.impact.cautions import OUTSIDE
 from contactlab.impact.scene import Scene
-from contactlab.numeric.types import Real
+from contactlab.numeric.types import Mask, Real
 
 FILE = Path(__file__).with_name("differences.csv")
 #: Differences of psi2 below this are not worth a sentence.
@@ -28,7 +30,8 @@ BETWEEN = 1.1
 #: The same for springs: beside the measured psi1 and chi their error is up to a half larger.
 AROUND = 1.6
 #: The impacts that were measured, for the choice of a law.
-MEASURED = "measured for chi 0.8 to 1.8"
+CHI = (0.8, 1.8)
+MEASURED = f"measured for chi {CHI[0]:g} to {CHI[1]:g}"
 #: chi at which the error of springs was measured, each over all psi1.
 NODES = (0.05, 0.1, 0.2, 0.4, 0.8, 1.2, 1.8, 2.5, 3.5, 5.0, 7.0, 10.0)
 
@@ -75,8 +78,8 @@ def springs(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
     if "elastic_hertz" in normal.offers or not scene.rubs:
         return ()
     own, e, chi = rows().get(key(normal.law)), _restitution(normal), np.asarray(scene.chi)
-    if own is None or np.min(e) < own[0].restitution - ROUNDED or _beyond(chi):
-        told = "psi2 is off by an amount that was not measured here"
+    if own is None or not np.all(_within(e, own)) or _beyond(chi):
+        told = f"psi2 is off by an amount {OUTSIDE}"
     else:
         size = _by_springs(own, e, chi)
         if not size >= LEAST:
@@ -86,6 +89,13 @@ def springs(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         "each spring is limited separately, which is not Coulomb's law at every point under this "
         f"normal law: {told} (model, not numerical error); tangential.annulus has the right limit",
     )
+
+
+def _within(e: Real, rows: tuple[Row, ...]) -> Mask:
+    """Return which restitutions lie within those of a law's rows."""
+    least, most = rows[0].restitution - ROUNDED, rows[-1].restitution + ROUNDED
+    within: Mask = (np.asarray(e) >= least) & (np.asarray(e) <= most)
+    return within
 
 
 def _beyond(chi: Real) -> bool:
@@ -115,26 +125,33 @@ def choice(scene: Scene, normal: NormalMotion, *, shared: bool = False) -> tuple
     measured, own = rows(), key(normal.law)
     if own not in measured or "elastic_hertz" in normal.offers:
         return ()
+    e, chi = _restitution(normal), np.asarray(scene.chi)
+    if np.all(e == 1.0) and own.endswith(".Tsuji"):
+        return ()  # no damping: Hertz's motion
+    known = _within(e, measured[own]) & (chi >= CHI[0]) & (chi <= CHI[1])
+    shear = "where shear shares the loss" if shared else "with elastic shear"
+    head = (
+        f"the restitution alone does not decide psi2: {shear} other normal laws of the same "
+        "restitution move psi2 by "
+    )
+    e = np.where(known, e, math.nan)
+    if not np.any(known):
+        return (f"{head}an amount {OUTSIDE}, chi from {CHI[0]:g} to {CHI[1]:g} (model)",)
     if own.endswith(".Tsuji"):
-        if np.all(_restitution(normal) == 1.0):
-            return ()  # no damping: Hertz's motion
         sizes = {
-            law.rpartition(".")[2]: _largest(normal, each, shared)
+            law.rpartition(".")[2]: _largest(e, each, shared)
             for law, each in measured.items()
             if law != own and each[0].restitution <= SPANNED
         }
         least, most = (pick(sizes, key=sizes.__getitem__) for pick in (min, max))
         size_text = f"{_above(sizes[least])} ({least}) to {_above(sizes[most])} ({most})"
     else:
-        size = _largest(normal, measured[own], shared)
+        size = _largest(e, measured[own], shared)
         if not size >= LEAST:
             return ()
         size_text = f"{_above(size)} (Tsuji)"
-    shear = "where shear shares the loss" if shared else "with elastic shear"
-    return (
-        f"the restitution alone does not decide psi2: {shear} other normal laws of the "
-        f"same restitution move psi2 by up to {size_text} ({MEASURED}; model, not numerical error)",
-    )
+    others = "" if np.all(known) else f"; of other impacts {OUTSIDE}"
+    return (f"{head}up to {size_text} ({MEASURED}{others}; model, not numerical error)",)
 
 
 def _above(size: float, factor: float = BETWEEN) -> str:
@@ -144,9 +161,8 @@ def _above(size: float, factor: float = BETWEEN) -> str:
     return f"{float(digit):.1g}"
 
 
-def _largest(normal: NormalMotion, measured: tuple[Row, ...], shared: bool) -> float:
+def _largest(e: Real, measured: tuple[Row, ...], shared: bool) -> float:
     """Return the largest difference from Tsuji's law, interpolated in the restitution."""
-    e = _restitution(normal)
     tabulated = [row.restitution for row in measured]
     largest = [row.shared if shared else row.choice for row in measured]
     sizes = np.interp(e, tabulated, largest)

@@ -5,14 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from contactlab.contracts.motion import NormalMotion
-from contactlab.impact.cautions import named
+from contactlab.impact.cautions import DEEPEST, OUTSIDE, named
 from contactlab.impact.hertz import slips_throughout
 from contactlab.impact.scene import Scene
+from contactlab.numeric.types import Array, Mask
 
 #: Largest change of e_T = -psi2/psi1 from half the loss in shear to twice as much, by restitution,
 #: for solid spheres and shells; below 0.9 it is at least the rms of eight measured balls.
 RESTITUTIONS = (0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 1.0)
 SIZES = (0.19, 0.16, 0.16, 0.16, 0.04, 0.02, 0.0)
+#: chi of these spheres.
+CHI = (0.8, 1.8)
 #: A ball whose approach is deep gains so much e_T for each z/R, least and most, from a depth on.
 LEAST_GAIN, MOST_GAIN, DEEP = 1.2, 1.9, 0.02
 #: Young's modulus in Pa from which a restitution is that of a metal, which loses by yield.
@@ -33,14 +36,24 @@ def cautions(scene: Scene, normal: NormalMotion, *, fitted: bool) -> tuple[str, 
     grips = np.logical_not(slips) & (e < ELASTIC)
     if not np.any(grips):
         return ()
-    least = float(np.min(e, where=grips, initial=1.0))
-    size = float(np.interp(least, RESTITUTIONS, SIZES))
-    said = (
-        f"one loss for pressure and shear: e_T = -psi2/psi1 is trusted to {size:.2g} at "
-        f"e = {least:.2g}, by eight measured balls (model; shear_loss fits it)"
-    )
     of_bodies = (*_deep(scene, normal), *_metal(scene)) if named(scene) else ()
-    return (*(() if fitted else (said,)), *of_bodies)
+    return (*(() if fitted else _trusted(np.asarray(scene.chi), e, grips)), *of_bodies)
+
+
+def _trusted(chi: Array, e: Array, grips: Mask) -> tuple[str, ...]:
+    """Return how far e_T is trusted where it was measured, and where it was not."""
+    known = (e >= RESTITUTIONS[0]) & (chi >= CHI[0]) & (chi <= CHI[1])
+    said = []
+    if np.any(within := grips & known):
+        least = float(np.min(e, where=within, initial=1.0))
+        size = float(np.interp(least, RESTITUTIONS, SIZES))
+        said.append(f"is trusted to {size:.2g} at e = {least:.2g}, by eight measured balls")
+    if np.any(beyond := grips & ~known):
+        least = float(np.min(e, where=beyond, initial=1.0))
+        ends = f"e from {RESTITUTIONS[0]:g}, chi from {CHI[0]:g} to {CHI[1]:g}"
+        said.append(f"at e = {least:.2g} is {OUTSIDE}, {ends}")
+    head = "one loss for pressure and shear: e_T = -psi2/psi1"
+    return tuple(f"{head} {each} (model; shear_loss fits it)" for each in said)
 
 
 def _deep(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
@@ -49,10 +62,10 @@ def _deep(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
     if not depth > DEEP:
         return ()
     low, high = LEAST_GAIN * depth, MOST_GAIN * depth
-    return (
-        f"deep contact, z/R = {depth:.2g}: measured e_T are higher by about {low:.2g} to "
-        f"{high:.2g} (model)",
-    )
+    size = f"about {low:.2g} to {high:.2g}"
+    if depth > DEEPEST:
+        size = f"an amount {OUTSIDE}, z/R up to {DEEPEST:g}"
+    return (f"deep contact, z/R = {depth:.2g}: measured e_T are higher by {size} (model)",)
 
 
 def _metal(scene: Scene) -> tuple[str, ...]:
