@@ -180,7 +180,7 @@ static inline int contactlab_bodies_bounce(const contactlab_rigid *one, const co
       if (!(fabs(psi1) <= 1e100)) return CONTACTLAB_BODIES_RANGE;
       status = contactlab_impact_follow(psi1, chi, friction * pulled, stiffness * pulled / friction,
                                         CONTACTLAB_IMPACT_EXACT, 20000, &out);
-      if (status) return status;
+      if (status) return status == CONTACTLAB_IMPACT_RANGE ? CONTACTLAB_BODIES_RANGE : status;
       change = out.change * unit;
       push = approach * (out.rate - 1);
       drag = (change - pulled * push) / (mobility - pulled * pulled);

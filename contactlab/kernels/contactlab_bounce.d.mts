@@ -72,7 +72,7 @@ export function bounce(one: SphereBody, other: Body, contact: number | Contact, 
 /** Returns psi2 of psi1, chi and the restitution (1), NaN for what is no number. */
 export function rebound(psi1: number, chi: number, restitution?: number): number;
 
-/** Returns the course of one impact of spheres, by springs (120) in steps (600). */
+/** Returns the course of one impact of spheres, by springs (120) in steps (600). Throws a RangeError as bounce does. */
 export function impact(psi1: number, chi: number, springs?: number, steps?: number, restitution?: number): Impact;
 
 /** Balls to begin with: each a body for bounce and its contact. */

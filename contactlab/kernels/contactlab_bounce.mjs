@@ -383,11 +383,16 @@ const LOSSY = [
  *   psi2; the duration, and the largest P, scaled; at the ends of the steps, the start first: time over the
  *   duration, F and mu P over the largest mu P, and u; and of each step the springs from the centre: 0 out of
  *   contact, 1 stuck, 2 and 3 slipping forth, back
+ * @throws {RangeError} for what is no number, or out of range
  */
 export function impact(psi1, chi, springs = 120, steps = 600, restitution = 1) {
+  if (!(Number.isFinite(psi1) && chi > 0 && chi <= MOST && springs >= 1 && steps >= 1 && restitution >= 0
+    && restitution <= 1)) {
+    throw new RangeError(`impact: psi1 = ${psi1} must be finite, chi = ${chi} above 0 and at most 1e4, springs = ${springs}`
+      + ` and steps = ${steps} at least 1, restitution = ${restitution} from 0 to 1`);
+  }
   if (restitution !== 1) {
-    const e = restitution >= 0 && restitution < 1 ? Math.max(restitution, LEAST) : NaN;
-    return lossyImpact(psi1, chi, springs, Math.ceil(steps / 2), e);
+    return lossyImpact(psi1, chi, springs, Math.ceil(steps / 2), Math.max(restitution, LEAST));
   }
   const squares = Float64Array.from({length: springs}, (_, i) => ((i + 0.5) / springs) ** 2);
   const w = new Float64Array(springs);

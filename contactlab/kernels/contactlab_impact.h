@@ -30,8 +30,9 @@
 enum {
   CONTACTLAB_IMPACT_DONE = 0,
   CONTACTLAB_IMPACT_UNSETTLED = 1, /* it neither ends nor settles in so many steps */
-  CONTACTLAB_IMPACT_OUTGROWN = 2,  /* the velocities of a jam outgrow the numbers */
-  CONTACTLAB_IMPACT_MEMORY = 3     /* it slips back and forth more often than its memory holds */
+  CONTACTLAB_IMPACT_OUTGROWN = 2,  /* velocities, as of a jam, outgrow the numbers */
+  CONTACTLAB_IMPACT_MEMORY = 3,    /* it slips back and forth more often than its memory holds */
+  CONTACTLAB_IMPACT_RANGE = 4      /* a number is none, or out of range: no bodies have it */
 };
 
 /* 1 + s lam from which the time of gross slip is Hertz's; below it the difference of two such times would cancel. */
@@ -706,6 +707,13 @@ static inline int contactlab_impact_slide(contactlab_impact_course *I, int *next
   return stops ? contactlab_impact_stopped(I, 0, next) : CONTACTLAB_IMPACT_DONE;
 }
 
+/* Whether the arguments are numbers that bodies have; rounding may take lam eta to 2 chi. */
+static inline int contactlab_impact_has(double psi1, double chi, double lam, double eta, double tolerance, int most)
+{
+  return fabs(psi1) < INFINITY && chi > 0 && chi < INFINITY && fabs(lam) < INFINITY && fabs(eta) < INFINITY
+      && lam * eta <= 2 * chi * (1 + 1e-12) && tolerance > 0 && tolerance < 1 && most > 0;
+}
+
 /* As contactlab_impact_watched, with a memory of `room` pieces; as many as `most` hold any impact. */
 static inline int contactlab_impact_within(double psi1, double chi, double lam, double eta, double tolerance, int most,
                                            contactlab_impact_watch *watch, void *context,
@@ -714,6 +722,8 @@ static inline int contactlab_impact_within(double psi1, double chi, double lam, 
   contactlab_impact_course course, *I = &course;
   const contactlab_impact none = {1, 0, 0, 0, 0, 1, 0};
   int next, status = CONTACTLAB_IMPACT_DONE;
+  *out = none;
+  if (!contactlab_impact_has(psi1, chi, lam, eta, tolerance, most)) return CONTACTLAB_IMPACT_RANGE;
   I->chi = chi;
   I->lam = lam;
   I->eta = eta;
@@ -738,6 +748,8 @@ static inline int contactlab_impact_within(double psi1, double chi, double lam, 
   }
   I->out.rate = I->rate;
   *out = I->out;
+  if (status == CONTACTLAB_IMPACT_DONE && !(fabs(out->rate) + fabs(out->change) < INFINITY))
+    status = CONTACTLAB_IMPACT_OUTGROWN;
   return status;
 }
 
@@ -752,8 +764,9 @@ static inline int contactlab_impact_watched(double psi1, double chi, double lam,
 
 /* Follows one impact to separation. Returns a status, and what it leaves in `out`.
  *
- * psi1, chi, lam, eta: theory section 14; finite, chi > 0 and lam eta < 2 chi. tolerance: error of a step. most: steps
- * after which it is given up; a hard impact takes 30, one of kappa = 1e6 some 10,000. */
+ * psi1, chi, lam, eta: theory section 14; finite, chi > 0 and lam eta < 2 chi. tolerance: error of a step, between 0
+ * and 1. most: steps after which it is given up, at least 1; a hard impact takes 30, one of kappa = 1e6 some 10,000.
+ * Other numbers have the status CONTACTLAB_IMPACT_RANGE, and `out` is the impact before first touch. */
 static inline int contactlab_impact_follow(double psi1, double chi, double lam, double eta, double tolerance, int most,
                                            contactlab_impact *out)
 {

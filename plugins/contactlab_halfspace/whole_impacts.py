@@ -33,6 +33,8 @@ LITTLE_SPIN, ANGLES_OF_SPIN = 0.5, (1e-3, 5e-3)
 #: The error falls as 1/rings to these powers. Tractions of slip are sums of hemispheres; those of
 #: spin are not, and a sum of roots that meets them at points is off between by 1/rings^1.5.
 ORDER, ORDER_OF_SPIN = 2.0, 1.5
+#: w over max(1, psi1) from which spin turns all slip: psi2 then errs by the square again.
+FAST = 50.0
 
 
 def own_answers(
@@ -91,7 +93,9 @@ def _solved(options: Options, normal: NormalMotion) -> list[_Solved]:
             else:
                 further = 1.0 / (2.0 ** (ORDER_OF_SPIN if group.spins else ORDER) - 1.0)
                 work = work + (work - coarse.work) * further
-                share = _extrapolated(fine, coarse, further)
+                fast = np.abs(matter.rim) >= FAST * np.maximum(1.0, np.abs(matter.psi1))
+                of_slip = np.where(fast, 1.0 / (2.0**ORDER - 1.0), further)
+                share = _extrapolated(fine, coarse, of_slip)
                 if coarse.spin is not None:
                     little = np.abs(matter.rim) <= LITTLE_SPIN
                     error += np.where(little, *ANGLES_OF_SPIN) * slow
@@ -99,6 +103,9 @@ def _solved(options: Options, normal: NormalMotion) -> list[_Solved]:
                     spin = spin + (spin - coarse.spin) * further
                 passed = np.diff(fine.impulse, axis=0) * (share[1:] + share[:-1])
                 change = -matter.chi * passed.sum(axis=0)
+                if group.spins:  # friction that is nearly all against spin speeds no slip up
+                    opposes = change * matter.psi1 <= 0.0
+                    change, share = change * opposes, share * opposes
         if group.spins:  # by symmetry there is no force without slip
             change = np.where(matter.psi1 == 0.0, 0.0, change)
         columns = change, np.maximum(work, 0.0), error, residual, spin, spin_error
@@ -112,7 +119,7 @@ def _solved(options: Options, normal: NormalMotion) -> list[_Solved]:
     return [solved[item] for item in range(len(solved))]
 
 
-def _extrapolated(fine: Followed, coarse: Followed, further: float) -> Array:
+def _extrapolated(fine: Followed, coarse: Followed, further: Real) -> Array:
     """Return the extrapolated shares of Coulomb's limit, at the instants of ``fine``."""
     # Instants of half the rings are every other instant of all: their share is linear between.
     between = coarse.share.repeat(2, axis=0)[:-1]

@@ -504,6 +504,17 @@ def test_a_ball_that_rolls_shows_whether_radius_speed_and_spin_have_one_unit(bou
 
 
 @needs_node
+def test_the_course_of_no_impact_is_refused(tmp_path):
+    wrong = ("NaN, 1.4", "1, -1", "1, 0", "1, Infinity", "1, 1.4, 0", "1, 1.4, 50, NaN",
+             "1, 1.4, 50, 200, 1.1", "1, NaN")  # fmt: skip
+    told = "const told = call => { try { return call(); } catch (error) { return error.name; } }"
+    calls = ",".join(f"told(() => impact({each}))" for each in wrong)
+    module = json.dumps((KERNELS / "contactlab_bounce.mjs").as_uri())
+    script = f"import {{impact}} from {module}; {told}; console.log(JSON.stringify([{calls}]))"
+    assert answered(script, tmp_path) == ["RangeError"] * 8
+
+
+@needs_node
 def test_rebound_of_no_number_is_nan(tmp_path):
     pairs = [("NaN", 1.44), (1.2, "NaN"), (0.5, 0), (0.5, -1), (0.5, "Infinity"), ("Infinity", 2),
              (1, "1, -0.1"), (1, "1, 1.1"), (1, "1, NaN")]  # fmt: skip

@@ -167,3 +167,38 @@ def test_what_ends_without_an_answer(followed):
     numbers = [[1.2], [1e6], [0.0], [0.0]]
     assert followed(numbers, most=5)[0].tolist() == [1]
     assert compiled.LOST[1].format(5) == "The contact neither ends nor settles in 5 steps"
+
+
+@pytest.mark.parametrize(
+    ("place", "values"),
+    [
+        (0, (np.nan, np.inf, -np.inf)),
+        (1, (-1.0, 0.0, np.nan, np.inf)),
+        (2, (np.nan, np.inf, 2.0)),
+        (3, (np.nan, -np.inf, 3.0)),
+        ("tolerance", (0.0, -1e-9, np.nan, 1.0)),
+        ("most", (0, -5)),
+    ],
+)
+def test_what_no_bodies_have_is_a_status_and_the_impact_before_first_touch(followed, place, values):
+    """A number that is none, chi that is not positive, lam eta from 2 chi on."""
+    for value in values:
+        numbers = np.array([[0.5], [1.4], [1.5], [1.8]])
+        given = {} if isinstance(place, int) else {place: value}
+        if not given:
+            numbers[place] = value
+        status, left = followed(numbers, **given)
+        assert status.tolist() == [4], (place, value)
+        assert left[:, 0].tolist() == [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]
+
+
+def test_no_finite_numbers_give_an_answer_that_is_none(followed):
+    """Of any size: an answer of numbers, or a status."""
+    draw = np.random.default_rng(12)
+    size = 10.0 ** draw.uniform(-300.0, 300.0, (4, 400))
+    numbers = draw.choice([-1.0, 1.0], (4, 400)) * size
+    numbers[1] = np.abs(numbers[1])
+    numbers[2:, :100] = 0.0
+    status, left = followed(numbers, most=300)
+    assert set(status) <= {0, 1, 2, 3, 4}
+    assert np.isfinite(left[:2, status == 0]).all()

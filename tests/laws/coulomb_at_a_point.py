@@ -10,6 +10,7 @@ import numpy as np
 import contactlab
 from contactlab import Scene, Simulation
 from contactlab.compose.composition import misfit
+from tests.laws.normal_laws import in_si
 
 #: psi1 and chi of the scenes: every pair.
 PSI1 = (0.5, 1.0, 1.5, 2.0, 2.5, 3.5)
@@ -54,7 +55,7 @@ STEPS = 4
 def scene():
     """The scenes as a batch."""
     psi1, chi = np.meshgrid(PSI1, CHI)
-    return Scene.nondimensional(psi1=psi1.ravel(), chi=chi.ravel())
+    return in_si(Scene.nondimensional(psi1=psi1.ravel(), chi=chi.ravel()))
 
 
 def reference(law):

@@ -26,8 +26,8 @@ LEAST_ERROR = 5e-13
 MOST_STEPS = 20_000
 #: psi2 is proportional to psi1 below it; smaller ones would be lost in rounding.
 LINEAR_BELOW = 1e-8
-#: Statuses of impacts without an answer; the last is that of all without a library, and of one
-#: whose memory finds no room: Python's solver follows them.
+#: Statuses of impacts without an answer. ``MEMORY`` is that of all without a library, and of one
+#: whose memory finds no room: Python's solver follows them. Scenes hold no numbers of the last, 4.
 UNSETTLED, OUTGROWN, MEMORY = 1, 2, 3
 #: Impacts of one call, a second at most: Ctrl-C is heard between two calls.
 AT_A_TIME = 8192
@@ -40,6 +40,8 @@ LOST = (
     "",
     "The contact neither ends nor settles in {} steps",
     "The velocities of a jam outgrow the numbers",
+    "There is no room for the memory of the contact",
+    "No bodies have such numbers",
 )
 #: Words on an installation with the library.
 COMPILED = "compiled"
