@@ -118,8 +118,9 @@ def coupling(scene: Scene) -> tuple[str, ...]:
     elif np.any(told & ~known):
         size += f", and in other impacts by an amount {OUTSIDE}"
     _, (low, high), _, (_, most) = ((axis[0], axis[-1]) for axis in nodes().axes)
+    ends = f", Lambda to {most:g}" if OUTSIDE in size else ""
     return (
         f"{LEFT_OUT}, Lambda = kappa beta/mu = {number[worst]:.2g}; it moves psi2 {size} (model, "
-        f"not numerical error; by a table of half-space solutions, chi from {low:g} to {high:g}, "
-        f"Lambda to {most:g})",
+        f"not numerical error; by a table of half-space solutions, chi from {low:g} to {high:g}"
+        f"{ends})",
     )
