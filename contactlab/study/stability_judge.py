@@ -20,8 +20,8 @@ from contactlab.impact.scene import Scene
 from contactlab.outcome.motion import Motion, sound
 from contactlab.outcome.plan import MARCHED, Plan, PlanColumns
 from contactlab.outcome.result import ImpactResult
-from contactlab.study.stability_cases import Cell
 from contactlab.study.posed import posed
+from contactlab.study.stability_cases import Cell
 from contactlab.study.stability_coupled import RIGID_DISTANCE, STIFF, distance
 from contactlab.study.stability_references import (
     SETTLED,

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import Encounter, Material, Scene, Simulation, Sphere, collide, load_path
+from contactlab import Encounter, Material, Scene, Simulation, Sphere, collide, fit, load_path
 from contactlab.cli.main import main
-from contactlab.fitting.estimation import fit
 from contactlab.numeric.checks import quantity
 from contactlab.study.bench_methods import Method
 from contactlab.study.posed import posed
