@@ -52,6 +52,8 @@ class Decoupled(Way):
         """Return words on how the normal motion is found."""
         if isinstance(self.laws.normal, ClosedFormNormalLaw):
             return "in closed form"
+        if self.laws.normal.unfollowed_rate(self.scene) is not None:
+            return "by its rebound alone, as no step can follow it"
         return "integrated from first touch to separation"
 
     def prepare(self, history: bool | str) -> Prepared:

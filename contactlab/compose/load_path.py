@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 from contactlab.compose import composition
 from contactlab.compose.acceptance import accept
 from contactlab.compose.path_steps import Followed, Points, followed
+from contactlab.compose.unfollowed import refusal
 from contactlab.contracts import faults
 from contactlab.contracts.normal import NormalLaw
+from contactlab.contracts.restitution import LEAST_RESTITUTION
 from contactlab.contracts.tangential import SteppedTangentialLaw, TangentialLaw
 from contactlab.impact.cautions import of_ellipse, path_cautions
 from contactlab.impact.hertz import hertz_scales
@@ -207,6 +209,8 @@ def _laws(scene: Scene, normal: object, tangential: object) -> tuple[Any, Any]:
         raise ValueError(complaint)
     for law in (first, second):
         accept(law, scene)
+    if (rate := first.unfollowed_rate(scene)) is not None:
+        raise refusal(rate, scene, "along a path", f"take at least {LEAST_RESTITUTION}")
     return first, second
 
 

@@ -1,4 +1,4 @@
-"""The normal motion of any normal law: in closed form, or solved to ``TOLERANCE``."""
+"""The normal motion of any normal law: in closed form, solved to ``TOLERANCE``, or its ends."""
 
 from __future__ import annotations
 
@@ -9,18 +9,28 @@ import numpy as np
 
 from contactlab.compose.motion_solver import Solver
 from contactlab.compose.motion_solver_alone import Alone
-from contactlab.compose.solved_motion import FailedMotion, MotionTable, SolvedMotion, Units
+from contactlab.compose.solved_motion import (
+    FailedMotion,
+    MotionTable,
+    SolvedMotion,
+    UnfollowedMotion,
+    Units,
+)
 from contactlab.contracts import faults
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.batches import NoIndexError
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import every
 from contactlab.numeric.checks import shown
 
 
 def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
-    """Return the motion from first touch to separation, or raise LawFaultError for a bad law."""
+    """Return the motion from first touch to separation, or raise LawFaultError for a bad law.
+
+    Where no step can follow it, the motion is that of the ends alone.
+    """
     if ClosedFormNormalLaw in type(law).__mro__:  # isinstance of an abstract class is slow
         try:
             closed: Any = law
@@ -34,6 +44,8 @@ def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
             raise
         found: NormalMotion = motion
         return found
+    if (rate := law.unfollowed_rate(scene)) is not None and every(np.isfinite(rate)):
+        return UnfollowedMotion(law, scene, rate)
     if "similar" in law.offers:
         one = Scene.nondimensional(psi1=0.0, chi=1.0)
         alone = _common(law, one)

@@ -10,16 +10,11 @@ import numpy as np
 
 from contactlab.compose.collision_plan import by_rebound
 from contactlab.compose.normal_spin_words import with_normal_spin
-from contactlab.compose.rebound import laws_of, rebound
+from contactlab.compose.rebound import laws_of
 from contactlab.compose.simulation import Simulation
-from contactlab.contracts.restitution import LEAST_RESTITUTION
-from contactlab.contracts.status import Status
-from contactlab.impact.inverse_mass import unit_slip
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import filled, spread
-from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array, Real
-from contactlab.outcome.motion import ENDS, Motion
+from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult
 
@@ -52,42 +47,7 @@ def run_by_restitution(scene: Scene, restitution: Real) -> ImpactResult:
 
 def _run(scene: Scene, restitution: float) -> ImpactResult:
     """Return the result of impacts of one restitution."""
-    if restitution >= LEAST_RESTITUTION:
-        return run_in_blocks(_simulation(restitution), scene)
-    return _hardly_rebounding(scene, restitution)
-
-
-def _hardly_rebounding(scene: Scene, restitution: float) -> ImpactResult:
-    """Return velocities of impacts of a restitution that no law has; the rest is NaN.
-
-    Raises
-    ------
-    ValueError
-        If friction changes the approach of any.
-    """
-    (_, part), *others = scene.parts()
-    if others or part.inverse_mass is not None:
-        rule = (
-            f"must be from {LEAST_RESTITUTION} where friction changes the approach: steps lose a "
-            "dashpot so strong"
-        )
-        remedy = f"take {LEAST_RESTITUTION}, from which psi2 is linear down to 0"
-        raise refuse("restitution", restitution, rule, remedy)
-    rate: Any = -restitution * np.asarray(part.normal_speed)
-    psi2: Any = rebound(part.psi1, part.chi, restitution=restitution)
-    change = (psi2 - part.psi1) / np.asarray(part.psi_scale)
-    _, _, lost = part.energies(rate, change)
-    entries: dict[str, Any] = dict.fromkeys(ENDS, np.nan) | {"normal_velocity": rate}
-    motion = Motion(
-        **{name: spread(entry, part.shape) for name, entry in entries.items()},
-        slip_velocity_change=spread(change, part.shape),
-        friction_work=spread(lost, part.shape),
-        status=filled(Status.SUCCESS, part.shape),
-    )
-    if scene.slip_axes:
-        motion = motion.turned(unit_slip(scene.slip_velocity))
-    plan = planned(part, restitution)
-    return ImpactResult(scene=scene, plan=plan, motion=motion, run_time=0.0, laws={})
+    return run_in_blocks(_simulation(restitution), scene)
 
 
 def planned(scene: Scene, restitution: Real) -> Plan:
@@ -110,7 +70,7 @@ def _of_groups(scene: Scene, restitution: Real) -> Plan:
 
 def _planned(scene: Scene, restitution: float, each: Real) -> Plan:
     """Return the plan of impacts, with the cautions of one restitution and the errors of each."""
-    plan = _simulation(max(restitution, LEAST_RESTITUTION)).plan(scene)
+    plan = _simulation(restitution).plan(scene)
     return plan if restitution == 1.0 else by_rebound(plan, scene.chi, each)
 
 

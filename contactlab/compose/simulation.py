@@ -44,7 +44,9 @@ if TYPE_CHECKING:
 
 #: What to do with what users give in place of a scene.
 INSTEAD: dict[type, str] = {
-    **dict.fromkeys((str, Path), "for a file use read_scene(path), whose run() runs it"),
+    **dict.fromkeys(
+        (str, Path), "of a file: case = read_scene(path); case.laws.simulation().run(case.scene)"
+    ),
     Encounter: "for bodies in space use collide(encounter, simulation), or encounter.scene",
 }
 

@@ -12,6 +12,7 @@ from contactlab.compose.composition import Laws, versions
 from contactlab.compose.coupled import Coupled
 from contactlab.compose.decoupled import Decoupled
 from contactlab.compose.pieces import Piece
+from contactlab.compose.unfollowed import followed_apart, refuse_march
 from contactlab.compose.way import Way, blocks
 from contactlab.impact.scene import Scene
 from contactlab.outcome.chunk_forms import Chunk
@@ -27,7 +28,7 @@ def ways(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
     # Where slip turns laws are asked first: their refusal and its remedy hold for the batch.
     for where, part in reversed(scene.parts(as_one=as_one)):
         if part.inverse_mass is None:
-            found.append(Decoupled(where, part, laws))
+            found += [Decoupled(*each, laws) for each in followed_apart(laws.normal, where, part)]
         else:
             found.append(Coupled(where, part, stand_ins.coupled(laws, part)))
     found.reverse()
@@ -37,9 +38,11 @@ def ways(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
 def accept_scene(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
     """Return the ways in which a scene is solved, or refuse one that a law cannot run."""
     found = ways(laws, scene, as_one=as_one)
-    for _, part, used in found:
+    for way in found:
+        _, part, used = way
         for law in used.choosy:
             accept(law, part.central)
+        refuse_march(way, history=as_one)
     return found
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from contactlab.compose.answers import Answered, Mask
 from contactlab.compose.composition import Laws
-from contactlab.compose.solved_motion import FailedMotion
+from contactlab.compose.solved_motion import FailedMotion, UnfollowedMotion
 from contactlab.contracts import faults
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
@@ -154,7 +154,8 @@ class Way(Entries, ABC):
             return PlanColumns.nothing(scene.shape), nothing
         # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
         bound = prepared.books_bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
-        motion = sound(motion, together=self.both)
+        few = self.both or type(prepared.normal) is UnfollowedMotion  # isinstance is slow
+        motion = sound(motion, together=few)
         return prepared.columns, balanced(motion, scene, bound, together=self.both)
 
     def solve_parts(self, places: list[slice]) -> tuple[PlanColumns, Motion]:

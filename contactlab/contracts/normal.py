@@ -57,6 +57,15 @@ class NormalLaw(Law, kind="normal"):
         """
         return math.nan
 
+    def unfollowed_rate(self, scene: Scene) -> Any:
+        """Return the rate of approach at separation, in m/s, of motions that no step can follow.
+
+        It is NaN for impacts whose motion can be followed; None, the default, if each can. The
+        friction load of an unfollowed motion does not pull. Tangential laws may answer it as a
+        whole; impacts that would be marched are refused.
+        """
+        return None
+
     def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
         """Return one sentence for each doubt about the model; asked when a plan is read."""
         if not named(scene):

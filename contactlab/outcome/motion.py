@@ -153,7 +153,8 @@ _numbers, _moved = attrgetter(*CHECKED), attrgetter(*MOVED)
 def sound(motion: Motion, *, together: bool = False) -> Motion:
     """Return ``motion`` with status ``NON_FINITE`` where a success holds a number not finite.
 
-    Laws that answer both motions ``together`` need not know a duration or the maxima. Integrators
+    Laws that answer both motions ``together``, and motions that no step can follow, need not know a
+    duration or the maxima. Integrators
     check the quantities that they use; this check adds overflows in the conversion to SI, and
     quantities that an integrator does not check.
     """

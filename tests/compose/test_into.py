@@ -242,7 +242,7 @@ def test_bad_arguments_are_refused(tmp_path):
         (3, "3: must be a Scene, or an iterable"),
         (table, "must be a sequence"),
         (met, "must be a Scene, .*; give its .scene"),
-        ("scene.toml", r"must be a Scene, .*; for a file use read_scene"),
+        ("scene.toml", r"must be a Scene, .*; of a file: case = read_scene"),
         (iter([]), "at least one Scene; make the generator anew"),
         ([4], r"scenes\[0\] = 4: must be a Scene"),
     ):

@@ -149,7 +149,7 @@ REFUSED = [
     (lambda: Simulation().run(3), "scene = 3: must be a Scene; make one: Scene(...)"),
     (
         lambda: Simulation().plan("a.toml"),
-        "scene = 'a.toml': must be a Scene; for a file use read_scene(path), whose run() runs it",
+        "scene = 'a.toml': must be a Scene; of a file: case = read_scene(path); case.laws.simulation().run(case.scene)",
     ),
     (
         lambda: Simulation().run(BARE, history="all"),

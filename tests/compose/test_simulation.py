@@ -211,7 +211,7 @@ def test_an_impact_given_up_for_its_neighbour_is_followed_by_itself():
 def test_values_of_the_wrong_kind_are_refused_with_what_was_meant():
     with pytest.raises(ValueError, match=r"by its name: Material\.named\('steel'\)"):
         Sphere(0.01, "steel")
-    with pytest.raises(ValueError, match=r"for a file use read_scene\(path\)"):
+    with pytest.raises(ValueError, match=r"of a file: case = read_scene\(path\)"):
         Simulation().run("scene.toml")
 
 

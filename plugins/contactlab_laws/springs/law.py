@@ -78,7 +78,8 @@ class Springs(ProfileLaw, CausalTangentialLaw):
         numbers are for fits. Normal laws that are not viscous have no loss in shear.
     table : bool
         Take psi2 from the table of restitutions where it is there: under ``normal.viscoelastic``
-        with a restitution, chi 0.3 to 3. What asks for a history is marched.
+        with a restitution, chi 0.3 to 3. What asks for a history is marched. Below a restitution
+        of 0.01 psi2 is always that of ``contactlab.rebound``.
 
     References
     ----------
@@ -132,13 +133,17 @@ class Springs(ProfileLaw, CausalTangentialLaw):
         return (*known, *self._tabulated(scene, normal))
 
     def _tabulated(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
-        """Return the answer of the table of restitutions, if it is asked for and there is one."""
-        e = getattr(normal.law, "restitution", None)
-        if not self.table or "kelvin_voigt" not in normal.offers or e is None:
+        """Return the answer of ``rebound``, where it is asked for or no step can follow."""
+        if "kelvin_voigt" not in normal.offers:
             return ()
-        from contactlab_laws.viscoelastic.whole_impacts import tabulated  # springs need no table
+        law: Any = normal.law
+        rate = law.unfollowed_rate(scene)
+        e = getattr(law, "restitution", None) if rate is None else -rate / scene.normal_speed
+        if e is None or (rate is None and not self.table):
+            return ()
+        from contactlab_laws.viscoelastic import whole_impacts  # springs need no table
 
-        return tabulated(scene, e)
+        return whole_impacts.tabulated(scene, e, beyond=rate is not None)
 
     def errors(
         self, scene: Scene, normal: NormalMotion, steps: Real, accuracy: float | None = None

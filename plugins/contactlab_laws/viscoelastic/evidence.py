@@ -58,7 +58,8 @@ def _trusted(chi: Array, e: Array, grips: Mask) -> tuple[str, ...]:
 
 def _deep(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
     """Return the caution of a contact whose depth moves the point of the force."""
-    depth = float(np.nanmax(np.asarray(normal.maximum_approach / scene.pair.radius)))
+    share = np.asarray(normal.maximum_approach / scene.pair.radius)
+    depth = float(np.max(share, where=np.isfinite(share), initial=0.0))  # clay has none
     if not depth > DEEP:
         return ()
     low, high = LEAST_GAIN * depth, MOST_GAIN * depth

@@ -9,7 +9,7 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import NormalContact, Tabulated, without_tension
-from contactlab.contracts.restitution import LEAST_RESTITUTION
+from contactlab.contracts.restitution import LEAST_RESTITUTION, restitution
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import plain
 from contactlab.numeric.checks import Rule, quantity, refuse
@@ -41,9 +41,8 @@ def measured(table: object) -> tuple[tuple[float, float], ...]:
     speeds, e = pairs.T
     if not (np.all(np.diff(speeds) > 0.0) and speeds[0] >= 0.0 and np.isfinite(speeds[-1])):
         raise refuse("restitutions", table, "must have speeds that increase, from 0 on", remedy)
-    if not np.all((e >= LEAST_RESTITUTION) & (e <= 1.0)):
-        rule = f"must have e from {LEAST_RESTITUTION} to 1"
-        raise refuse("restitutions", table, rule, remedy)
+    if not np.all((e >= 0.0) & (e <= 1.0)):
+        raise refuse("restitutions", table, "must have e from 0 to 1", remedy)
     return tuple((float(speed), float(each)) for speed, each in pairs)
 
 
@@ -59,9 +58,10 @@ class Viscoelastic(Relaxing, Tabulated):
     Parameters
     ----------
     restitution : float, optional
-        e of this contact at this speed, rebound over approach velocity, without friction; 0.9 if
-        neither e nor A is given. Where friction changes the approach, as of bodies that are no
-        spheres, A follows from e by the mass 1/W_nn, and the rebound of the body is its own.
+        e of this contact at this speed, from 0 to 1, rebound over approach velocity, without
+        friction; 0.9 if neither e nor A is given. Below 0.01 the impact has no course, and
+        ``tangential.springs`` answers it as a whole. Where friction changes the approach, as of
+        bodies that are no spheres, A follows from e by the mass 1/W_nn, and the rebound of the body is its own.
     relaxation_time : float, optional
         A in s, a constant of the materials: 1 - e grows as v1^(1/5).
     speed_loss : float, optional
@@ -87,6 +87,7 @@ class Viscoelastic(Relaxing, Tabulated):
         metadata={"unit": "m/s, 1", "range": PAIRS},
     )
 
+    restitution: float | None = restitution(default=None, least=0.0)
     number_of = staticmethod(number_of)
     chi_range: ClassVar[tuple[float, float]] = RESTITUTED_CHI
 
@@ -122,9 +123,9 @@ class Viscoelastic(Relaxing, Tabulated):
         e: Any
         if self.restitutions is None:
             e = 1.0 - (self.speed_loss or 0.0) * speed**0.2
-            if np.min(e, initial=1.0) < LEAST_RESTITUTION:
+            if np.min(e, initial=1.0) < 0.0:
                 rule = f"makes e {np.min(e):.3g} at {np.max(speed):.4g} m/s"
-                remedy = f"e must be at least {LEAST_RESTITUTION}; give less, or slower impacts"
+                remedy = "e must be at least 0; give less, or slower impacts"
                 raise refuse("speed_loss", self.speed_loss, rule, remedy)
         else:
             known, values = np.transpose(self.restitutions)
@@ -136,6 +137,16 @@ class Viscoelastic(Relaxing, Tabulated):
             e = np.interp(speed, known, values)
         found: Real = plain(e)
         return found
+
+    def unfollowed_rate(self, scene: Scene) -> Any:
+        """Return the rate at separation where e is below 0.01: A grows without bound."""
+        if self.restitution is None and (self.speed_loss or self.restitutions) is None:
+            return None
+        e = self.restitution_in(scene)
+        if isinstance(e, float):
+            return -e * scene.normal_speed if e < LEAST_RESTITUTION else None
+        hardly = np.less(e, LEAST_RESTITUTION)
+        return np.where(hardly, -e * scene.normal_speed, np.nan) if hardly.any() else None
 
     def respond(self, state: Parts, approach: Real, rate: Real) -> tuple[NormalContact, Parts]:
         """Return force and radius; where the contact was left behind, it is Hertz's (2) anew."""
