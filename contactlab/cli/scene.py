@@ -12,6 +12,7 @@ from contactlab.cli import arguments as shared
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
+from contactlab.scene_file.laws import beside
 
 #: Most impacts of a range, so that a typing error does not fill the memory.
 MOST_IMPACTS = 1_000_000
@@ -111,17 +112,22 @@ def inputs(arguments: argparse.Namespace) -> Inputs:
 
 def composed(arguments: argparse.Namespace, choice: LawChoice) -> Simulation:
     """Return the laws of ``choice``, replaced by the laws and options of the arguments."""
+    settings = dict(arguments.settings)
     if arguments.restitution is not None:
         if arguments.normal is not None:
-            raise ValueError(
-                "--normal, --restitution: a restitution stands in place of a normal law; leave "
-                "one of them out, or give --set normal.restitution=0.9"
+            told = beside(
+                arguments.normal,
+                arguments.restitution,
+                given="--restitution ",
+                law="--normal ",
+                option="--set normal.restitution=",
             )
-        choice = choice.without("normal").restituted(arguments.restitution)
+            raise ValueError(told)
+        choice = choice.without("normal").set(settings).restituted(arguments.restitution)
     choice = choice.choose(
         normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
     )
-    return choice.set(dict(arguments.settings)).simulation()
+    return choice.set(settings).simulation()
 
 
 def _scene(arguments: argparse.Namespace, file: SceneFile | None) -> Any:

@@ -91,13 +91,14 @@ def collide(
         of_kind("simulation", simulation, Simulation, remedy=remedy, meant=INSTEAD)
     if separating not in SEPARATING:
         raise refuse("separating", separating, "must be 'refuse' or 'pass'")
+    given = restitution
     if callable(restitution):
         restitution = _at_speeds(restitution, encounter)
     e = real("restitution", restitution, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
     if not isinstance(e, float):
         e = _spread(e, encounter.shape)
     if simulation is not None:
-        _alone(restitution, e)
+        _alone(given, e, simulation)
     elif encounter.of_spheres:
         strict = separating == "refuse"
         moved = impulses.moved(encounter, restitution=e, strict=strict)
@@ -122,10 +123,14 @@ def collide(
     return Collision.by(encounter, result, met, **about)
 
 
-def _alone(given: object, restitution: Real) -> None:
+def _alone(given: object, restitution: Real, simulation: Simulation) -> None:
     """Refuse a restitution beside a simulation."""
     if np.any(restitution != 1.0):
-        remedy = "give it to the normal law: create('normal.viscoelastic', restitution=0.9)"
+        remedy = "leave out simulation"
+        if isinstance(given, int | float):
+            from contactlab.compose.owners import with_restitution  # for a refusal only
+
+            remedy += f", or make it with normal={with_restitution(simulation.normal, given)}"
         raise refuse("restitution", given, "stands in place of a simulation", remedy)
 
 

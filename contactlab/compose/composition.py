@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import Any
@@ -130,19 +131,29 @@ def fixed_steps(steps: int) -> Integrator:
 
 def compose(normal: object, tangential: object, integrator: object) -> Laws:
     """Return three laws that fit, from names or laws; None stands for the preferred law."""
-    first = law("normal", DEFAULT_NORMAL if normal is None else normal)
-    given_integrator = () if integrator is None else (law("integrator", integrator),)
-    if tangential is None:
-        _, second = _preferred("tangential", first, after=given_integrator)
-    else:
-        second = law("tangential", tangential)
-    third = given_integrator[0] if given_integrator else _preferred("integrator", first, second)[1]
     given = {"normal": normal, "tangential": tangential, "integrator": integrator}
-    chosen = frozenset(kind for kind, value in given.items() if value is not None)
-    laws = Laws(first, second, third, chosen)
+    named = {kind: law(kind, value) for kind, value in given.items() if value is not None}
+    laws = _completed(named)
+    check(laws)
+    return laws
+
+
+def _completed(named: Mapping[str, Any]) -> Laws:
+    """Return laws with the preferred ones of the kinds that are not named."""
+    first = named.get("normal") or law("normal", DEFAULT_NORMAL)
+    third = named.get("integrator")
+    second = named.get("tangential")
+    if second is None:
+        _, second = _preferred("tangential", first, after=() if third is None else (third,))
+    if third is None:
+        _, third = _preferred("integrator", first, second)
+    return Laws(first, second, third, frozenset(named))
+
+
+def check(laws: Laws) -> None:
+    """Refuse three laws that do not fit, naming what would fit beside those that are named."""
     if (complaint := misfit(*laws)) is not None:
         raise ValueError(complaint + _would_fit(laws))
-    return laws
 
 
 def preferred(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> str:
@@ -167,6 +178,8 @@ def _preferred(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> tuple[st
         except ValueError:  # blocked, or not installed
             continue
         if _fits(*before, candidate, *after):
+            if installed and after and "rigid" in candidate.offers:
+                _refuse_rigid(name, installed, before[0], after[0])
             return name, candidate
         installed.append((name, candidate))
     if not installed:
@@ -174,6 +187,23 @@ def _preferred(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> tuple[st
         why = "must be given: none of the defaults is installed"
         raise refuse(kind, None, why, f"installed: {names}")
     return installed[0]
+
+
+def _refuse_rigid(
+    rigid: str, elastic: list[tuple[str, Any]], normal: Law, integrator: Law
+) -> None:
+    """Refuse an integrator beside which no friction law is left but one of rigid bodies."""
+    for name, tangential in elastic:
+        if _fits(normal, tangential):
+            runs, _ = _preferred("integrator", normal, tangential)
+            rule = f"beside {_name(normal)} it runs rigid friction only, which is not taken unnamed"
+            remedy = f"take {runs} (with {name}), or name tangential={rigid!r}"
+            raise refuse("integrator", _named(integrator), rule, remedy)
+
+
+def _named(law: Law) -> str:
+    """Return the name of a law as a user writes it."""
+    return REGISTRY.short_name(law)
 
 
 def _fits(*parts: Law) -> bool:
@@ -215,14 +245,37 @@ def _lacking(law: Law, other: Law) -> str | None:
 
 
 def _would_fit(laws: Laws) -> str:
-    """Return a phrase that names the laws that would fit in place of one of the three."""
-    names = [
-        name
-        for kind in KINDS
-        for name, candidate in _candidates(kind)
-        if _fits(*laws.changed(**{kind: candidate}))
-    ]
+    """Return a phrase that names the laws that would fit in place of one of those that are named.
+
+    Laws that nobody named are chosen anew beside each; the preferred law of a kind comes first.
+    """
+    names = []
+    for kind in (kind for kind in KINDS if kind in (laws.named or KINDS)):
+        others = {each: law for each, law in laws.by_kind().items() if each in laws.named - {kind}}
+        found = [name for name, law in _candidates(kind) if _completes({**others, kind: law})]
+        with contextlib.suppress(ValueError):  # nothing that is preferred is installed
+            usual = REGISTRY.info(full_name(kind, _usual(kind, others))).known_as
+            found.sort(key=usual.__ne__)
+        names += found
     return f"; these would fit: {', '.join(names)}" if names else "; no law at hand fits"
+
+
+def _completes(named: Mapping[str, Any]) -> bool:
+    """Return whether laws fit that are completed by preferred ones."""
+    try:
+        return _fits(*_completed(named))
+    except ValueError:
+        return False
+
+
+def _usual(kind: str, others: Mapping[str, Any]) -> str:
+    """Return the name of the preferred law of a kind beside others."""
+    if kind == "normal":
+        return DEFAULT_NORMAL
+    made = _completed(others)
+    after = (others["integrator"],) if "integrator" in others and kind == "tangential" else ()
+    before = (made.normal,) if kind == "tangential" else (made.normal, made.tangential)
+    return _preferred(kind, *before, after=after)[0]
 
 
 def _candidates(kind: str) -> Iterator[tuple[str, Any]]:

@@ -72,7 +72,6 @@ class Simulation:
         If a name is not installed, or the laws do not fit together (naming what would).
     """
 
-    _remedy = "an option goes to its law: normal=create('normal.tsuji', restitution=0.9); "
     normal: NormalLaw
     tangential: TangentialLaw
     integrator: Integrator
@@ -87,6 +86,13 @@ class Simulation:
         integrator: str | Integrator | None = None,
     ) -> None:
         self._set(composition.compose(normal, tangential, integrator))
+
+    @staticmethod
+    def _remedy(name: str, value: object) -> str:
+        """Return where an argument belongs that a simulation does not have."""
+        from contactlab.compose.owners import remedy_of  # needed for wrong arguments only
+
+        return remedy_of(name, value)
 
     @classmethod
     def of(cls, laws: Laws) -> Simulation:

@@ -87,7 +87,7 @@ def _plain(name: str) -> str:
 def arguments_told(made: Class) -> Class:
     """Return a class that users make: wrong arguments are refused with the nearest, and all names.
 
-    The text ``_remedy`` of a class tells where arguments belong that it does not have.
+    ``_remedy(name, value)`` of a class tells where an argument belongs that it does not have.
     """
     return _telling(made, vars(made)["__init__"])
 
@@ -119,7 +119,7 @@ def function_told(call: Function) -> Function:
         try:
             return call(*values, **named)
         except TypeError:
-            if complaint := _unfit(call, (None, *values), named, "", own=0):
+            if complaint := _unfit(call, (None, *values), named, None, own=0):
                 raise TypeError(f"{call.__name__}: {complaint}") from None
             raise
 
@@ -149,7 +149,7 @@ def _told(made: type, call: Callable[..., T]) -> Callable[..., T]:
         try:
             return call(*values, **named)
         except TypeError:
-            if complaint := _unfit(call, values, named, getattr(made, "_remedy", "")):
+            if complaint := _unfit(call, values, named, getattr(made, "_remedy", None)):
                 raise TypeError(f"{made.__name__}: {complaint}") from None
             raise
 
@@ -160,7 +160,7 @@ def _unfit(
     call: Callable[..., object],
     values: Sequence[object],
     named: Mapping[str, object],
-    remedy: str,
+    remedy: Callable[[str, object], str] | None,
     *,
     own: int = 1,
 ) -> str:
@@ -182,8 +182,9 @@ def _unfit(
     listed = f"it has {', '.join(names)}"
     for name in named:
         if name not in names:
-            near = nearest(name, names, alike=0.75 if remedy else 0.5)
-            return f"{name} is not an argument; {near or remedy}{listed}"
+            told = remedy(name, named[name]) if remedy else ""
+            told = told or nearest(name, names, alike=0.75 if remedy else 0.5)
+            return f"{name} is not an argument; {told}{listed}"
     if len(values) - 1 > len(free):
         rest = f"but for {' and '.join(free)}, " if free else ""
         return f"{rest}arguments are written with their names, name=value; {listed}"

@@ -12,6 +12,7 @@ from typing import Any
 import attrs
 
 from contactlab.compose import composition
+from contactlab.compose.owners import options, takes_restitution
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.compose.solve import ways
@@ -101,10 +102,11 @@ class LawChoice:
             If another normal law is named, or the restitution is out of range.
         """
         law = composition.RESTITUTION["normal"]
-        if self.normal not in (None, law) or "restitution" in self.options.get("normal", {}):
-            rule = f"stands in place of a normal law, and normal = {self.normal!r} is named"
-            remedy = "name one of the two; an option of a law is normal.restitution"
-            raise refuse("restitution", restitution, rule, remedy)
+        if self.normal not in (None, law):
+            raise ValueError(beside(self.normal, restitution))
+        if (other := self.options.get("normal", {}).get("restitution")) is not None:
+            rule = f"normal.restitution = {other} is given too"
+            raise refuse("restitution", restitution, rule, "leave out one of the two")
         option, value = _of_speed(restitution)
         composition.law("normal", law, **{option: value})  # refuses what is out of range
         if restitution == 1.0:
@@ -125,11 +127,10 @@ class LawChoice:
         for name, options in self.options.items():
             if name not in KINDS:  # check options of laws that are not chosen too
                 REGISTRY.create(name, **options)
-        laws = composition.Laws(*(choice.made(kind) for kind in KINDS))
-        if composition.misfit(*laws) is not None:
-            return Simulation(**laws.by_kind())  # which tells what would fit
-        named = {kind for kind in KINDS if getattr(self, kind) or kind in self.options}
-        return Simulation.of(laws.changed(named=frozenset(named)))
+        named = frozenset(kind for kind in KINDS if getattr(self, kind) or kind in self.options)
+        laws = composition.Laws(*(choice.made(kind) for kind in KINDS), named)
+        composition.check(laws)
+        return Simulation.of(laws)
 
     def resolved(self) -> LawChoice:
         """Return the choice with every law named."""
@@ -200,13 +201,30 @@ def _of_speed(restitution: object) -> tuple[str, Any]:
     raise refuse("restitution", restitution, rule, f"{remedy}; in TOML {OF_SPEED_IN_TOML}")
 
 
+def beside(
+    normal: str,
+    restitution: object,
+    *,
+    given: str = "restitution = ",
+    law: str = "normal = ",
+    option: str = "normal.restitution = ",
+) -> str:
+    """Return why a restitution cannot stand beside a named normal law, and what to write.
+
+    ``given``, ``law`` and ``option`` are written before a restitution, a law and an option.
+    """
+    remedy = f"leave out {law}{normal}"
+    name = full_name("normal", normal)
+    with contextlib.suppress(PluginError, ValueError):  # a law that is not installed
+        if not is_place(name) and takes_restitution(REGISTRY.law_class(name)):
+            remedy += f", or {given.rstrip(' =')}, and give {option}{restitution}"
+    chosen = composition.RESTITUTION["normal"]
+    return f"{given}{restitution}: chooses the normal law {chosen}; {remedy}"
+
+
 def _laws_with(option: str) -> str:
     """Return which installed laws have an option that was named without them; empty if none."""
-    having = []
-    for info in REGISTRY.installed():
-        with contextlib.suppress(PluginError, ValueError):
-            if option in signature(REGISTRY.law_class(info.name)).parameters:
-                having.append(info.name)
+    having = options(at_hand=False).get(option, [])
     if not having:
         return ""
     kind, name = kind_of(having[0]), short_name(having[0])

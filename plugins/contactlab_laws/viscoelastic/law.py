@@ -142,7 +142,7 @@ class Viscoelastic(Relaxing, Tabulated):
         """Return the rate at separation where e is below 0.01: A grows without bound."""
         if self.restitution is None and (self.speed_loss or self.restitutions) is None:
             return None
-        e = self.restitution_in(scene)
+        e: Any = self.restitution_in(scene)
         if isinstance(e, float):
             return -e * scene.normal_speed if e < LEAST_RESTITUTION else None
         hardly = np.less(e, LEAST_RESTITUTION)
