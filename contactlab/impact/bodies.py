@@ -6,17 +6,19 @@ import math
 from typing import Any
 
 import attrs
+import numpy as np
 
 from contactlab.impact.material import Material
+from contactlab.numeric.arrays import common_shape
 from contactlab.numeric.checks import (
     GYRATION,
     NON_NEGATIVE,
     POSITIVE,
     Rule,
+    derived,
     instance,
     key,
     quantity,
-    real,
     refuse,
 )
 from contactlab.numeric.names import arguments_stated
@@ -26,6 +28,8 @@ from contactlab.numeric.types import Either, Numbers, Real
 SOLID_SPHERE_GYRATION_RATIO = math.sqrt(0.4)
 #: Largest radius in m: the approach to larger ones underflows.
 MOST_RADIUS = 1e100
+#: Power of ten from which a number may leave the range of floating point in a product.
+FAR = 70.0
 RADIUS = Rule(
     lambda value: (value > 0.0) & (value <= MOST_RADIUS),
     "must be positive and finite, at most 1e100",
@@ -94,7 +98,9 @@ class Sphere:
                 "give Sphere(mass=...) in kg or Material(density=...) in kg/m³",
             )
         solid = 4.0 / 3.0 * math.pi * self.radius * self.radius * self.radius * density
-        object.__setattr__(self, "mass", real("mass", solid, rule=POSITIVE, empty=True))
+        given = {"radius": self.radius, "density": density}
+        mass = derived("mass", solid, "check the units, or give mass", **given)
+        object.__setattr__(self, "mass", mass)
 
 
 @arguments_stated
@@ -218,6 +224,16 @@ class Pair:
         turning : bool
             True if the bodies spin about the normal: the pair then has its ``inverse_spin_mass``.
         """
+        try:
+            return cls._of(sphere, target, turning)
+        except (ValueError, ZeroDivisionError):
+            if told := _lost(sphere, target):
+                raise told from None
+            raise
+
+    @classmethod
+    def _of(cls, sphere: Sphere, target: Sphere | HalfSpace, turning: bool) -> Pair:
+        """Return the pair, if floating point holds its numbers."""
         compliance_n = normal_compliance(sphere.material) + normal_compliance(target.material)
         compliance_t = shear_compliance(sphere.material) + shear_compliance(target.material)
         curvature = 1.0 / sphere.radius
@@ -240,6 +256,24 @@ class Pair:
             dundurs_beta=coupling_compliance(sphere.material, target.material) / compliance_n,
             inverse_spin_mass=spin,
         )
+
+
+def _lost(*bodies: Sphere | HalfSpace) -> ValueError | None:
+    """Return the ValueError of the number that makes those of the contact 0 or infinite, if any."""
+    numbers: dict[str, Real] = {}
+    for name, body in zip(("sphere", "target"), bodies, strict=True):
+        numbers[f"{name}.material.shear_modulus"] = body.material.shear_modulus
+        if isinstance(body, Sphere):
+            numbers[f"{name}.radius"], numbers[f"{name}.mass"] = body.radius, body.mass
+            numbers[f"{name}.gyration_ratio"] = body.gyration_ratio
+    shapes = {name: np.shape(number) for name, number in numbers.items()}
+    common_shape(shapes, what="the shapes of the bodies", remedy="give arrays of equal length")
+    far = {name: float(np.max(np.abs(np.log10(number)))) for name, number in numbers.items()}
+    name = max(far, key=lambda each: far[each])
+    if far[name] < FAR:
+        return None
+    rule = "floating point cannot hold what follows from it for the contact"
+    return refuse(name, numbers[name], rule, "check its unit")
 
 
 def normal_compliance(material: Material) -> Either:

@@ -28,6 +28,9 @@ CURVED, OVER_SIZE = 1.0, 20.0
 #: Radius of gyration over (mass/density)^(1/3), and over the distance of the contact, above which
 #: it is suspect; a rod a thousand times as long as wide has 31 of the first.
 SPREAD, OVER_ARM = 100.0, 200.0
+#: Least radius of gyration over the distance of the contact below which it is suspect: a rod ten
+#: thousand times as long as wide has a third of it.
+UNDER_ARM = 1e-4
 #: As of spheres: spin in rad/s, and speed it gives the contact over that of the centre.
 LEAST_SPIN, MOST_RIM = 50.0, 8.0
 
@@ -136,6 +139,11 @@ def units_of_bodies(encounter: Encounter) -> list[str]:
         if (size is not None and _most(gyration / size) > SPREAD) or _most(over) > OVER_ARM:
             told = f"{name}.inertia has a radius of gyration of {_most(gyration):.4g} m"
             said.append(f"unit: {told}: is it in kg mm² or g cm²?")
+        least = np.sqrt(np.linalg.eigvalsh(body.inertia)[..., 0] / mass)
+        if float(np.min(least / np.maximum(length, 1e-300))) < UNDER_ARM:
+            told = f"{name}.inertia has a least radius of gyration of {float(np.min(least)):.2g} m"
+            told += f", beside a contact {_most(length):.2g} m from the centre"
+            said.append(f"unit: {told}: is it in kg m²? Where such a body turns, steps are many")
         turning = np.linalg.norm(spin, axis=-1)
         rim = _most(turning * length)
         if _most(turning) >= LEAST_SPIN and rim > MOST_RIM * _most(speed) > 0.0:

@@ -360,20 +360,31 @@ def _curvatures(
 
 def _refuse_gap(encounter: _Meeting, rule: str, what: str) -> None:
     """Refuse bodies that touch along a line or a face."""
-    given = tuple(
-        getattr(body, "curvature_radius", getattr(body, "radius", math.inf))
-        for body in (encounter.body, encounter.target)
-    )
+    bodies = encounter.body, encounter.target
+    given = tuple(_radii(body) for body in bodies)
     hollow = any(
         np.any(np.less(radius, 0.0))
-        for body in (encounter.body, encounter.target)
+        for body in bodies
         if isinstance(body, RigidBody)
         for radius in (body.curvature_radius, body.crossing)
     )
     remedy = f"a contact of {what} is no Hertz contact; round the face or edge: crown_radius="
     if hollow:
         remedy = "a hollow must be less curved than what it touches; take a flatter one"
-    raise refuse("curvature_radius", given, rule, remedy)
+    name = "curvature_radius"
+    if any(isinstance(radii, tuple) for radii in given):
+        name += ", cross_radius"
+    raise refuse(f"{name} of body and target", given, rule, remedy)
+
+
+def _radii(body: Sphere | HalfSpace | RigidBody) -> Any:
+    """Return the radius of a body at the contact, or both principal radii, in m."""
+    if isinstance(body, HalfSpace):
+        return math.inf
+    if isinstance(body, Sphere):
+        return body.radius
+    one, other = body.curvature_radius, body.crossing
+    return one if body.cross_radius is None else (one, other)
 
 
 def _along_an_axis(
@@ -417,9 +428,29 @@ def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
     if some(spin != 0.0):
         turning = turning_compliance(bodies, normal, contact["radius"])
         contact |= {"inverse_spin_mass": turning}
-    pair = Pair(normal_mass=1.0 / W[0][0], tangential_mass=1.0 / tangential, **contact)
     entries |= {"encounter": encounter, "frame": joined(axes, shape), "normal_spin": spin}
-    return Scene(None, None, encounter.friction_coefficient, speed, along, pair=pair, **entries)
+    try:
+        pair = Pair(normal_mass=1.0 / W[0][0], tangential_mass=1.0 / tangential, **contact)
+        return Scene(None, None, encounter.friction_coefficient, speed, along, pair=pair, **entries)
+    except (ValueError, ZeroDivisionError):
+        try:
+            inverse_mass.check(joined(W, shape))
+        except (ValueError, FloatingPointError):
+            raise _lost(bodies) from None
+        raise
+
+
+def _lost(bodies: Sequence[Side]) -> ValueError:
+    """Return the ValueError of a mass and an inertia beside each other that rounding loses."""
+    for name, body, arm, _ in bodies:
+        if isinstance(body, RigidBody):
+            moments = np.linalg.eigvalsh(body.inertia).reshape(-1, 3)[0].tolist()
+            mass, length = np.ravel(body.mass)[0].item(), square_root(dot(arm, arm))
+            least = f"{mass * np.ravel(length)[0].item() ** 2:.2g} kg m²"
+            side = "target" if name else "body"
+            rule = f"is lost in rounding beside mass times contact², {least}"
+            return refuse(f"{side}.inertia, principal", moments, rule, "check the units")
+    raise AssertionError("spheres have a scene of their own")
 
 
 def _elastic(encounter: _Meeting, gap: Gap) -> dict[str, Any]:

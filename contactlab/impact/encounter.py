@@ -307,6 +307,9 @@ class Encounter:
         where = np.argwhere(~(approach >= LEAST))
         first = tuple(where[0].tolist())
         state = "bodies separate" if approach[first] < 0.0 else "bodies separate, or rest"
+        least = "must be positive"
+        if approach[first] > 0.0:
+            state, least = "bodies all but rest", f"must be at least {LEAST:g}"
         if approach[first] == 0.0 and (jam := self._jam(first)):
             rule = f"bodies slide without approach{first_of(where)}, and {jam}"
             remedy = "give an approach of 1e-8 of the slip: the impact is the limit of slow ones"
@@ -317,7 +320,7 @@ class Encounter:
         return refuse(
             "velocity, target_velocity",
             float(approach[first]),
-            f"{state}: the speed of approach, in m/s, must be positive{first_of(where)}",
+            f"{state}: the speed of approach, in m/s, {least}{first_of(where)}",
             f"{turned}let such pairs pass: collide(encounter, separating='pass')",
         )
 

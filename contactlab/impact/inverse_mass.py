@@ -27,8 +27,8 @@ def check(inverse: Array) -> None:
     """Refuse a W that is not positive definite."""
     if every(_well_conditioned(rows(inverse))):
         return
-    diagonal = np.sqrt(np.einsum("...ii->...i", inverse))
     with np.errstate(all="ignore"):
+        diagonal = np.sqrt(np.einsum("...ii->...i", inverse))
         scaled = inverse / (diagonal[..., None] * diagonal[..., None, :])
     if not (np.isfinite(scaled).all() and np.linalg.eigvalsh(scaled).min() > SINGULAR):
         rule = "must be positive definite: lam · chi⁻¹ · eta must be below 2"

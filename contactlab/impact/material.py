@@ -12,7 +12,7 @@ from functools import cache
 import attrs
 import numpy as np
 
-from contactlab.numeric.checks import POISSON, POSITIVE, of_kind, quantity, real, refuse
+from contactlab.numeric.checks import POISSON, POSITIVE, derived, of_kind, quantity, real, refuse
 from contactlab.numeric.names import arguments_told, nearest
 from contactlab.numeric.types import Either, Numbers
 from contactlab.registration.bring import by_name
@@ -82,7 +82,9 @@ class Material:
                     "does not determine the shear modulus at poisson_ratio = -1",
                     "give shear_modulus instead",
                 )
-            shear_modulus = young / (2.0 * (1.0 + ratio))
+            follows = young / (2.0 * (1.0 + ratio))
+            remedy = "give it in Pa"
+            shear_modulus = derived("shear modulus", follows, remedy, young_modulus=young_modulus)
         shear = real("shear_modulus", shear_modulus, rule=POSITIVE, remedy="give it in Pa")
         self.__attrs_init__(
             shear_modulus=shear, poisson_ratio=ratio, density=density, yield_stress=yield_stress

@@ -29,6 +29,10 @@ from contactlab.numeric.vectors import components, dot
 #: Asymmetry of an inertia, and excess of a principal moment over the sum of the other two, that
 #: count as rounding, over the largest moment.
 ROUNDING = 1e-9
+#: Least principal moment over the largest: of a smaller one too few digits are left.
+SLIGHTEST = 1e-12
+#: Products of inverses of smaller moments, in kg m², would overflow.
+LEAST_MOMENT = 1e-100
 #: A flat surface has an infinite radius; ``real`` refuses infinity, so this one is put in for it.
 FLAT = MOST_RADIUS
 #: Curvatures of smaller radii, in m, would overflow.
@@ -340,6 +344,13 @@ def _check_inertia(inertia: Array) -> None:
     if not np.all(moments[..., 0] > 0.0):
         rule = "must be positive definite: every principal moment is positive"
         raise refuse("inertia", inertia.tolist(), rule, f"the principal moments are {moments}")
+    if not np.all(moments[..., 0] >= LEAST_MOMENT):
+        rule = f"must have principal moments of at least {LEAST_MOMENT:g} kg m²"
+        raise refuse("inertia", inertia.tolist(), rule, f"they are {moments}")
+    if not np.all(moments[..., 0] >= SLIGHTEST * moments[..., 2]):
+        rule = f"must have principal moments of at least {SLIGHTEST:g} of the largest"
+        remedy = f"less is lost in rounding; they are {moments}"
+        raise refuse("inertia", inertia.tolist(), rule, remedy)
     sums = moments[..., 0] + moments[..., 1]
     if not np.all(moments[..., 2] <= sums * (1.0 + ROUNDING)):
         rule = "no body has it: a principal moment exceeds the sum of the other two"

@@ -282,7 +282,7 @@ class Scene(Batches):
                 self.normal_speed,
                 f"the kinetic energy of the impact must be at least {LEAST_ENERGY:g} J and finite, "
                 "or digits are lost",
-                "give larger speeds and masses, or smaller ones, or other units",
+                f"give {'larger' if np.all(energy < 1.0) else 'smaller'} speeds or masses",
             )
         if batch.some(unheld | lost):
             raise refuse(

@@ -141,6 +141,17 @@ def real(
     return widened
 
 
+def derived(name: str, value: object, remedy: str, **given: object) -> Real:
+    """Return a positive number that follows from ``given`` ones, or refuse those that lose it."""
+    try:
+        return real(name, value, rule=POSITIVE, empty=True)
+    except ValueError:
+        numbers = tuple(given.values())
+        rule = f"floating point cannot hold the {name} that follows"
+        first = numbers[0] if len(numbers) == 1 else numbers
+        raise refuse(", ".join(given), first, rule, remedy) from None
+
+
 def check_place(argument: str, value: object) -> None:
     """Refuse an array whose labels, unit or mask would be lost, or that has no numbers yet."""
     try:
