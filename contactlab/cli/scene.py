@@ -98,6 +98,9 @@ def numbers(text: str) -> Any:
 def check_alone(arguments: argparse.Namespace) -> None:
     """Refuse psi1 or chi beside a scene file."""
     if arguments.scene and not (arguments.psi1 is None and arguments.chi is None):
+        if getattr(arguments, "csv", False) and not arguments.scene.endswith(".toml"):
+            told = f"{arguments.scene}: is read as a scene file, as --csv prints"
+            raise ValueError(f"{told}; to write a file: --csv > {arguments.scene}")
         raise ValueError(
             "--psi1, --chi: cannot stand beside a scene file; leave out the file, or both of them"
         )

@@ -13,6 +13,7 @@ from contactlab.compose.restituted import run_by_restitution, run_in_blocks
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.impact.encounter import Encounter
+from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, some, taken
 from contactlab.numeric.checks import check_place, of_kind, real, refuse
 from contactlab.numeric.types import Array, Numbers, Real
@@ -24,6 +25,7 @@ WITH_ARRAYS = "make a single Encounter with arrays of vectors, shape (..., 3)"
 INSTEAD: dict[type, str] = {
     list: WITH_ARRAYS,
     tuple: WITH_ARRAYS,
+    Scene: "a scene has a run of its own: simulation.run(scene)",
     float: "or leave it out; a restitution is given by name: restitution={value}",
 }
 

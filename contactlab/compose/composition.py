@@ -189,15 +189,13 @@ def _preferred(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> tuple[st
     return installed[0]
 
 
-def _refuse_rigid(
-    rigid: str, elastic: list[tuple[str, Any]], normal: Law, integrator: Law
-) -> None:
+def _refuse_rigid(rigid: str, elastic: list[tuple[str, Any]], normal: Law, integrator: Law) -> None:
     """Refuse an integrator beside which no friction law is left but one of rigid bodies."""
     for name, tangential in elastic:
         if _fits(normal, tangential):
             runs, _ = _preferred("integrator", normal, tangential)
             rule = f"beside {_name(normal)} it runs rigid friction only, which is not taken unnamed"
-            remedy = f"take {runs} (with {name}), or name tangential={rigid!r}"
+            remedy = f"take integrator={runs!r} (with {name}), or name tangential={rigid!r}"
             raise refuse("integrator", _named(integrator), rule, remedy)
 
 

@@ -368,7 +368,8 @@ def _refuse_gap(encounter: _Meeting, rule: str, what: str) -> None:
         if isinstance(body, RigidBody)
         for radius in (body.curvature_radius, body.crossing)
     )
-    remedy = f"a contact of {what} is no Hertz contact; round the face or edge: crown_radius="
+    remedy = f"a contact of {what} is no Hertz contact; give a finite curvature_radius, or "
+    remedy += "crown_radius= of a shape"
     if hollow:
         remedy = "a hollow must be less curved than what it touches; take a flatter one"
     name = "curvature_radius"

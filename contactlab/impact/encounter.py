@@ -97,7 +97,9 @@ class Encounter:
     """
 
     body: Sphere | RigidBody = instance(Sphere, RigidBody, remedy="make one: Sphere(...)")
-    target: Sphere | HalfSpace | RigidBody = instance(HalfSpace, Sphere, RigidBody)
+    target: Sphere | HalfSpace | RigidBody = instance(
+        HalfSpace, Sphere, RigidBody, remedy="make one: HalfSpace(material)"
+    )
     friction_coefficient: Real = quantity("1", rule=NON_NEGATIVE, empty=True)
     normal: Array = vector("1")
     velocity: Array = vector("m/s")
@@ -178,7 +180,7 @@ class Encounter:
                 rule = "is needed: the vector in m from the centre of mass to the contact"
                 value = getattr(self, name)
                 told = None if value is ZERO else value.tolist()
-                raise refuse(name, told, rule, "contactlab.shapes has those of common bodies")
+                raise refuse(name, told, rule, f"give {name}=[x, y, z]; shapes have theirs")
 
     def take(self, part: Index) -> Encounter:
         """Return the encounters that ``part`` indexes.

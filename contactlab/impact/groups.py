@@ -145,7 +145,7 @@ def _by_eta(drag: Real, eta: Real, where_zero: Real) -> Any:
             return None
         raise refuse("eta", eta, "needs lam too: both are zero without coupling", "give lam")
     alone = (np.asarray(drag) == 0.0) & (np.asarray(eta) == 0.0)
-    rule = "must be positive and finite: both have the sign of W_nt, and both are zero without coupling"
+    rule = "must be positive, finite: both have the sign of W_nt, both are zero without coupling"
     with np.errstate(all="ignore"):
         squared = np.where(alone, where_zero, np.divide(drag, eta))
     if not np.all((squared > 0.0) & np.isfinite(squared)):

@@ -197,7 +197,7 @@ class RigidBody:
             inertia.flags.writeable = False
         elif self.axes is not None:
             raise refuse("axes", self.axes, "belong to principal moments", "leave axes out")
-        _check_inertia(inertia)
+        _check_inertia(inertia, "inertia" if self.principal is None else "principal")
         object.__setattr__(self, "inertia", inertia)
         shapes = {name: np.shape(getattr(self, name)) for name in ("mass", "curvature_radius")}
         if self.cross_radius is not None:
@@ -334,24 +334,22 @@ class RigidBody:
         return cautions
 
 
-def _check_inertia(inertia: Array) -> None:
+def _check_inertia(inertia: Array, given: str) -> None:
     """Refuse an inertia that no body has."""
     largest = np.abs(inertia).max(axis=(-1, -2), initial=0.0)
     skew = np.abs(inertia - np.swapaxes(inertia, -1, -2)).max(axis=(-1, -2), initial=0.0)
     if np.any(skew > ROUNDING * largest):
         raise refuse("inertia", inertia.tolist(), "must be symmetric", "give J and its transpose")
     moments = np.linalg.eigvalsh(inertia)
+    rule = ""
     if not np.all(moments[..., 0] > 0.0):
         rule = "must be positive definite: every principal moment is positive"
-        raise refuse("inertia", inertia.tolist(), rule, f"the principal moments are {moments}")
-    if not np.all(moments[..., 0] >= LEAST_MOMENT):
+    elif not np.all(moments[..., 0] >= LEAST_MOMENT):
         rule = f"must have principal moments of at least {LEAST_MOMENT:g} kg m²"
-        raise refuse("inertia", inertia.tolist(), rule, f"they are {moments}")
-    if not np.all(moments[..., 0] >= SLIGHTEST * moments[..., 2]):
+    elif not np.all(moments[..., 0] >= SLIGHTEST * moments[..., 2]):
         rule = f"must have principal moments of at least {SLIGHTEST:g} of the largest"
-        remedy = f"less is lost in rounding; they are {moments}"
-        raise refuse("inertia", inertia.tolist(), rule, remedy)
-    sums = moments[..., 0] + moments[..., 1]
-    if not np.all(moments[..., 2] <= sums * (1.0 + ROUNDING)):
+    elif not np.all(moments[..., 2] <= (moments[..., 0] + moments[..., 1]) * (1.0 + ROUNDING)):
         rule = "no body has it: a principal moment exceeds the sum of the other two"
-        raise refuse("inertia", inertia.tolist(), rule, f"the principal moments are {moments}")
+    if rule:
+        value = moments.tolist() if given == "principal" else inertia.tolist()
+        raise refuse(given, value, rule, f"the principal moments are {moments}")

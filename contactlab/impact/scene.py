@@ -120,7 +120,9 @@ class Scene(Batches):
         remedy="make one: Sphere(...); of other bodies take Encounter(...).scene",
         optional=True,
     )
-    target: Sphere | HalfSpace | None = instance(HalfSpace, Sphere, optional=True)
+    target: Sphere | HalfSpace | None = instance(
+        HalfSpace, Sphere, remedy="make one: HalfSpace(material)", optional=True
+    )
     friction_coefficient: Real = quantity("1", rule=NON_NEGATIVE)
     normal_speed: Real = quantity("m/s", rule=POSITIVE)
     tangential_velocity: Real = quantity("m/s", default=0.0)

@@ -176,10 +176,10 @@ def paired(first: str, second: str, values: tuple[Real, Real]) -> tuple[Any, Any
     try:
         broadcast = np.broadcast_arrays(*values)
     except ValueError:
-        shapes = f"{np.shape(values[0])} and {np.shape(values[1])}"
+        shapes = np.shape(values[0]), np.shape(values[1])
         remedy = f"one value of {second} for each {first}"
-        rule = "must have shapes that fit"
-        raise refuse(f"{first} and {second}", shapes, rule, remedy) from None
+        rule = "must broadcast to one"
+        raise refuse(f"shapes of {first} and {second}", shapes, rule, remedy) from None
     return broadcast[0], broadcast[1]
 
 

@@ -21,6 +21,7 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
     "d": ("radius",), "Y": ("yield_stress",),
     "law": ("tangential",), "theta": ("angle_deg",), "alpha": ("angle_deg",),
     "m": ("mass",), "M": ("mass",), "K": ("gyration_ratio",),
+    "I": ("inertia",), "J": ("inertia",), "moments": ("principal",),
     "v": ("tangential_velocity", "speed", "velocity"), "vx": ("tangential_velocity",),
     "velocity": ("rebound_tangential_velocity", "rebound_normal_velocity"),
     "speed": ("normal_speed",), "v1": ("normal_speed",), "vn": ("normal_speed",),
@@ -40,7 +41,7 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
     "velocity_after": ("velocity",), "rebound_spin": ("spin",), "final_spin": ("spin",),
     "ball": ("sphere", "body"), "sphere": ("body",), "wall": ("target",), "plane": ("target",),
     "half_space": ("target",),
-    "laws": ("simulation",), "output": ("out",), "plot": ("figure",), "jobs": ("workers",),
+    "laws": ("simulation", "tangential"), "tangential": ("law",), "normal": ("law",), "output": ("out",), "plot": ("figure",), "jobs": ("workers",),
     "angle": ("angle_deg", "rebound_angle"), "psi": ("psi1",), "dt": ("steps",), "n": ("steps",),
 }  # fmt: skip
 #: Shapes of bodies by the names that users try, and what makes them.

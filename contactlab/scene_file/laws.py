@@ -12,7 +12,8 @@ from typing import Any
 import attrs
 
 from contactlab.compose import composition
-from contactlab.compose.owners import options, takes_restitution
+from contactlab.compose.owners import options as options_of_laws
+from contactlab.compose.owners import takes_restitution
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.compose.solve import ways
@@ -179,7 +180,12 @@ class LawChoice:
         for owner, values in self.options.items():
             if owner not in KINDS and same_law(owner, name):
                 options |= values
-        return composition.law(kind, name, **options)
+        try:
+            return composition.law(kind, name, **options)
+        except ValueError as error:
+            if other := _owner(kind, name, options):
+                raise ValueError(f"{error}; {other}") from None
+            raise
 
 
 def _of_speed(restitution: object) -> tuple[str, Any]:
@@ -199,6 +205,16 @@ def _of_speed(restitution: object) -> tuple[str, Any]:
     rule = "is neither a number, nor a function or a table of the speed"
     remedy = "write 0.9, 1 - 0.02 v^(1/5), or 0.5:0.95,2:0.9 (speed in m/s and e)"
     raise refuse("restitution", restitution, rule, f"{remedy}; in TOML {OF_SPEED_IN_TOML}")
+
+
+def _owner(kind: str, name: str, given: Mapping[str, object]) -> str:
+    """Return which law of a kind has an option that the default lacks; empty if none."""
+    known = options_of_laws(at_hand=True)
+    for option in given:
+        having = [law for law in known.get(option, ()) if kind_of(law) == kind]
+        if having and name not in having:
+            return f"take {kind} = {short_name(having[0])}, which has it"
+    return ""
 
 
 def beside(
@@ -224,7 +240,7 @@ def beside(
 
 def _laws_with(option: str) -> str:
     """Return which installed laws have an option that was named without them; empty if none."""
-    having = options(at_hand=False).get(option, [])
+    having = options_of_laws(at_hand=False).get(option, [])
     if not having:
         return ""
     kind, name = kind_of(having[0]), short_name(having[0])
@@ -252,7 +268,13 @@ def _complaint(path: str) -> str | None:
 
 def read_laws(content: object, folder: Path, *, allow_code: bool) -> LawChoice:
     """Return the laws of the ``[simulation]`` table of a file in ``folder``; none is imported."""
-    table = Table(content, "simulation", known=(*KINDS, "restitution", "options"))
+    known = (*KINDS, "restitution", "options")
+    for key in content if isinstance(content, Mapping) else ():
+        if key not in known and (having := options_of_laws(at_hand=True).get(key)):
+            kind, name = kind_of(having[0]), short_name(having[0])
+            remedy = f"write {kind} = '{name}' and options.{kind}.{key} = {content[key]!r}"
+            raise ValueError(f"simulation.{key}: is an option of {having[0]}; {remedy}")
+    table = Table(content, "simulation", known=known)
     names = {
         kind: seen_from(folder, table.text(kind), trusted=allow_code)
         for kind in KINDS

@@ -21,11 +21,14 @@ ABSENT = {
     "friction_coefficient": "a number such as 0.2; `contactlab fit` finds it from measured rebounds"
 }
 
+#: What to write for a table of the surface that is struck.
+PLANE = 'write [target] with kind = "half-space"'
 #: Where keys stand that users write in another table.
 ELSEWHERE = {
-    "restitution": "write restitution = 0.9 under [simulation]",
+    "restitution": "write it under [simulation]",
     "mu": "write friction_coefficient under [impact]",
     "gravity": "leave it out: in an impact it is nothing beside the forces of contact",
+    **dict.fromkeys(("halfspace", "half-space", "half_space", "plane", "wall", "floor"), PLANE),
 }
 
 

@@ -35,7 +35,7 @@ def numpy(_):
     assert type(rebound(PSI1, CHI)) is np.ndarray
     assert type(rebound([1, 2], [1.4])) is np.ndarray
     assert type(rebound(1.2, 1.4)) is float
-    refuses("must have shapes that fit", rebound, PSI1, CHI[:2])
+    refuses("must broadcast to one", rebound, PSI1, CHI[:2])
     refuses("JAX or PyTorch; collide", moved, VELOCITY)
     assert scene(PSI1).psi1.tolist() == PSI1.tolist()
 

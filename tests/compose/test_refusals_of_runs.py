@@ -60,11 +60,11 @@ REFUSED = [
     ),
     (
         lambda: rebound([1.0, 2.0], [1.0, 2.0, 3.0]),
-        "psi1 and chi = '(2,) and (3,)': must have shapes that fit; one value of chi for each psi1",
+        "shapes of psi1 and chi = ((2,), (3,)): must broadcast to one; one value of chi for each psi1",
     ),
     (
         lambda: rebound([1.0, 2.0], 1.0, restitution=[0.9, 0.8, 0.7]),
-        "psi1 and restitution = '(2,) and (3,)': must have shapes that fit; one value of "
+        "shapes of psi1 and restitution = ((2,), (3,)): must broadcast to one; one value of "
         "restitution for each psi1",
     ),
     (
@@ -111,8 +111,8 @@ REFUSED = [
     ),
     (
         lambda: collide(meeting(), Simulation(), restitution=0.9),
-        "restitution = 0.9: stands in place of a simulation; give it to the normal law: "
-        "create('normal.viscoelastic', restitution=0.9)",
+        "restitution = 0.9: stands in place of a simulation; leave out simulation, or make it "
+        "with normal=create('normal.viscoelastic', restitution=0.9)",
     ),
     (lambda: load_path(3, PATH, PATH), "scene = 3: must be a Scene; make one: Scene(...)"),
     (

@@ -36,7 +36,7 @@ def test_a_restitution_is_the_viscoelastic_law(tmp_path):
 @pytest.mark.parametrize(
     ("lines", "told"),
     [
-        (("restitution = 0.7", "normal = 'tsuji'"), "in place of a normal law, and normal = 'tsu"),
+        (("restitution = 0.7", "normal = 'tsuji'"), "and give normal.restitution = 0.7"),
         (("restitution = 1.2",), "restitution = 1.2.*from 0 to 1"),
         (("restitution = 'high'",), "simulation.restitution"),
     ],
@@ -52,4 +52,4 @@ def test_the_command_line_replaces_the_law_of_a_file(tmp_path, capsys):
     told = json.loads(capsys.readouterr().out)
     assert told["normal_restitution"] == pytest.approx(0.5, abs=1e-9)
     assert main(["run", path, "--restitution", "0.5", "--normal", "tsuji"]) == 2
-    assert "leave one of them out" in capsys.readouterr().err
+    assert "leave out --normal tsuji" in capsys.readouterr().err
