@@ -41,7 +41,8 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
     "velocity_after": ("velocity",), "rebound_spin": ("spin",), "final_spin": ("spin",),
     "ball": ("sphere", "body"), "sphere": ("body",), "wall": ("target",), "plane": ("target",),
     "half_space": ("target",),
-    "laws": ("simulation", "tangential"), "tangential": ("law",), "normal": ("law",), "output": ("out",), "plot": ("figure",), "jobs": ("workers",),
+    "laws": ("simulation", "tangential"), "tangential": ("law",), "normal": ("law",),
+    "output": ("out",), "plot": ("figure",), "jobs": ("workers",),
     "angle": ("angle_deg", "rebound_angle"), "psi": ("psi1",), "dt": ("steps",), "n": ("steps",),
 }  # fmt: skip
 #: Shapes of bodies by the names that users try, and what makes them.

@@ -129,7 +129,7 @@ class LawChoice:
             if name not in KINDS:  # check options of laws that are not chosen too
                 REGISTRY.create(name, **options)
         named = frozenset(kind for kind in KINDS if getattr(self, kind) or kind in self.options)
-        laws = composition.Laws(*(choice.made(kind) for kind in KINDS), named)
+        laws = composition.Laws(*(choice.made(kind) for kind in KINDS)).changed(named=named)
         composition.check(laws)
         return Simulation.of(laws)
 
@@ -269,10 +269,10 @@ def _complaint(path: str) -> str | None:
 def read_laws(content: object, folder: Path, *, allow_code: bool) -> LawChoice:
     """Return the laws of the ``[simulation]`` table of a file in ``folder``; none is imported."""
     known = (*KINDS, "restitution", "options")
-    for key in content if isinstance(content, Mapping) else ():
+    for key, value in content.items() if isinstance(content, Mapping) else ():
         if key not in known and (having := options_of_laws(at_hand=True).get(key)):
             kind, name = kind_of(having[0]), short_name(having[0])
-            remedy = f"write {kind} = '{name}' and options.{kind}.{key} = {content[key]!r}"
+            remedy = f"write {kind} = '{name}' and options.{kind}.{key} = {value!r}"
             raise ValueError(f"simulation.{key}: is an option of {having[0]}; {remedy}")
     table = Table(content, "simulation", known=known)
     names = {

@@ -60,7 +60,8 @@ REFUSED = [
     ),
     (
         lambda: rebound([1.0, 2.0], [1.0, 2.0, 3.0]),
-        "shapes of psi1 and chi = ((2,), (3,)): must broadcast to one; one value of chi for each psi1",
+        "shapes of psi1 and chi = ((2,), (3,)): must broadcast to one; one value of chi for "
+        "each psi1",
     ),
     (
         lambda: rebound([1.0, 2.0], 1.0, restitution=[0.9, 0.8, 0.7]),
@@ -149,7 +150,8 @@ REFUSED = [
     (lambda: Simulation().run(3), "scene = 3: must be a Scene; make one: Scene(...)"),
     (
         lambda: Simulation().plan("a.toml"),
-        "scene = 'a.toml': must be a Scene; of a file: case = read_scene(path); case.laws.simulation().run(case.scene)",
+        "scene = 'a.toml': must be a Scene; of a file: case = read_scene(path); "
+        "case.laws.simulation().run(case.scene)",
     ),
     (
         lambda: Simulation().run(BARE, history="all"),

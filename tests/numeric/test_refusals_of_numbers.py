@@ -104,7 +104,8 @@ def test_two_quantities_of_one_shape():
     spread = checks.paired("psi1", "chi", (one[:, None], other))
     assert [each.shape for each in spread] == [(2, 2), (2, 2)]
     assert refusal(checks.paired, "psi1", "chi", (one, np.ones(3))) == (
-        "shapes of psi1 and chi = ((2,), (3,)): must broadcast to one; one value of chi for each psi1"
+        "shapes of psi1 and chi = ((2,), (3,)): must broadcast to one; one value of chi for each "
+        "psi1"
     )
 
 

@@ -61,7 +61,8 @@ class Viscoelastic(Relaxing, Tabulated):
         e of this contact at this speed, from 0 to 1, rebound over approach velocity, without
         friction; 0.9 if neither e nor A is given. Below 0.01 the impact has no course, and
         ``tangential.springs`` answers it as a whole. Where friction changes the approach, as of
-        bodies that are no spheres, A follows from e by the mass 1/W_nn, and the rebound of the body is its own.
+        bodies that are no spheres, A follows from e by the mass 1/W_nn, and the rebound of the body
+        is its own.
     relaxation_time : float, optional
         A in s, a constant of the materials: 1 - e grows as v1^(1/5).
     speed_loss : float, optional
