@@ -7,7 +7,6 @@ from collections.abc import Callable
 from inspect import signature
 
 from contactlab.compose.composition import EXACT, PREFERRED, RESTITUTION
-from contactlab.compose.names import full_name, kind_of
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.contracts.law import Law
 from contactlab.impact.bodies import Sphere
@@ -15,6 +14,7 @@ from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import shown
 from contactlab.numeric.names import REMARKS, SYMBOLS, nearest
+from contactlab.registration.names import full_name, kind_of
 
 #: Laws that are asked first for an option: those of a restitution, and the defaults.
 FIRST = tuple(

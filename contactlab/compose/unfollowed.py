@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from contactlab.compose.composition import RESTITUTION
-from contactlab.compose.names import short_name
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.way import Way
 from contactlab.contracts import faults
@@ -20,6 +19,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, some
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Mask, Real
+from contactlab.registration.names import short_name
 
 
 def followed_apart(normal: NormalLaw, where: Any, part: Scene) -> list[tuple[Any, Scene]]:
