@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -138,8 +138,9 @@ def compose(normal: object, tangential: object, integrator: object) -> Laws:
     return laws
 
 
-def _completed(named: Mapping[str, Any]) -> Laws:
+def _completed(given: Mapping[str, Law]) -> Laws:
     """Return laws with the preferred ones of the kinds that are not named."""
+    named: dict[str, Any] = {**given}
     first = named.get("normal") or law("normal", DEFAULT_NORMAL)
     third = named.get("integrator")
     second = named.get("tangential")
@@ -189,7 +190,9 @@ def _preferred(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> tuple[st
     return installed[0]
 
 
-def _refuse_rigid(rigid: str, elastic: list[tuple[str, Any]], normal: Law, integrator: Law) -> None:
+def _refuse_rigid(
+    rigid: str, elastic: Sequence[tuple[str, TangentialLaw]], normal: Law, integrator: Law
+) -> None:
     """Refuse an integrator beside which no friction law is left but one of rigid bodies."""
     for name, tangential in elastic:
         if _fits(normal, tangential):
@@ -258,7 +261,7 @@ def _would_fit(laws: Laws) -> str:
     return f"; these would fit: {', '.join(names)}" if names else "; no law at hand fits"
 
 
-def _completes(named: Mapping[str, Any]) -> bool:
+def _completes(named: Mapping[str, Law]) -> bool:
     """Return whether laws fit that are completed by preferred ones."""
     try:
         return _fits(*_completed(named))
@@ -266,7 +269,7 @@ def _completes(named: Mapping[str, Any]) -> bool:
         return False
 
 
-def _usual(kind: str, others: Mapping[str, Any]) -> str:
+def _usual(kind: str, others: Mapping[str, Law]) -> str:
     """Return the name of the preferred law of a kind beside others."""
     if kind == "normal":
         return DEFAULT_NORMAL

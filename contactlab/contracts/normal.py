@@ -57,7 +57,7 @@ class NormalLaw(Law, kind="normal"):
         """
         return math.nan
 
-    def unfollowed_rate(self, scene: Scene) -> Any:
+    def unfollowed_rate(self, scene: Scene) -> Real | None:
         """Return the rate of approach at separation, in m/s, of motions that no step can follow.
 
         It is NaN for impacts whose motion can be followed; None, the default, if each can. The

@@ -378,7 +378,7 @@ def _refuse_gap(encounter: _Meeting, rule: str, what: str) -> None:
     raise refuse(f"{name} of body and target", given, rule, remedy)
 
 
-def _radii(body: Sphere | HalfSpace | RigidBody) -> Any:
+def _radii(body: Sphere | HalfSpace | RigidBody) -> object:
     """Return the radius of a body at the contact, or both principal radii, in m."""
     if isinstance(body, HalfSpace):
         return math.inf

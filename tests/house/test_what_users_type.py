@@ -70,7 +70,7 @@ def test_in_python(typed, words):
         (
             "normal_speed",
             "restitution = 0.9\nnormal_speed",
-            "impact.restitution: is not a known key; write restitution = 0.9 under [simulation]",
+            "impact.restitution: is not a known key; write it under [simulation]",
         ),
         (
             "[impact]",

@@ -139,7 +139,7 @@ class Viscoelastic(Relaxing, Tabulated):
         found: Real = plain(e)
         return found
 
-    def unfollowed_rate(self, scene: Scene) -> Any:
+    def unfollowed_rate(self, scene: Scene) -> Real | None:
         """Return the rate at separation where e is below 0.01: A grows without bound."""
         if self.restitution is None and (self.speed_loss or self.restitutions) is None:
             return None
