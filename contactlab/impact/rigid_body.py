@@ -341,15 +341,17 @@ def _check_inertia(inertia: Array, given: str) -> None:
     if np.any(skew > ROUNDING * largest):
         raise refuse("inertia", inertia.tolist(), "must be symmetric", "give J and its transpose")
     moments = np.linalg.eigvalsh(inertia)
-    rule = ""
-    if not np.all(moments[..., 0] > 0.0):
+    least, middle, most = (moments[..., k] for k in range(3))
+    floor = np.maximum(SLIGHTEST * most, LEAST_MOMENT)
+    if np.all((least >= floor) & (most <= (least + middle) * (1.0 + ROUNDING))):
+        return
+    if not np.all(least > 0.0):
         rule = "must be positive definite: every principal moment is positive"
-    elif not np.all(moments[..., 0] >= LEAST_MOMENT):
+    elif not np.all(least >= LEAST_MOMENT):
         rule = f"must have principal moments of at least {LEAST_MOMENT:g} kg m²"
-    elif not np.all(moments[..., 0] >= SLIGHTEST * moments[..., 2]):
+    elif not np.all(least >= floor):
         rule = f"must have principal moments of at least {SLIGHTEST:g} of the largest"
-    elif not np.all(moments[..., 2] <= (moments[..., 0] + moments[..., 1]) * (1.0 + ROUNDING)):
+    else:
         rule = "no body has it: a principal moment exceeds the sum of the other two"
-    if rule:
-        value = moments.tolist() if given == "principal" else inertia.tolist()
-        raise refuse(given, value, rule, f"the principal moments are {moments}")
+    value = moments.tolist() if given == "principal" else inertia.tolist()
+    raise refuse(given, value, rule, f"the principal moments are {moments}")

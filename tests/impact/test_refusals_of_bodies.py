@@ -115,7 +115,10 @@ REFUSED = [
     ),
     (lambda: Scene(3, PLATE, 0.2, 1.0), "sphere = 3: must be a Sphere; make one: Sphere(...); of "
      "other bodies take Encounter(...).scene"),
-    (lambda: Scene(BALL, 3, 0.2, 1.0), "target = 3: must be a HalfSpace or a Sphere; make one: HalfSpace(material)"),
+    (
+        lambda: Scene(BALL, 3, 0.2, 1.0),
+        "target = 3: must be a HalfSpace or a Sphere; make one: HalfSpace(material)",
+    ),
     (
         lambda: Scene(None, None, 0.2, 1.0, pair=3),
         "pair = 3: must be a Pair; or leave it out",
