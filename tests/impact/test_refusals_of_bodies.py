@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from contactlab import Encounter, HalfSpace, Material, Scene, Sphere
+from contactlab import Encounter, HalfSpace, Material, RigidBody, Scene, Simulation, Sphere
 from contactlab.impact import grid
 from contactlab.impact import material as materials
 
@@ -249,3 +249,16 @@ def test_a_material_that_is_not_listed_has_the_nearest_ones(name, hint):
     words = str(caught.value)
     assert words.partition("; ")[2].startswith(hint)
     assert words.endswith(f"known: {', '.join(materials.names())}; {OWN}")
+
+
+@pytest.mark.parametrize(("moment", "told"), [(1e-15, True), (1e-6, False)])
+def test_a_moment_that_hardly_resists_is_told_before_a_run(moment, told):
+    """Of a needle that is met aside: its steps are raised with the root of chi."""
+    needle = RigidBody(
+        mass=1.0, principal=[1e-3, 1e-3, moment], material=STEEL, curvature_radius=0.01
+    )
+    about = {"normal": (0, 0, -1), "velocity": (1.0, 0, -1), "contact": (0.003, 0.002, -0.01)}
+    met = Encounter(needle, HalfSpace(STEEL), 0.1, **about)
+    cautions = " ".join(map(str, Simulation().plan(met.scene).cautions))
+    assert ("least radius of gyration" in cautions) is told
+    assert ("steps raised" in cautions) is told
