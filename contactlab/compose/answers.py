@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.contracts import faults
+from contactlab.contracts import faults, judges
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status, succeeded
-from contactlab.contracts.tangential import TangentialLaw, WholeImpactTangentialLaw
+from contactlab.contracts.tangential import Errors, TangentialLaw, WholeImpactTangentialLaw
 from contactlab.contracts.tangential_motion import Observer, Sample, TangentialMotion
 from contactlab.contracts.whole_impact import WholeImpact
 from contactlab.numeric.arrays import locked
@@ -165,6 +165,8 @@ def _checked(answer: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) ->
         if faults.malformed(entry, shape):
             sentence = faults.sentence(law, f"the answer {shown(entry)} to a whole impact", 1)
             raise faults.LawFaultError(Status.MALFORMED, sentence)
+    if not (type(answer.psi2_error) is float and answer.psi2_error >= 0.0):
+        judges.judge_errors(law, Errors(answer.psi2_error), shape)
     return answer
 
 

@@ -11,13 +11,18 @@ import numpy as np
 from contactlab.compose.answers import Mask, check_motion, separated
 from contactlab.compose.normal_motion import normal_or_failed
 from contactlab.compose.solved_motion import FailedMotion
-from contactlab.compose.way import ONE_BY_ONE, Masks, Prepared, Way, ask, books_bound, halves
-from contactlab.contracts import faults
+from contactlab.compose.way import ONE_BY_ONE, Masks, Prepared, Way, ask, halves
+from contactlab.contracts import faults, judges
 from contactlab.contracts.law import derived
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
-from contactlab.contracts.tangential import CoupledTangentialLaw, TangentialLaw, shares_loss
+from contactlab.contracts.tangential import (
+    CoupledTangentialLaw,
+    Errors,
+    TangentialLaw,
+    shares_loss,
+)
 from contactlab.contracts.tangential_motion import Observer
 from contactlab.impact.cautions import OUTSIDE
 from contactlab.impact.scene import Scene
@@ -38,6 +43,8 @@ NEAR_SINGULAR = ((0.1, 0.07), (0.01, 0.4), (0.001, 1.2))
 LITTLE = 1e-3
 #: Statuses by which a law ends a whole batch: its impacts are then solved one by one.
 GIVEN_UP = (Status.LAW_RAISED, Status.MALFORMED, Status.NON_FINITE)
+#: Statuses of impacts that were not followed to an end, by no fault of a law's answer.
+WITHOUT_END = (Status.NOT_SEPARATED, Status.TOO_FEW_STEPS, Status.UNRESOLVED)
 #: Why impacts are not marched.
 WHOLE = Reason("the law answers normal and tangential motion together")
 #: What a plan says of such impacts.
@@ -67,7 +74,7 @@ class Coupled(Way):
             self.refuse_history(history)
         normal = normal_or_failed(laws.normal, scene.central)
         with faults.blaming(laws.tangential):
-            bound = greater(books_bound(laws.tangential, normal.scene), CANCELS)
+            bound = greater(judges.books_bound_of(laws.tangential, normal.scene), CANCELS)
             return Prepared(normal, [], self._columns(normal), bound)
 
     def _columns(self, normal: NormalMotion) -> PlanColumns:
@@ -75,11 +82,15 @@ class Coupled(Way):
         scene, law, integrator = self.scene, self.laws.tangential, self.laws.integrator
         whole = derived(law, CoupledTangentialLaw)
         code = chosen(separated(normal), 0 if whole else MARCHED, ENDLESS)
-        if whole:
+        errors: object
+        if type(normal) is FailedMotion:  # no law is asked about an approach that is not known
+            errors = Errors()
+        elif whole:
             errors = law.errors(scene, normal, np.inf, integrator.accuracy)
         else:
             errors = integrator.errors(normal, law, scene)
-        psi2, restitution = (spread(error, scene.shape) for error in errors)
+        judged = judges.judge_errors(law, errors, scene.shape)
+        psi2, restitution = (spread(error, scene.shape) for error in judged)
         return PlanColumns(code, psi2, (WHOLE,) if whole else (), restitution)
 
     def solve(self, prepared: Prepared, recorder: Recorder | None) -> Motion:
@@ -87,7 +98,7 @@ class Coupled(Way):
         scene, normal = self.scene, prepared.normal
         if type(normal) is FailedMotion:  # isinstance of an abstract class is slow
             return Motion.nothing(scene.shape, normal.status, normal.detail, axes=scene.slip_axes)
-        motion = self._answered(normal, recorder)
+        motion = self._ended_as_alone(self._answered(normal, recorder), normal)
         if recorder is None and scene.shape not in ((), (1,)):
             return self._apart(motion)
         return motion
@@ -107,6 +118,20 @@ class Coupled(Way):
                 told = "the answer has not the ends of its normal motion"
                 raise faults.LawFaultError(Status.MALFORMED, faults.sentence(blamed, told, 1))
             return Motion.along(normal, moved, scene.slip_axes)
+
+    def _ended_as_alone(self, motion: Motion, normal: NormalMotion) -> Motion:
+        """Return a motion whose impacts without an end have the status of the approach alone."""
+        ended = separated(normal)
+        if every(ended):
+            return motion
+        lost = np.isin(np.asarray(motion.status, dtype=object), np.array(WITHOUT_END, dtype=object))
+        where = np.logical_not(ended) & lost
+        if not self.scene.shape:
+            same = attrs.evolve(motion, status=normal.status, detail=normal.detail)
+            return same if where else motion
+        status = np.where(where, normal.status, motion.status)
+        detail = np.where(where, normal.detail, motion.detail)
+        return attrs.evolve(motion, status=status, detail=detail)
 
     def _apart(self, motion: Motion) -> Motion:
         """Return the motion of a batch with the impacts that one beside them made fail."""

@@ -10,8 +10,8 @@ import numpy as np
 
 from contactlab.compose.answers import Answered, answers, check_motion, separated, show
 from contactlab.compose.normal_motion import normal_or_failed
-from contactlab.compose.way import ONE_BY_ONE, Prepared, Way, books_bound, halves
-from contactlab.contracts import faults
+from contactlab.compose.way import ONE_BY_ONE, Prepared, Way, halves
+from contactlab.contracts import faults, judges
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.sampled_motion import Ends
@@ -64,7 +64,7 @@ class Decoupled(Way):
             size, accuracy = psi_magnitude(scene), laws.integrator.accuracy
             most = math.inf if accuracy is None else accuracy * (1.0 + ROUNDING) * size
             answered = answers(normal, laws.tangential, history=history, largest_error=most)
-            bound = books_bound(laws.tangential, scene)
+            bound = judges.books_bound_of(laws.tangential, scene)
             return Prepared(normal, answered, self._columns(normal, answered, size), bound)
         except BaseException as error:
             faults.blame(laws.tangential, error)
@@ -120,7 +120,8 @@ class Decoupled(Way):
             error = error + np.where(one.where, one.answer.psi2_error, 0.0)
         if some(marched):
             with np.errstate(all="ignore"):
-                declared = laws.integrator.errors(normal, laws.tangential, scene).psi2
+                errors = laws.integrator.errors(normal, laws.tangential, scene)
+                declared = judges.judge_errors(laws.tangential, errors, scene.shape).psi2
                 if math.isnan(normal.accuracy):
                     declared = math.nan  # no better known than the motion that it follows
                 error = np.where(marched, declared, error) if scene.shape else declared

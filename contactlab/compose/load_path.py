@@ -23,6 +23,7 @@ from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import Rule, of_kind, real, refuse
+from contactlab.numeric.taken import of_taken
 from contactlab.numeric.types import Array, Numbers
 from contactlab.outcome.answer import Answer
 
@@ -92,6 +93,7 @@ class LoadPath(Answer):
         round_ = [law for law in (self.normal, self.tangential) if "elliptic" not in law.offers]
         return [
             *self.tangential.path_cautions(),
+            *of_taken(self.normal, self.tangential),
             *(text for law in round_ for text in of_ellipse(self.scene, type(law).__name__)),
             *path_cautions(self.scene, deepest, plastic="plastic" in self.normal.offers),
         ]

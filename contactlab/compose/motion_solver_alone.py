@@ -15,12 +15,10 @@ from contactlab.compose.motion_solver import (
     FIRST_STEP,
     GROWTH,
     HALVINGS,
-    LEAST_LOAD,
     MOST_DOUBT,
     MOST_STEPS,
     MOST_TURNS,
     NEAR,
-    NEGATIVE_LOAD,
     SAFETY,
     SHORTEST,
     SHRINKAGE,
@@ -29,7 +27,7 @@ from contactlab.compose.motion_solver import (
 )
 from contactlab.compose.scaled_normal_law import ScaledNormalLaw
 from contactlab.compose.solved_motion import NODES, MotionTable, SolvedMotion
-from contactlab.contracts import faults
+from contactlab.contracts import faults, judges
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
@@ -61,6 +59,7 @@ class Alone:
         self.law = ScaledNormalLaw(law, scene)
         self.length, self.speed = self.law.length.item(), self.law.speed.item()
         self.unit, self.response = self.law.unit.item(), self.law.response.item()
+        self.largest = self.law.radius.item(), 1.0 / self.response
         self.points: list[float] = lobatto(NODES).points.tolist()
         self.place, self.time, self.turns = [0.0, 1.0, 0.0], 0.0, 0
         self.width, self.event = FIRST_STEP, math.inf
@@ -135,8 +134,11 @@ class Alone:
             contacts += [*(self._contact(step.at(point)) for point in asked), end]
         if not all(math.isfinite(each.force + each.radius + each.load) for each in contacts):
             raise law.fault(Status.NON_FINITE, f"the answer {shown(contacts[-1].force)}")
-        if min(each.load for each in contacts) * self.response < LEAST_LOAD:
-            raise law.fault(Status.MALFORMED, NEGATIVE_LOAD)
+        radius, load = min(each.radius for each in contacts), min(each.load for each in contacts)
+        if (radius < 0.0 or load < 0.0) and (
+            words := judges.below_zero(radius, load, self.largest)
+        ):
+            raise law.fault(Status.MALFORMED, words)
         columns, impulse = self._columns(contacts)
         self.time += width * until if ended else width
         self.begun = self.begun or any(each.overlap > 0.0 for each in contacts)

@@ -31,6 +31,7 @@ from contactlab.impact.cautions import (
 from contactlab.impact.hertz import elongation_of
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, some, spread, taken
+from contactlab.numeric.taken import of_taken
 from contactlab.numeric.types import Real
 from contactlab.outcome.energy import ledger
 from contactlab.outcome.motion import ENDS, Motion
@@ -188,7 +189,7 @@ def _cautions(way: Way, scene: Scene, motion: Motion | None, masks: Masks) -> Cl
         if "elliptic" not in law.offers:
             said += of_ellipse(whole, type(law).__name__)
     own = [text for text in dict.fromkeys(of_laws) if text not in said]
-    said += [*own, *way.own_cautions(bool(own))]
+    said += [*own, *way.own_cautions(bool(own)), *of_taken(way.laws.normal, way.laws.tangential)]
     said += [
         f"{told.item} ({told.info.distribution})"
         for told in MANAGER.brought("cautions", silent=False, scene=whole, laws=laws)

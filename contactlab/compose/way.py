@@ -20,13 +20,11 @@ from contactlab.compose.solved_motion import FailedMotion, UnfollowedMotion
 from contactlab.contracts import faults
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
-from contactlab.contracts.status import Status
-from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import consecutive
-from contactlab.numeric.checks import refuse, shown
+from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array, Real
-from contactlab.outcome.energy import balanced
+from contactlab.outcome.energy import balanced, powered
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion, sound
 from contactlab.outcome.plan import ENDLESS, MARCHED, UNKNOWN, Clause, PlanColumns
@@ -155,8 +153,10 @@ class Way(Entries, ABC):
         # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
         bound = prepared.books_bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
         few = self.both or type(prepared.normal) is UnfollowedMotion  # isinstance is slow
-        motion = sound(motion, together=few)
-        return prepared.columns, balanced(motion, scene, bound, together=self.both)
+        motion = powered(sound(motion, together=few), prepared.normal)
+        error = prepared.columns.restitution_error
+        motion = balanced(motion, scene, bound, together=self.both, restitution_error=error)
+        return prepared.columns, motion
 
     def solve_parts(self, places: list[slice]) -> tuple[PlanColumns, Motion]:
         """Return columns and motion of a batch that is solved in consecutive parts."""
@@ -180,15 +180,6 @@ class Way(Entries, ABC):
         if self.scene.shape:
             rule = f"impacts of a batch have instants of their own under {self.laws.tangential!r}"
             raise refuse("history", history, rule, "run them one by one")
-
-
-def books_bound(law: TangentialLaw, scene: Scene) -> Real:
-    """Return the bound of the books that a law declares, or raise LawFaultError."""
-    bound = law.books_bound(scene)
-    if faults.malformed(bound, scene.shape):
-        sentence = faults.sentence(law, f"books_bound gave {shown(bound)}", 1)
-        raise faults.LawFaultError(Status.MALFORMED, sentence)
-    return bound
 
 
 def ask(law: Law, question: Callable[..., tuple[str, ...]], *about: object) -> list[str]:

@@ -4,7 +4,7 @@ Authors of laws need no other module. It also has the fields by which a law decl
 options (``quantity``, ``count``, ``choice``, ``flag``, ``restitution``), statuses and faults.
 """
 
-from contactlab.contracts import faults
+from contactlab.contracts import faults, judges
 from contactlab.contracts.contact import NormalContact, without_tension
 from contactlab.contracts.integrator import CoupledIntegrator, Integrator
 from contactlab.contracts.law import API_VERSION, Law
@@ -45,6 +45,7 @@ from contactlab.contracts.whole_impact import (
 from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, Rule, choice, count, flag, quantity
+from contactlab.numeric.taken import Taken
 from contactlab.numeric.types import Mask, Real
 
 __all__ = [
@@ -85,6 +86,7 @@ __all__ = [
     "Steps",
     "Stretch",
     "Tabulated",
+    "Taken",
     "TangentialLaw",
     "TangentialMotion",
     "TangentialResponse",
@@ -95,6 +97,7 @@ __all__ = [
     "faults",
     "flag",
     "from_change",
+    "judges",
     "no_force",
     "quantity",
     "restitution",

@@ -7,7 +7,10 @@ from typing import Any
 import numpy as np
 
 from contactlab.numeric.checks import Rule, quantity
+from contactlab.numeric.taken import Taken
 
+#: What laws of a restitution take where nobody gave one.
+TAKEN_RESTITUTION = Taken(0.9)
 #: Least coefficient of restitution of a law of dissipation.
 LEAST_RESTITUTION = 0.01
 #: The rule of a coefficient for each impact, without a law.

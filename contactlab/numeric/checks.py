@@ -13,6 +13,7 @@ import attrs
 import numpy as np
 
 from contactlab.numeric.labels import misplaced
+from contactlab.numeric.taken import Taken
 from contactlab.numeric.types import Array, Numbers, Places, Real
 
 T = TypeVar("T")
@@ -204,6 +205,8 @@ def _checked(value: Numbers | None, owner: object, field: attrs.Attribute[object
     """Return the checked value of a field of ``owner``, the object that is being made."""
     if value is None and field.default is None:
         return None
+    if type(value) is Taken:
+        return value  # by the author of the class
     meta = field.metadata
     if type(value) is float and math.isfinite(value) and meta["rule"].holds(value):
         return value  # the remedy of a refusal takes longer to write than a number to check
@@ -231,7 +234,12 @@ def _partly_known(value: object) -> Array | None:
 
 
 def key(value: Real | None) -> object:
-    """Return a key for equality and hash of a quantity; arrays have no usable one."""
+    """Return a key for equality and hash of a quantity; arrays have no usable one.
+
+    A number that was taken is another than the same number given.
+    """
+    if type(value) is Taken:
+        return Taken, float(value)
     if value is None or isinstance(value, float):
         return value
     array = np.asarray(value) + 0.0  # -0.0 equals 0.0
@@ -259,7 +267,8 @@ def quantity(
     rule : Rule
         Condition that every element must satisfy besides being finite.
     default : float or None, optional
-        Value if none is given; without a default the quantity is required.
+        Value if none is given; without a default the quantity is required. ``Taken(0.9)`` is one
+        that results caution of.
     kw_only : bool
         Whether the field is keyword-only, in a class whose other fields are not.
     empty : bool

@@ -15,6 +15,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.cautions import unit_slips
 from contactlab.impact.coupling import coupling
 from contactlab.impact.scene import Scene
+from contactlab.numeric.taken import of_taken
 from contactlab.numeric.types import Real
 from contactlab.outcome.motion import ENDS, Motion
 from contactlab.outcome.plan import Clause, Plan, PlanColumns, Words
@@ -61,6 +62,7 @@ def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
 
     def clauses() -> Words:
         said = (*unit_slips(scene), *laws.normal.cautions(scene, course), *coupling(scene))
+        said += tuple(of_taken(laws.normal, laws.tangential))
         if lossy:
             said += laws.tangential.cautions(scene, course)
         return (), (), tuple(Clause(text, everywhere) for text in dict.fromkeys(said))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from contactlab.numeric.checks import refuse
+from contactlab.numeric.taken import Taken
 
 
 def claims_of_loss(restitution: float | None, loses: bool) -> frozenset[str]:
@@ -20,10 +21,16 @@ def root(function: Callable[[float], float], low: float, high: float) -> float:
     return high
 
 
-def one_of_two(law: object, first: str, second: str, *, default: float) -> None:
-    """Refuse a law that sets both of two equivalent options; if it sets neither, set ``first``."""
+def one_of_two(law: object, first: str, second: str, *, default: Taken) -> None:
+    """Refuse a law that sets both of two equivalent options; if it sets neither, set ``first``.
+
+    What was taken for ``first`` yields to a ``second`` that is given.
+    """
     values = getattr(law, first), getattr(law, second)
     given = [value is not None for value in values]  # no comparison: a value may be an array
+    if all(given) and isinstance(values[0], Taken):
+        object.__setattr__(law, first, None)
+        return
     if all(given):
         rule = "only one of the two may be given"
         raise refuse(

@@ -13,6 +13,7 @@ from contactlab.impact.cautions import tabor_caution
 from contactlab.impact.hertz import hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, quantity
+from contactlab.numeric.taken import Taken
 from contactlab.numeric.types import Real
 
 #: Tabor's parameter up to which the theory holds.
@@ -51,7 +52,7 @@ class DerjaguinMullerToporov(NormalLaw):
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure"})
 
-    work_of_adhesion: float = quantity("J/m^2", rule=NON_NEGATIVE, default=0.05)
+    work_of_adhesion: float = quantity("J/m^2", rule=NON_NEGATIVE, default=Taken(0.05))
 
     def start(self, scene: Scene) -> Parts:
         """Return stiffness and pull of the pair; the law has no memory."""

@@ -9,15 +9,12 @@ from typing import Any, ClassVar, NamedTuple
 import attrs
 
 from contactlab.contracts import NormalContact, NormalLaw, without_tension
-from contactlab.contracts.restitution import restitution
+from contactlab.contracts.restitution import TAKEN_RESTITUTION, restitution
 from contactlab.impact.hertz import hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, quantity
 from contactlab.numeric.types import Real
 from contactlab_laws.calibrated import claims_of_loss, one_of_two, root
-
-#: Default restitution, for laws with no damping of their own.
-DEFAULT_RESTITUTION = 0.9
 
 
 @lru_cache(maxsize=256)
@@ -68,7 +65,7 @@ class HuntCrossley(NormalLaw):
     damping: float | None = quantity("s/m", rule=NON_NEGATIVE, default=None)
 
     def __attrs_post_init__(self) -> None:
-        one_of_two(self, "restitution", "damping", default=DEFAULT_RESTITUTION)
+        one_of_two(self, "restitution", "damping", default=TAKEN_RESTITUTION)
 
     def _offers(self) -> frozenset[str]:
         """Return the claims, with those of the loss."""

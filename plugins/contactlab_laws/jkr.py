@@ -12,6 +12,7 @@ from contactlab.contracts import NormalContact, NormalLaw, NormalMotion
 from contactlab.impact.cautions import tabor_caution
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import POSITIVE, quantity
+from contactlab.numeric.taken import Taken
 from contactlab.numeric.types import Real
 
 #: Tabor's parameter from which the theory holds.
@@ -70,7 +71,7 @@ class JohnsonKendallRoberts(NormalLaw):
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius"})
 
-    work_of_adhesion: float = quantity("J/m^2", rule=POSITIVE, default=0.05)
+    work_of_adhesion: float = quantity("J/m^2", rule=POSITIVE, default=Taken(0.05))
 
     def start(self, scene: Scene) -> Parts:
         """Return size and pull of the pair; the law has no memory."""

@@ -8,15 +8,12 @@ from typing import Any, ClassVar, NamedTuple
 import attrs
 
 from contactlab.contracts import NormalLaw
-from contactlab.contracts.restitution import restitution
+from contactlab.contracts.restitution import TAKEN_RESTITUTION, restitution
 from contactlab.impact.hertz import hertz_scales, hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, quantity
 from contactlab.numeric.types import Real
 from contactlab_laws.calibrated import claims_of_loss, one_of_two
-
-#: Default restitution, for laws with no relaxation time of their own.
-DEFAULT_RESTITUTION = 0.9
 
 
 class Parts(NamedTuple):
@@ -37,7 +34,7 @@ class Relaxing(NormalLaw):
     relaxation_time: float | None = quantity("s", rule=NON_NEGATIVE, default=None)
 
     def __attrs_post_init__(self) -> None:
-        one_of_two(self, "restitution", "relaxation_time", default=DEFAULT_RESTITUTION)
+        one_of_two(self, "restitution", "relaxation_time", default=TAKEN_RESTITUTION)
 
     @staticmethod
     @abstractmethod

@@ -12,11 +12,12 @@ from contactlab.contracts import NormalContact, NormalLaw
 from contactlab.impact.hertz import hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import POSITIVE, quantity
+from contactlab.numeric.taken import Taken
 from contactlab.numeric.types import Real
 from contactlab_laws.calibrated import one_of_two
 
-#: Default v_y in m/s, that of a ball of hard steel.
-DEFAULT_VELOCITY = 0.1
+#: v_y in m/s if none is given, that of a ball of hard steel.
+TAKEN_VELOCITY = Taken(0.1)
 
 
 class State(NamedTuple):
@@ -59,7 +60,7 @@ class Thornton(NormalLaw):
     yield_pressure: float | None = quantity("Pa", rule=POSITIVE, default=None)
 
     def __attrs_post_init__(self) -> None:
-        one_of_two(self, "yield_velocity", "yield_pressure", default=DEFAULT_VELOCITY)
+        one_of_two(self, "yield_velocity", "yield_pressure", default=TAKEN_VELOCITY)
 
     def start(self, scene: Scene) -> State:
         """Return the state of a pair that was never pressed."""

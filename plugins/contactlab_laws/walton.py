@@ -11,6 +11,7 @@ import numpy as np
 from contactlab.contracts import NormalMotion, WholeImpact, WholeImpactTangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Rule, quantity
+from contactlab.numeric.taken import Taken
 from contactlab.numeric.types import Real
 
 #: Bound of the imbalance of the energy books, over the energy at the start.
@@ -47,7 +48,7 @@ class Walton(WholeImpactTangentialLaw):
         "impact_reference": "the exact solution is that of bodies which deform tangentially",
     }
 
-    slip_restitution: float = quantity("1", rule=SHARE, default=0.4)
+    slip_restitution: float = quantity("1", rule=SHARE, default=Taken(0.4))
 
     def books_bound(self, scene: Scene) -> Real:
         """Return the bound of rounding: the friction work follows from the impulse."""

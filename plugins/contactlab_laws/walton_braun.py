@@ -8,7 +8,7 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import NormalContact, NormalLaw
-from contactlab.contracts.restitution import restitution
+from contactlab.contracts.restitution import TAKEN_RESTITUTION, restitution
 from contactlab.impact.hertz import linear_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import POSITIVE, quantity
@@ -47,7 +47,7 @@ class WaltonBraun(NormalLaw):
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius", "elliptic", "plastic"})
 
-    restitution: float = restitution(default=0.9)
+    restitution: float = restitution(default=TAKEN_RESTITUTION)
     stiffness: float | None = quantity("N/m", rule=POSITIVE, default=None)
 
     def start(self, scene: Scene) -> State:

@@ -12,7 +12,7 @@ from contactlab.contracts import (
     NormalContact,
     without_tension,
 )
-from contactlab.contracts.restitution import restitution
+from contactlab.contracts.restitution import TAKEN_RESTITUTION, restitution
 from contactlab.impact.hertz import hertz_scales, hertz_stiffness, linear_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import POSITIVE, quantity
@@ -62,7 +62,7 @@ class Tsuji(ClosedFormNormalLaw):
 
     api_version: ClassVar[int] = 2
 
-    restitution: float = restitution(default=0.9)
+    restitution: float = restitution(default=TAKEN_RESTITUTION)
 
     def _offers(self) -> frozenset[str]:
         """Return the claims; the law is viscous if there is any loss."""
@@ -116,7 +116,7 @@ class Linear(ClosedFormNormalLaw):
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius", "elliptic"})
 
-    restitution: float = restitution(default=0.9)
+    restitution: float = restitution(default=TAKEN_RESTITUTION)
     stiffness: float | None = quantity("N/m", rule=POSITIVE, default=None)
 
     def start(self, scene: Scene) -> Parts:

@@ -21,6 +21,7 @@ from contactlab.contracts import (
     TangentialLaw,
     TangentialMotion,
     faults,
+    judges,
     shares_loss,
 )
 from contactlab.contracts.status import Status
@@ -53,8 +54,8 @@ def needed_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene | None =
         assert isinstance(law, CausalTangentialLaw)
         return np.maximum(together.needed_steps(scene, normal, law), float(LEAST_STEPS))
     scene = normal.scene
-    stiffness: Any = law.stiffness(scene, normal)
-    if not scene.shape and isinstance(stiffness, float) and stiffness >= 0.0:
+    stiffness: Any = judges.stiffness_of(law, scene, normal)
+    if not scene.shape and isinstance(stiffness, float):
         single = math.sqrt(stiffness / scene.pair.tangential_mass) * float(normal.duration)
         least = single / LARGEST_PHASE_STEP
         if "partial_slip" not in law.offers:

@@ -21,6 +21,7 @@ from contactlab.contracts import (
     Steps,
     TangentialMotion,
     faults,
+    judges,
     shares_loss,
 )
 from contactlab.contracts.status import Status
@@ -36,7 +37,7 @@ def march(
 ) -> TangentialMotion:
     """Return the tangential motion along ``steps``: all at once if the law can, else one by one."""
     if (complaint := _unsound(normal, steps)) is not None:
-        return TangentialMotion.nothing(normal.scene.shape, Status.NON_FINITE, complaint)
+        return TangentialMotion.nothing(normal.scene.shape, *complaint)
     if normal.scene.shape:
         keep_freed_memory()
     stepwise = observer is not None and getattr(observer, "stepwise", True)
@@ -146,15 +147,15 @@ def _one_by_one(
                 displacement, velocity, step.friction_load, step.kick, step.drift, sampled
             )
             response, state = law.advance(state, increment, before, contact)
-            force, lost = response.force, response.friction_work
-            if not (single and isinstance(force, float) and isinstance(lost, float)):
-                for answer in (force, lost):
-                    if faults.malformed(answer, shape):
-                        raise faults.LawFaultError(Status.MALFORMED, f"the answer {shown(answer)}")
+            force, lost, settled, loss = response
+            plain_numbers = isinstance(force, float) and isinstance(lost, float)
+            usual = single and plain_numbers and isinstance(loss, float) and settled is True
+            if not usual and (words := judges.wrong_response(response, shape)):
+                raise faults.LawFaultError(Status.MALFORMED, words)
             slowed = force * (step.kick / mass)
             change = change - slowed
             work = work + lost
-            shear = shear + response.shear_loss
+            shear = shear + loss
             acting = force
             before = contact
             if observer is not None:
@@ -162,7 +163,7 @@ def _one_by_one(
                 moment = step.time, step.approach, step.rate, contact
                 observer(Sample(*moment, middle, force, fields))
             velocity = initial + change
-            if response.settled is not True and not np.all(response.settled):
+            if settled is not True and not np.all(settled):
                 raise faults.LawFaultError(Status.UNSETTLED, "no division found")
             if not (math.isfinite(force) if single else np.isfinite(force).all()):
                 raise faults.LawFaultError(Status.NON_FINITE, f"force {_number(force)}")
@@ -211,17 +212,21 @@ def _finite(value: Real) -> bool:
     return math.isfinite(value) if isinstance(value, float) else bool(np.isfinite(value).all())
 
 
-def _unsound(normal: NormalMotion, steps: Steps) -> str | None:
-    """Return a sentence on a normal motion that is not finite, or None; then no march begins."""
+def _unsound(normal: NormalMotion, steps: Steps) -> tuple[Status, str] | None:
+    """Return status and sentence of a normal motion that is not finite, or of a wrong sign."""
     # The tangential law cannot tell: where the load is infinite Coulomb's cap is no cap, and the
     # answer would look right.
     columns = (*steps.contact, *steps[1:4])
+    contact = steps.contact
     with np.errstate(all="ignore"):
-        if np.isfinite(sum(columns)).all():
-            return None  # a sum is finite only if all its terms are
+        if np.isfinite(sum(columns)).all():  # a sum is finite only if all its terms are
+            largest = normal.maximum_radius, normal.maximum_force
+            words = judges.below_zero(contact.radius, contact.friction_load, largest)
+            return (Status.MALFORMED, faults.sentence(normal.law, words, 1)) if words else None
     for column in columns:
         if not np.isfinite(column).all():
             bad = ~np.isfinite(column).reshape(len(column), -1).all(axis=1)
             count: int = int(bad.argmax())
-            return faults.sentence(normal.law, _number(column[count]), count + 1, steps.time[count])
+            told = faults.sentence(normal.law, _number(column[count]), count + 1, steps.time[count])
+            return Status.NON_FINITE, told
     return None

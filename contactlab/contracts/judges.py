@@ -1,0 +1,107 @@
+"""Judges of what laws answer: real numbers of the batch's shape, known, and of the right sign.
+
+Every way to solve an impact, integrators and prescribed paths ask these. What they refuse is
+``MALFORMED``, in the words of ``faults``.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from contactlab.contracts import faults
+from contactlab.contracts.contact import NormalContact
+from contactlab.contracts.law import Law
+from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.status import Status
+from contactlab.contracts.tangential import (
+    Errors,
+    SteppedTangentialLaw,
+    TangentialLaw,
+    TangentialResponse,
+)
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import shown
+from contactlab.numeric.types import Real
+
+#: What is below zero by less than this, over the largest of its kind, is zero but for rounding.
+ROUNDING = 1e-9
+NEGATIVE_RADIUS = "a contact radius below zero"
+NEGATIVE_LOAD = "a friction load below zero, of which Coulomb's limit would be negative"
+
+
+def below_zero(radius: Real, load: Real, largest: tuple[Real, Real]) -> str:
+    """Return which of contact radius (m) and friction load (N) is below zero in words, or "".
+
+    ``largest`` are the scales of the two, over which rounding counts.
+    """
+    for value, scale, words in zip(
+        (radius, load), largest, (NEGATIVE_RADIUS, NEGATIVE_LOAD), strict=True
+    ):
+        if np.any(np.less(value, -ROUNDING * np.asarray(scale))):
+            return words
+    return ""
+
+
+def judge_contact(law: Law, contact: object, shape: tuple[int, ...], step: int) -> NormalContact:
+    """Return a contact with its friction load, or refuse what is none."""
+    if not isinstance(contact, NormalContact):
+        sentence = faults.sentence(law, f"respond gave {shown(contact)}, not a NormalContact", step)
+        raise faults.LawFaultError(Status.LAW_RAISED, sentence)
+    for entry in contact:
+        if entry is not None and faults.malformed(entry, shape):
+            raise _refusal(law, f"the answer {shown(entry)}", step)
+    return contact.complete
+
+
+def wrong_response(
+    response: TangentialResponse, shape: tuple[int, ...], axes: tuple[int, ...] = ()
+) -> str:
+    """Return what of a response is not real numbers, or no mask, of the batch in words, or "".
+
+    ``axes`` are those of a force beside the batch's.
+    """
+    force, work, settled, shear_loss = response
+    for answer, wanted in ((force, (*shape, *axes)), (work, shape), (shear_loss, shape)):
+        if faults.malformed(answer, wanted):
+            return f"the answer {shown(answer)}"
+    if axes and np.ndim(force) == 0 and force != 0.0:  # no force is a number
+        return f"no vector: {shown(force)}"
+    mask = isinstance(settled, np.ndarray) and settled.dtype == np.bool_
+    return "" if mask or isinstance(settled, bool | np.bool_) else f"settled = {shown(settled)}"
+
+
+def stiffness_of(law: SteppedTangentialLaw, scene: Scene, normal: NormalMotion) -> Real:
+    """Return the stiffness in N/m that bounds a stable step; infinite if none is stable."""
+    return _known(law, "stiffness", law.stiffness(scene, normal), scene.shape)
+
+
+def books_bound_of(law: TangentialLaw, scene: Scene) -> Real:
+    """Return the bound of the energy books that a law declares; infinite if it declares none."""
+    return _known(law, "books_bound", law.books_bound(scene), scene.shape)
+
+
+def judge_errors(law: Law, errors: object, shape: tuple[int, ...]) -> Errors:
+    """Return declared errors: numbers from 0, or NaN where none is declared."""
+    if not isinstance(errors, Errors):
+        raise _refusal(law, f"errors gave {shown(errors)}, not Errors", 1)
+    for name, error in zip(errors._fields, errors, strict=True):
+        if (type(error) is not float and faults.malformed(error, shape)) or np.any(error < 0.0):
+            raise _refusal(law, f"errors gave {name} = {shown(error)}", 1)
+    return errors
+
+
+def _known(law: Law, name: str, value: Any, shape: tuple[int, ...]) -> Real:
+    """Return a number from 0 that a law declares for each impact, or refuse the declaration."""
+    if type(value) is float and value >= 0.0:
+        return value
+    if faults.malformed(value, shape) or not np.all(np.greater_equal(value, 0.0)):
+        raise _refusal(law, f"{name} gave {shown(value)}, not a number from 0", 1)
+    number: Real = value
+    return number
+
+
+def _refusal(law: Law, what: str, step: int) -> faults.LawFaultError:
+    """Return the error of an answer that is refused."""
+    return faults.LawFaultError(Status.MALFORMED, faults.sentence(law, what, step))
