@@ -11,7 +11,6 @@ import numpy as np
 
 from contactlab.compose import impulses
 from contactlab.compose.collision_plan import collision_plan
-from contactlab.compose.rebound import ELASTIC
 from contactlab.compose.restituted import planned, run_by_restitution
 from contactlab.compose.simulation import Simulation
 from contactlab.compose.velocities import Velocities, velocities
@@ -144,7 +143,7 @@ class Collision(Answer, Generic[Each]):
         spin: Numbers | Labelled = NOTHING,
         target_velocity: Numbers | Labelled = NOTHING,
         target_spin: Numbers | Labelled = NOTHING,
-        restitution: Numbers | Labelled | Callable[..., object] = ELASTIC,
+        restitution: Numbers | Labelled | Callable[..., object] = 1.0,
     ) -> Velocities:
         """Return velocities and spins after impacts of spheres, as arrays of JAX or PyTorch.
 

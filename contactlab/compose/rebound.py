@@ -47,8 +47,8 @@ SLIPS_THROUGHOUT = 1e5
 
 #: Up to this restitution the table of restitutions is not joined to the elastic one.
 NO_JOIN = 0.99
-#: Defaults of ``tolerance`` and ``restitution``, tested by identity: a comparison takes long.
-USUAL, ELASTIC = 1e-5, 1.0
+#: The default of ``tolerance``.
+USUAL = 1e-5
 #: Libraries of arrays that may be traced, with what differentiates ``rebound`` in each.
 DIFFERENTIATE = {
     "jax": "jax.grad, jax.jvp and jax.hessian",
@@ -124,7 +124,7 @@ def rebound(
     *,
     tolerance: float = ...,
     derivatives: bool = ...,
-    restitution: Numbers | Labelled = ...,
+    restitution: Numbers | Labelled | None = ...,
 ) -> Any: ...
 def rebound(
     psi1: Numbers | Labelled,
@@ -132,7 +132,7 @@ def rebound(
     *,
     tolerance: float = USUAL,
     derivatives: bool = False,
-    restitution: Numbers | Labelled = ELASTIC,
+    restitution: Numbers | Labelled | None = None,
 ) -> Any:
     """Return the dimensionless rebound psi2 of spheres, a float or an array of the inputs' shape.
 
@@ -158,9 +158,10 @@ def rebound(
         Return d psi2/d psi1 and d psi2/d chi too, and with ``restitution`` d psi2/d e. Elastic
         ones are tabulated up to chi = 2.5, to 1e-6 (5e-5 for psi1 just above 1, chi 1.83 to 1.92);
         with a restitution below 1 they are tabulated for chi from 0.3 to 3, to 0.02.
-    restitution : float or array_like
-        e of the normal motion, from 0 (clay) to 1, broadcast against ``psi1``. Below 1 the law is
-        ``normal.viscoelastic``: one relaxation time for pressure and shear. In the table psi2 holds
+    restitution : float or array_like, optional
+        e of the normal motion, from 0 (clay) to 1, broadcast against ``psi1``; 1 if left out. Below
+        1 the law is ``normal.viscoelastic``: one relaxation time for pressure and shear. In the
+        table psi2 holds
         to 5e-5 up to chi = 2, and to 1.5e-4 up to 3. Below chi = 0.3 springs give psi2 to 5e-5,
         above 3 to 3e-4 sqrt(chi/3). Impacts that slip throughout, psi1 >= max(1, 2 chi (1 + e) -
         e), and those of e = 0, are exact. A plan of ``collide`` states how far e_T =
@@ -211,11 +212,10 @@ def rebound(
     >>> round(rebound(1.2, 49 / 34), 6)
     -0.180519
     """
-    if restitution is not ELASTIC and type(restitution) is int:
+    if type(restitution) is int:
         restitution = float(restitution)  # 1 is as fast as 1.0
-    usual = tolerance is USUAL or (isinstance(tolerance, float) and TABULATED < tolerance < 1.0)
-    if usual and not derivatives:
-        if restitution is ELASTIC or (type(restitution) is float and restitution == 1.0):
+    if isinstance(tolerance, float) and TABULATED < tolerance < 1.0 and not derivatives:
+        if restitution is None or (type(restitution) is float and restitution == 1.0):
             table, span = _table("tangential")
             if _within(psi1, chi, span):
                 return table(psi1, chi)
@@ -241,8 +241,8 @@ def rebound(
         empty=True,
     )
     aim = _tolerance(tolerance)
-    e = real("restitution", restitution, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
-    three = derivatives and restitution is not ELASTIC
+    e = 1.0 if restitution is None else _restitution(restitution)
+    three = derivatives and restitution is not None
     velocity, ratio = paired("psi1", "chi", (incidence, inertia))
     if type(psi1) in (float, int) and type(chi) in (float, int):  # typed, not out of an array
         _warn_if_exchanged(float(incidence), float(inertia))
@@ -284,11 +284,16 @@ def _tolerance(value: object) -> float:
     return aim
 
 
+def _restitution(value: object) -> Real:
+    """Return checked restitutions."""
+    return real("restitution", value, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
+
+
 def _labelled(
     psi1: object, chi: object, tolerance: float, derivatives: bool, restitution: object
 ) -> Any:
     """Return ``rebound`` of labelled or lazy arrays, with their labels."""
-    arguments, three = {"psi1": psi1, "chi": chi}, restitution is not ELASTIC
+    arguments, three = {"psi1": psi1, "chi": chi}, restitution is not None
     if three:
         arguments["restitution"] = restitution
     _tolerance(tolerance)
@@ -297,7 +302,7 @@ def _labelled(
     from contactlab.compose.labelled import by_labels  # only for arrays of other libraries
 
     def answer(*columns: Real) -> Any:
-        e = columns[2] if three else ELASTIC
+        e = columns[2] if three else None
         return rebound(*columns[:2], tolerance=tolerance, derivatives=derivatives, restitution=e)
 
     return by_labels(answer, 1 + (2 + three) * derivatives, arguments)

@@ -87,14 +87,16 @@ def judge_errors(law: Law, errors: object, shape: tuple[int, ...]) -> Errors:
     if not isinstance(errors, Errors):
         raise _refusal(law, f"errors gave {shown(errors)}, not Errors", 1)
     for name, error in zip(errors._fields, errors, strict=True):
-        if (type(error) is not float and faults.malformed(error, shape)) or np.any(error < 0.0):
+        if type(error) is float and not error < 0.0:  # NaN is not declared
+            continue
+        if faults.malformed(error, shape) or np.any(np.less(error, 0.0)):
             raise _refusal(law, f"errors gave {name} = {shown(error)}", 1)
     return errors
 
 
 def _known(law: Law, name: str, value: Any, shape: tuple[int, ...]) -> Real:
     """Return a number from 0 that a law declares for each impact, or refuse the declaration."""
-    if type(value) is float and value >= 0.0:
+    if isinstance(value, float) and value >= 0.0:
         return value
     if faults.malformed(value, shape) or not np.all(np.greater_equal(value, 0.0)):
         raise _refusal(law, f"{name} gave {shown(value)}, not a number from 0", 1)

@@ -220,6 +220,8 @@ def _unsound(normal: NormalMotion, steps: Steps) -> tuple[Status, str] | None:
     contact = steps.contact
     with np.errstate(all="ignore"):
         if np.isfinite(sum(columns)).all():  # a sum is finite only if all its terms are
+            if min(contact.radius.min(), contact.friction_load.min()) >= 0.0:
+                return None
             largest = normal.maximum_radius, normal.maximum_force
             words = judges.below_zero(contact.radius, contact.friction_load, largest)
             return (Status.MALFORMED, faults.sentence(normal.law, words, 1)) if words else None
