@@ -26,14 +26,14 @@ from contactlab.contracts.tangential import (
 from contactlab.contracts.tangential_motion import Observer
 from contactlab.impact.cautions import OUTSIDE
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import chosen, every, greater, spread
+from contactlab.numeric.arrays import chosen, every, spread
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import ENDLESS, MARCHED, Clause, PlanColumns, Reason
 
-#: Least bound of the imbalance of the energy books: where W is nearly singular the energy is the
-#: small difference of large products.
+#: Imbalance of the energy books that is no failure: where W is nearly singular the energy is the
+#: small difference of large products. Beyond a law's own bound the declared errors grow instead.
 CANCELS = 1e-4
 #: Shares of W_nn that friction leaves, 1 - W_nt²/(W_nn W_tt), and the largest errors from each down
 #: to a tenth of it, where abs(lam) > 1: of V2 over max(1, V2) and psi2 over max(1, psi1), in 1,200
@@ -66,6 +66,7 @@ class Coupled(Way):
 
     both = as_integrator = True
     at_a_time = 1000  # their springs stay in the cache
+    cancels = CANCELS
 
     def prepare(self, history: bool | str) -> Prepared:
         """Return the approach without friction and columns of the plan, or raise LawFaultError."""
@@ -74,7 +75,7 @@ class Coupled(Way):
             self.refuse_history(history)
         normal = normal_or_failed(laws.normal, scene.central)
         with faults.blaming(laws.tangential):
-            bound = greater(judges.books_bound_of(laws.tangential, normal.scene), CANCELS)
+            bound = judges.books_bound_of(laws.tangential, normal.scene)
             return Prepared(normal, [], self._columns(normal), bound)
 
     def _columns(self, normal: NormalMotion) -> PlanColumns:

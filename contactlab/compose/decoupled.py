@@ -42,6 +42,7 @@ class Decoupled(Way):
 
     both = as_integrator = False
     at_a_time = math.inf
+    cancels = 0.0
 
     @property
     def scene_of_cautions(self) -> Scene:

@@ -30,7 +30,7 @@ FIRST_STEP = 1e-4
 MOST_STEPS = 5_000
 #: Sign changes of the rate without separation after which a contact is abandoned: adhesion holds
 #: the bodies together.
-MOST_TURNS = 20
+MOST_TURNS = 16
 #: Also abandoned: a contact deeper than this times R, or stationary. It is stationary if the rate,
 #: and its change by the present force over the time since first touch, are below this times v1.
 DEEPEST, AT_REST = 1e6, 1e-9

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.contracts import faults
+from contactlab.contracts import faults, judges
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
 from contactlab.contracts.normal import NormalLaw
@@ -17,7 +17,6 @@ from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import Increment, Sampled, SteppedTangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked, plain
-from contactlab.numeric.checks import shown
 from contactlab.numeric.types import Array, Real
 
 
@@ -57,8 +56,10 @@ def advanced(
     ``state`` and ``before`` are those at the beginning; a step has the contact at its end.
     """
     answers, states = [], []
-    for increment, after in steps:
+    for step, (increment, after) in enumerate(steps, 1):
         response, state = law.advance(state, increment, before, after)
+        if words := judges.wrong_response(response, np.shape(after.force)):
+            raise faults.LawFaultError(Status.MALFORMED, faults.sentence(law, words, step))
         answers.append((response.force, response.friction_work, response.settled))
         states.append(state)
         before = after
@@ -78,6 +79,11 @@ def followed(
     rate = points.moved(points.approach, 0.0)[1]
     contacts = _pressed(normal, scene, points, rate)
     sampled = NormalContact(*(_column(rows, scene.shape) for rows in zip(*contacts, strict=True)))
+    radius, load = sampled.radius, sampled.friction_load
+    with np.errstate(invalid="ignore"):
+        largest = np.max(np.abs(radius), axis=0), np.max(np.abs(load), axis=0)
+    if words := judges.below_zero(radius, load, largest):
+        raise faults.LawFaultError(Status.MALFORMED, faults.sentence(normal, words, 1))
     motion = SampledMotion(
         normal, scene, time=points.time, approach=points.approach, rate=rate, contact=sampled
     )
@@ -87,8 +93,6 @@ def followed(
         answers, states = advanced(
             tangential, state, nothing, _steps(points, rate, contacts, blamed)
         )
-    for number, answer in enumerate(answers, 1):
-        _well_formed(tangential, answer[:2], scene.shape, number)
     force, work, settled = (_column(rows, scene.shape) for rows in zip(*answers, strict=True))
     columns = {
         "normal_force": sampled.force,
@@ -101,14 +105,6 @@ def followed(
     return Followed(columns, states, status, detail)
 
 
-def _well_formed(law: Law, entries: Iterable[object], shape: tuple[int, ...], step: int) -> None:
-    """Raise ``LawFaultError`` for an answer that is not made of real numbers of the batch."""
-    for entry in entries:
-        if faults.malformed(entry, shape):
-            sentence = faults.sentence(law, f"the answer {shown(entry)}", step)
-            raise faults.LawFaultError(Status.MALFORMED, sentence)
-
-
 def _pressed(normal: NormalLaw, scene: Scene, points: Points, rates: Array) -> list[NormalContact]:
     """Return the normal contact at each point."""
     contacts = []
@@ -117,8 +113,7 @@ def _pressed(normal: NormalLaw, scene: Scene, points: Points, rates: Array) -> l
         rows = zip(_rows(points.approach), _rows(rates), strict=True)
         for blamed.step, (approach, rate) in enumerate(rows, 1):
             contact, state = normal.respond(state, locked(approach), locked(rate))
-            complete = contact.complete
-            _well_formed(normal, complete, scene.shape, blamed.step)
+            complete = judges.judge_contact(normal, contact, scene.shape, blamed.step)
             contacts.append(NormalContact(*(locked(plain(entry)) for entry in complete)))
     return contacts
 

@@ -24,7 +24,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import consecutive
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array, Real
-from contactlab.outcome.energy import balanced, powered
+from contactlab.outcome.energy import balanced, contradicted, powered
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion, sound
 from contactlab.outcome.plan import ENDLESS, MARCHED, UNKNOWN, Clause, PlanColumns
@@ -77,6 +77,8 @@ class Way(Entries, ABC):
     both: ClassVar[bool]
     #: True if answers as a whole are as accurate as the integrator, as those of a march are.
     as_integrator: ClassVar[bool]
+    #: Imbalance of the energy books, over the energy at the start, that is no failure in any law.
+    cancels: ClassVar[float]
     #: Most impacts that are solved at a time.
     at_a_time: ClassVar[float]
 
@@ -155,8 +157,10 @@ class Way(Entries, ABC):
         few = self.both or type(prepared.normal) is UnfollowedMotion  # isinstance is slow
         motion = powered(sound(motion, together=few), prepared.normal)
         error = prepared.columns.restitution_error
-        motion = balanced(motion, scene, bound, together=self.both, restitution_error=error)
-        return prepared.columns, motion
+        motion, off = balanced(
+            motion, scene, bound, self.cancels, together=self.both, restitution_error=error
+        )
+        return contradicted(prepared.columns, scene, off, bound, self.cancels), motion
 
     def solve_parts(self, places: list[slice]) -> tuple[PlanColumns, Motion]:
         """Return columns and motion of a batch that is solved in consecutive parts."""

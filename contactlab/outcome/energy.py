@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import of_each, some
+from contactlab.numeric.arrays import of_each, plain, some
 from contactlab.numeric.names import attributes_told
 from contactlab.numeric.types import Each, Mask, Real
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.motion import Motion
+from contactlab.outcome.plan import PlanColumns
 
 #: A normal restitution above this is energy from nothing where no error of it is declared: an
 #: explicit scheme with the fewest steps leaves e - 1 = 3e-3.
@@ -25,6 +26,9 @@ LARGEST_RESTITUTION = 1.02
 #: where no error is declared. The jump of DMT's force as contact ends left 0.003 in 200 steps, 0.01
 #: in 50 and 0.05 in 7; other laws left less.
 ROUNDING, STEPS_LEAVE = 1e-9, 0.05
+#: Errors of the rates over v1 are at most so many times those of the books over the energy at the
+#: start; up to 4 times where rods of mu = 1e6 lost digits.
+BOOKS_TELL = 10.0
 #: Errors of the energy over those of the rate at the end: 2, and some more for the second order.
 OF_THE_RATE = 2.5
 #: A slip velocity at the end above this multiple of the slip velocity at the start is energy from
@@ -140,13 +144,15 @@ def balanced(
     motion: Motion,
     scene: Scene,
     bound: Real,
+    cancels: float = 0.0,
     *,
     together: bool = False,
     restitution_error: Real = math.nan,
-) -> Motion:
+) -> tuple[Motion, Real]:
     """Return ``motion`` with status ``UNBALANCED`` where the energy books do not balance.
 
-    The imbalance over the energy at the start exceeds ``bound``, or 1 if that is infinite; or a
+    Beside it stands the imbalance over the energy at the start; 0 if it is below every bound. It
+    fails above ``bound`` and ``cancels``, or above 1 if the bound is infinite. Or a
     loss or work is below zero by more than rounding and what is declared; or the bodies
     slip faster than at first touch. If friction changed the normal motion, as in motions of both
     ``together``, or the spin about the normal, one of the two may gain what the other loses, and
@@ -159,8 +165,28 @@ def balanced(
         and (alone or not scene.turns)
         and _balances(motion, scene, bound, alone, gain)
     ):
-        return motion
-    return _with_unbalanced(motion, scene, bound, alone, gain)
+        return motion, 0.0
+    return _with_unbalanced(motion, scene, np.maximum(bound, cancels), alone, gain)
+
+
+def contradicted(
+    columns: PlanColumns, scene: Scene, off: Real, bound: Real, cancels: float
+) -> PlanColumns:
+    """Return the columns of a plan with errors as large as books are off beyond a law's bound.
+
+    Books that are off by more than ``cancels`` are a failure.
+    """
+    doubted = np.asarray((off > bound) & (off <= cancels))
+    if not some(doubted):
+        return columns
+    speed: Any = scene.normal_speed
+    rate: Any = BOOKS_TELL * np.asarray(off)
+    with np.errstate(all="ignore"):
+        slip: Any = rate * speed * np.asarray(scene.psi_scale)
+        psi2 = np.where(doubted, np.maximum(columns.psi2_error, slip), columns.psi2_error)
+        own = columns.restitution_error
+        restitution = np.where(doubted, np.maximum(own, rate), own)
+    return columns._replace(psi2_error=plain(psi2), restitution_error=plain(restitution))
 
 
 def _balances(motion: Motion, scene: Scene, bound: Real, alone: Mask, gain: Real) -> bool:
@@ -189,8 +215,10 @@ def _balances(motion: Motion, scene: Scene, bound: Real, alone: Mask, gain: Real
 
 
 @np.errstate(all="ignore")
-def _with_unbalanced(motion: Motion, scene: Scene, bound: Real, alone: Mask, gain: Real) -> Motion:
-    """Return ``motion`` with the status of each impact whose books do not balance.
+def _with_unbalanced(
+    motion: Motion, scene: Scene, bound: Real, alone: Mask, gain: Real
+) -> tuple[Motion, Real]:
+    """Return ``motion`` with the status of each impact whose books do not balance, and how far.
 
     ``alone`` marks impacts whose slip alone friction changed; ``gain`` is what the normal force may
     make of the energy at the start, NaN if no error of it is declared.
@@ -229,7 +257,7 @@ def _with_unbalanced(motion: Motion, scene: Scene, bound: Real, alone: Mask, gai
     ):  # fmt: skip
         if some(where):
             motion = motion.failing(where, Status.UNBALANCED, _sentences(sentence, *numbers()))
-    return motion
+    return motion, imbalance / start
 
 
 def _sentences(sentence: str, *numbers: Real) -> str | NDArray[np.object_]:

@@ -42,6 +42,8 @@ TOLERANCE = Rule(
 )
 #: Steps of the first try; they are doubled until the error is small enough.
 FIRST = 32
+#: Steps by which impacts are given up whose approach without friction has no end.
+USUAL = 200
 #: Doubled steps divide the change of psi2 by 4 under a smooth law: from this ratio on the law
 #: counts as smooth, and the error left is the last change over the ratio less 1.
 SMOOTH = 3.0
@@ -124,9 +126,13 @@ class Adaptive(CoupledIntegrator):
         needed = together.needed_steps(scene, normal, tangential)
         count = np.where(needed <= MOST_STEPS, np.maximum(needed, FIRST), np.inf)
         refused = Status.TOO_FEW_STEPS, refusals(FIRST, needed)
-        before = together.march_together(scene, normal, tangential, count, None, refused)
-        if not np.any(before.status == Status.SUCCESS):
+        before = together.march_together(
+            scene, normal, tangential, count, None, refused, usual=USUAL
+        )
+        succeeded = np.asarray(before.status == Status.SUCCESS)
+        if not succeeded.any():
             return before
+        count = np.where(succeeded, count, np.inf)  # what has failed is not followed again
         motion, count = self._doubled_together(scene, normal, tangential, count, before)
         if scene.shape:
             failed = before.status != Status.SUCCESS

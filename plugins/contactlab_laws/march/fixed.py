@@ -206,4 +206,6 @@ class FixedSteps(CoupledIntegrator):
         needed = together.needed_steps(scene, normal, tangential)
         taken = self._taken_together(needed)
         refused = Status.TOO_FEW_STEPS, refusals(self.steps, needed)
-        return together.march_together(scene, normal, tangential, taken, observer, refused)
+        return together.march_together(
+            scene, normal, tangential, taken, observer, refused, usual=self.steps
+        )

@@ -41,9 +41,6 @@ from contactlab_laws.march.division import resolving
 #: 1,500 random bodies with mu from 0.3 to 30 none lasted longer than 2.3; the share counts from
 #: ``LEAST_SHARE``.
 LONGEST, LEAST_SHARE = 6.0, 0.01
-#: Steps after which an impact is given up whose approach without friction has no end: adhesion that
-#: friction overcomes takes some hundred.
-IN_VAIN = 1500
 #: Turns from parting to approach, made by tension, after which a contact is given up: adhesion
 #: holds the bodies together. An approach alone is given up after as many. Of 400 random rods under
 #: JKR and DMT that parted none had been pulled back once.
@@ -104,15 +101,17 @@ def march_together(
     count: Real,
     observer: Observer | None,
     refused: tuple[Status, str | NDArray[np.object_]] = (Status.TOO_FEW_STEPS, ""),
+    usual: float = math.inf,
 ) -> TangentialMotion:
     """Return the motion in ``count`` steps an approach without friction, one for each impact.
 
-    An impact whose count is infinite is not followed; ``refused`` is its status, with detail.
+    An impact whose count is infinite is not followed; ``refused`` is its status, with detail. One
+    whose approach without friction has no end is followed as long as in ``usual`` steps at most.
     """
     possible = np.isfinite(count)
     if not np.any(possible):
         return TangentialMotion.nothing(scene.shape, *refused, axes=scene.slip_axes)
-    march = _March(scene, normal, law, count)
+    march = _March(scene, normal, law, count, usual)
     if not np.all(possible):
         left_out = ~np.broadcast_to(possible, scene.shape)
         march.fail(refused[0], np.broadcast_to(refused[1], scene.shape)[left_out], left_out)
@@ -146,6 +145,7 @@ class _March:
         normal: NormalMotion,
         law: CausalTangentialLaw,
         count: Real,
+        usual: float,
     ) -> None:
         self.scene, self.normal, self.law, self.shape = scene, normal, law, scene.shape
         self.axes = 1 if scene.planar else 2
@@ -158,7 +158,9 @@ class _March:
         self.leading = np.ceil(LEADING * count)
         self.longest = entry(LONGEST / np.sqrt(np.maximum(scene.free_share, LEAST_SHARE)))
         most = np.asarray(self.longest) * count
-        self.most = entry(np.where(_ended(normal), most, np.minimum(most, IN_VAIN)))
+        # steps raised for a contact that grows without end are no reason to follow it longer
+        in_vain = np.asarray(self.longest) * np.minimum(count, usual)
+        self.most = entry(np.where(_ended(normal), most, in_vain))
         W: Any = scene.inverse_mass
         size = 1 + self.axes
         self.W = [[entry(W[..., i, j]) for j in range(size)] for i in range(size)]
