@@ -11,7 +11,9 @@ from contactlab import Encounter, Material, Scene, Simulation, Sphere, collide
 from contactlab.compose.collision import VECTORS_AFTER
 from contactlab.contracts import (
     SteppedTangentialLaw,
+    Taken,
     TangentialResponse,
+    quantity,
 )
 from contactlab.outcome.columns import QUANTITIES, columns_of
 from contactlab.outcome.export import write_csv
@@ -66,31 +68,20 @@ def test_a_failure_names_the_law_with_its_origin(psi1):
 
 
 @attrs.frozen(kw_only=True)
-class Given(LinearSpring):
-    """A spring whose stiffness must be given."""
+class Guessing(LinearSpring):
+    """A spring with a number that nobody can know."""
 
-    stiffness: float = attrs.field()
-    loss: float = 0.5
-
-
-@attrs.frozen(kw_only=True)
-class Usual(LinearSpring):
-    """A spring with two numbers and a word."""
-
-    loss: float = 0.5
-    word: str = "same"
+    loss: float = quantity("1", default=Taken(0.5))
 
 
-def test_the_plan_tells_options_that_have_their_defaults():
+def test_an_author_says_which_default_is_to_be_told():
     scene = in_si(Scene.nondimensional(psi1=1.0, chi=1.0))
 
-    def said(law):
-        return str(Simulation(normal=law, tangential="coulomb").plan(scene).computed[0])
+    def cautions(law):
+        return Simulation(normal=law, tangential="coulomb").plan(scene).cautions
 
-    end = "integrated from first touch to separation"
-    assert said(Given(stiffness=2.0)) == f"normal motion: Given, {end}"
-    assert said(Usual(stiffness=2.0)) == f"normal motion: Usual, {end}; loss = 0.5 by default"
-    assert said(Usual()) == (f"normal motion: Usual, {end}; stiffness = 1, loss = 0.5 by default")
+    assert "loss = 0.5 was taken by default: give Guessing" in str(cautions(Guessing()))
+    assert "taken" not in str(cautions(Guessing(loss=0.5)))
 
 
 def test_the_error_of_a_solved_motion_is_that_of_its_load_impulse():

@@ -150,3 +150,12 @@ def test_no_law_is_loaded_before_it_is_called():
         "assert not [m for m in sys.modules if m.startswith(('contactlab_', 'scipy'))]"
     )
     subprocess.run([sys.executable, "-c", probe], check=True)
+
+
+def test_derivatives_follow_what_was_given_and_not_which_number_it_is():
+    """Left out, None: three numbers; a restitution, of whatever object: four."""
+    for left_out in ({}, {"restitution": None}):
+        assert len(rebound(1.2, 1.44, derivatives=True, **left_out)) == 3
+    for e in (1.0, 1, float("1"), np.float64(1.0), 0.8, np.array([1.0])):
+        assert len(rebound(1.2, 1.44, derivatives=True, restitution=e)) == 4
+        assert len(rebound(np.empty(0), 1.44, derivatives=True, restitution=1.0)) == 4

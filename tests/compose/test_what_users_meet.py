@@ -18,6 +18,7 @@ from contactlab import (
     Simulation,
     Sphere,
     collide,
+    load_path,
 )  # fmt: skip
 from contactlab.contracts import SteppedTangentialLaw
 from contactlab.numeric.names import arguments_told
@@ -65,13 +66,45 @@ def test_a_collision_tells_its_cautions_too():
     assert fine.check(cautions=True) is fine
 
 
-@pytest.mark.parametrize("law", ["tsuji", "linear", "hunt_crossley", "kuwabara_kono"])
-def test_the_plan_says_that_a_restitution_is_the_default(law):
-    scene = SLIPS["sphere.radius = 10 m"]
-    assert "; restitution = 0.9 by default" in str(Simulation(normal=law).plan(scene))
-    chosen = contactlab.create(f"normal.{law}", restitution=0.8)
-    assert "by default" not in str(Simulation(normal=chosen).plan(scene))
+#: Laws with a number that nobody can know, and what they take for it.
+TAKEN = {
+    "normal.tsuji": ("restitution", 0.9),
+    "normal.linear": ("restitution", 0.9),
+    "normal.hunt_crossley": ("restitution", 0.9),
+    "normal.kuwabara_kono": ("restitution", 0.9),
+    "normal.viscoelastic": ("restitution", 0.9),
+    "normal.walton_braun": ("restitution", 0.9),
+    "normal.thornton": ("yield_velocity", 0.1),
+    "normal.jkr": ("work_of_adhesion", 0.05),
+    "normal.dmt": ("work_of_adhesion", 0.05),
+    "tangential.walton": ("slip_restitution", 0.4),
+}
+
+
+@pytest.mark.parametrize("name", TAKEN)
+def test_a_number_that_nobody_gave_is_told_until_one_is_given(name):
+    """The laws differ by value: neither a copy nor an equal number changes what is told."""
+    scene, (option, value) = SLIPS["sphere.radius = 10 m"], TAKEN[name]
+    kind, _, short = name.partition(".")
+    by_default, given = contactlab.create(name), contactlab.create(name, **{option: value})
+    copied = pickle.loads(pickle.dumps(Simulation(**{kind: short})))
+    words = f"{option} = {value:g} was taken by default"
+    for laws in (Simulation(**{kind: short}), copied, Simulation(**{kind: by_default})):
+        assert words in str(laws.plan(scene))
+        assert words in str(laws.run(scene))
+        assert laws == copied
+    assert given != by_default
+    assert "by default" not in str(Simulation(**{kind: given}).plan(scene))
     assert "by default" not in str(Simulation().plan(scene))
+
+
+def test_a_number_that_nobody_gave_is_told_along_a_path_and_yields_to_its_rival():
+    scene, depth = SLIPS["sphere.radius = 10 m"], np.linspace(0.0, 1e-6, 20)
+    law = contactlab.create("normal.hunt_crossley")
+    assert "restitution = 0.9 was taken" in str(load_path(scene, depth, depth, normal=law).cautions)
+    other = attrs.evolve(law, damping=0.1)
+    assert other == contactlab.create("normal.hunt_crossley", damping=0.1)
+    assert "taken" not in str(load_path(scene, depth, depth, normal=other).cautions)
 
 
 def test_a_run_without_history_says_how_to_have_one():
