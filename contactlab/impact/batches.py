@@ -170,11 +170,23 @@ class Batches(Motions):
         object.__setattr__(taken, "_varied", ())
         object.__setattr__(taken, "shape", np.broadcast_shapes(*taken._shapes().values()))
         object.__setattr__(taken, "_axes", ())
+        if (self._axes or self._varied) and not isinstance(part, int | tuple):
+            object.__setattr__(taken, "_varied", self._varied_at(part))
         if taken.shape or isinstance(part, int | tuple):
             return taken
         count = np.shape(taken.index)
         spread = taken._checked(normal_speed=np.full(count, taken.normal_speed))
         return spread.numbered(taken.index)
+
+    def _varied_at(self, part: Any) -> tuple[tuple[str, Array], ...]:
+        """Return the values of each entry that varies, of the impacts that ``part`` indexes."""
+        if not self._axes:
+            return tuple((name, batch.locked(values[part])) for name, values in self._varied)
+        size = self.shape[0]  # a grid is flat, and too large to be made anew for each part
+        slices = isinstance(part, slice)
+        impacts = np.arange(*part.indices(size)) if slices else np.arange(size)[part]
+        places = zip(self._axes, np.unravel_index(impacts, self.dimensions), strict=True)
+        return tuple((name, batch.locked(values[place])) for (name, values), place in places)
 
     @property
     def index(self) -> Any:
