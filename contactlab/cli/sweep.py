@@ -33,7 +33,7 @@ from contactlab.cli.scene import (
     composed,
     read,
 )
-from contactlab.contracts.status import succeeded
+from contactlab.contracts.status import Status, succeeded
 from contactlab.impact.grid import GridParts
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
@@ -56,6 +56,8 @@ if TYPE_CHECKING:
 SHOWN = ("psi1", "chi", "psi2")
 #: Most impacts in a folder, some 120 GB: a typing error must not fill the disk.
 MOST_IN_A_FOLDER = 1_000_000_000
+#: Statuses of impacts that were not computed.
+NOT_COMPUTED = (Status.INTERRUPTED, Status.WORKER_DIED)
 #: Most rows printed of a sweep that a file holds.
 MOST_ROWS = 25
 
@@ -116,7 +118,7 @@ def execute(arguments: argparse.Namespace) -> int:
         progress_wanted=arguments.progress,
         interrupted=was_interrupted(result),
     )
-    if keep is not None and saved == shared.OK and _finished(result) == len(result):
+    if keep is not None and saved == shared.OK and _done(keep) == len(result):
         _clear(keep)
         keep = None
     if arguments.csv:
@@ -214,7 +216,7 @@ def _folder(out: Path | None) -> Path:
 
 def _done(folder: Path) -> int:
     """Return the number of impacts that an earlier run finished."""
-    from contactlab.compose.kept import count
+    from contactlab.compose.target import count
 
     return count("--resume", folder)
 
@@ -227,12 +229,10 @@ def _clear(folder: Path) -> None:
 
 
 def _finished(result: ImpactResult) -> int:
-    """Return the number of impacts that a resumed sweep does not try again."""
-    from contactlab.compose.kept import TRIED_AGAIN
-
+    """Return the number of impacts that were computed."""
     if succeeded(result.status):
         return len(result)
-    return sum(status not in TRIED_AGAIN for status in result.status)
+    return sum(status not in NOT_COMPUTED for status in result.status)
 
 
 def _ranges(psi1: Real | None, chi: Real | None) -> Scene:

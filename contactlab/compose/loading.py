@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import copyreg
 import os
@@ -12,16 +13,19 @@ from typing import Any, TypeGuard
 
 import numpy as np
 
-from contactlab.compose import sources
+from contactlab.compose.law_files import checksum, is_users
 from contactlab.contracts.law import API_VERSION, Law
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
+from contactlab.outcome.files import stamp
 from contactlab.registration.hooks import PluginError, guarded
 from contactlab.registration.manager import MANAGER
 from contactlab.registration.names import FILE, PluginInfo, Untrusted
 
 #: Laws that were loaded from files.
 IN_FILES: dict[type[Law], PluginInfo] = {}
+#: Modules of such files by path, with the stamp of the file that was run.
+LOADED: dict[str, tuple[tuple[int, ...], ModuleType]] = {}
 
 
 def law_class(info: PluginInfo) -> type[Law]:
@@ -82,31 +86,49 @@ def law_at(place: str) -> type[Law]:
 
 
 def _module(path: str) -> ModuleType:
-    """Return a file as a module, loaded again if it or a file beside it that it needs changed."""
+    """Return a file as a module, loaded again if it changed."""
     # A module's name has no dots, and no two paths may agree.
     name = path.removesuffix(".py").replace("%", "%25").replace(".", "%2E")
-    folder = os.path.dirname(path)
-    sources.forget_changed(folder)
-    if name in sources.SEEN and name in sys.modules:
-        return sys.modules[name]
+    before, now = LOADED.get(path), stamp(path)
+    if before and before[0] == now and sys.modules.get(name) is before[1]:
+        return before[1]
     module = ModuleType(name)
     module.__file__ = path
     sys.modules[name] = module
+    folder, content = os.path.dirname(path), Path(path).read_bytes()
     sys.path.append(folder)  # for other files beside this one
     try:
-        exec(compile(Path(path).read_bytes(), path, "exec", dont_inherit=True), vars(module))
+        exec(compile(content, path, "exec", dont_inherit=True), vars(module))
     finally:
         with contextlib.suppress(ValueError):  # the file may have taken it out, or added others
             del sys.path[len(sys.path) - 1 - sys.path[::-1].index(folder)]
-    version = sources.checksum(repr(sources.code_of([name])).encode())  # of all files in one
-    if other := sources.mistaken(name):
-        del sources.SEEN[name]
+    if other := _mistaken(module, content, folder):
         raise ImportError(f"it imports {other}, not the file beside it; rename one of the two")
     for title, law in _laws(module).items():
         own = f"{law.kind}.{Path(path).name}:{title}"
-        IN_FILES[law] = PluginInfo(own, FILE, version, path, False)
+        IN_FILES[law] = PluginInfo(own, FILE, checksum(content), path, False)
         copyreg.pickle(law, _reduced)
+    LOADED[path] = now, module
     return module
+
+
+def _mistaken(module: ModuleType, content: bytes, folder: str) -> str | None:
+    """Return a file that a law's file imports in place of its neighbour of that name, or None."""
+    # Python has one module of a name: that of another law's folder, or of an earlier folder.
+    names = [each.__name__ for each in vars(module).values() if isinstance(each, ModuleType)]
+    for statement in ast.walk(ast.parse(content)):
+        if isinstance(statement, ast.Import):
+            names += [each.name for each in statement.names]
+        elif isinstance(statement, ast.ImportFrom) and not statement.level:
+            names.append(statement.module or "")
+    for name in dict.fromkeys(each.partition(".")[0] for each in names):
+        beside = os.path.join(folder, name)
+        files = filter(os.path.isfile, (f"{beside}.py", os.path.join(beside, "__init__.py")))
+        real = [*map(os.path.realpath, files)]
+        used = os.path.realpath(getattr(sys.modules.get(name), "__file__", None) or os.devnull)
+        if real and used not in (*real, os.path.realpath(os.devnull)) and is_users(used):
+            return used
+    return None
 
 
 def _laws(module: ModuleType) -> dict[str, type[Law]]:

@@ -11,7 +11,7 @@ from contactlab.compose.acceptance import accept
 from contactlab.compose.composition import Laws, versions
 from contactlab.compose.coupled import Coupled
 from contactlab.compose.decoupled import Decoupled
-from contactlab.compose.pieces import Piece
+from contactlab.compose.pieces import Piece, computer
 from contactlab.compose.unfollowed import followed_apart, refuse_march
 from contactlab.compose.way import Way, blocks
 from contactlab.impact.scene import Scene
@@ -89,4 +89,5 @@ def solve_chunk(laws: Laws, scene: Scene, chunk: Chunk, block: int) -> Piece:
     pieces = (outcome(ways(laws, each), each, False, None) for each in scenes)
     columns, motions = zip(*pieces, strict=True)
     shape = (chunk.size,)
-    return Piece(chunk, PlanColumns.joined(columns, shape), Motion.joined(motions, shape))
+    joined = PlanColumns.joined(columns, shape), Motion.joined(motions, shape)
+    return Piece(chunk, *joined, computer())

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import math
 from collections.abc import Callable, Generator, Iterable, Iterator
+from contextlib import AbstractContextManager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +27,8 @@ from contactlab.outcome.plan import PlanColumns
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
+
+    from contactlab.compose.kept import Kept
 
 #: Impacts of a block if nothing is marched: as many as fit into the cache.
 WHOLE_IMPACTS = 1 << 14
@@ -67,34 +72,44 @@ def swept(
     """Return columns of the plan and motion of a batch of one axis; see ``Simulation.sweep``."""
     size, block = scene.shape[0], block_for(laws, scene)
     step = math.ceil(whole("chunk", block if chunk is None else chunk) / block) * block
-    kept = None
-    if keep is not None:
-        from contactlab.compose.kept import Kept  # needed with ``keep`` only
-
-        kept = Kept(keep, laws, scene, block)
-    finished = [] if kept is None else kept.pieces()
-    done = sum(piece.chunk.size for piece in finished)
-    missing = cut(_gaps(finished, size), step)
-    parts = (Part(each, scene.take(slice(*each)), block) for each in missing)
-    pieces = solve_parts(laws, parts, executor)
-    try:
-        for piece in pieces:
-            finished.append(piece)
+    solve = partial(solve_parts, laws, executor=executor)
+    with _kept(keep, laws, scene, block) as kept:
+        finished = [] if kept is None else kept.pieces()
+        done = sum(piece.chunk.size for piece in finished)
+        missing = cut(_gaps(finished, size), step)
+        parts = (Part(each, scene.take(slice(*each)), block) for each in missing)
+        pieces = solve(parts)
+        try:
             if kept is not None:
-                kept.keep(piece)
-            done += piece.chunk.size
-            if progress is not None:
-                progress(done, size)
-    except KeyboardInterrupt:
-        if kept is not None and finished:
-            kept.keep(finished[-1])  # which may have been on its way to the disk
-        gaps = _gaps(finished, size)
-        finished += [unsolved(gap, scene.slip_axes, Status.INTERRUPTED) for gap in gaps]
-    finally:
-        pieces.close()
+                kept.compare([*finished], block, solve)
+            for piece in pieces:
+                finished.append(piece)
+                if kept is not None:
+                    kept.keep(piece)
+                done += piece.chunk.size
+                if progress is not None:
+                    progress(done, size)
+        except KeyboardInterrupt:
+            if kept is not None and finished:
+                kept.keep(finished[-1])  # which may have been on its way to the disk
+            gaps = _gaps(finished, size)
+            finished += [unsolved(gap, scene.slip_axes, Status.INTERRUPTED) for gap in gaps]
+        finally:
+            pieces.close()
     finished.sort(key=lambda piece: piece.chunk)
     columns = PlanColumns.joined([piece.columns for piece in finished], (size,))
     return columns, Motion.joined([piece.motion for piece in finished], (size,))
+
+
+def _kept(
+    keep: str | Path | None, laws: Laws, scene: Scene, block: int
+) -> AbstractContextManager[Kept | None]:
+    """Return a context with the folder of finished pieces, or with None."""
+    if keep is None:
+        return contextlib.nullcontext()
+    from contactlab.compose.kept import kept_in  # needed with ``keep`` only
+
+    return kept_in(keep, laws, scene, block)
 
 
 def one_axis(shape: tuple[int, ...]) -> None:

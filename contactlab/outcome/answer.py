@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 from abc import abstractmethod
 from collections import Counter
+from collections.abc import Iterator
 from typing import Any, Self
 
 import numpy as np
@@ -37,9 +39,13 @@ class Checked:
         """Doubts about the numbers, in sentences."""
 
     @property
-    @abstractmethod
     def failures(self) -> dict[int, str]:
         """A sentence for each impact that failed, by its index in C order."""
+        return dict(self._failed())
+
+    @abstractmethod
+    def _failed(self) -> Iterator[tuple[int, str]]:
+        """Yield index and sentence of each impact that failed, in order."""
 
     @property
     @abstractmethod
@@ -68,7 +74,7 @@ class Checked:
             With the sentence of the first impact that failed, of those that are missing in a
             folder, or of the first caution.
         """
-        for index, sentence in self.failures.items():
+        for index, sentence in self._failed():
             where = f"impact {index}: " if self._of_many else ""
             raise ImpactError(where + sentence, self._status_at(index))
         if missing := self._unfinished():
@@ -83,10 +89,11 @@ class Checked:
 
     def __str__(self) -> str:
         """Return ``repr``, the first failure, what is missing and every caution, in lines."""
-        lines, failures = self._first_lines(), self.failures
-        for index in [*failures][:1]:
-            where = f" (impact {index}; {len(failures)} in all)" if self._of_many else ""
-            lines.append(f"failed{where}: {failures[index]}")
+        lines, failed = self._first_lines(), self._failed()
+        for index, sentence in itertools.islice(failed, 1):
+            count = 1 + sum(1 for _ in failed)
+            where = f" (impact {index}; {count} in all)" if self._of_many else ""
+            lines.append(f"failed{where}: {sentence}")
         if missing := self._unfinished():
             lines.append(missing)
         return "\n".join([*lines, *(f"caution: {text}" for text in self.cautions)])
@@ -101,18 +108,14 @@ class Answer(Checked):
     def _statuses(self) -> tuple[Any, Any]:
         """Return statuses and details of what was run."""
 
-    @property
-    def failures(self) -> dict[int, str]:
-        """A sentence for each impact that failed, by its index in C order."""
+    def _failed(self) -> Iterator[tuple[int, str]]:
         ends = self._statuses()
         if succeeded(ends[0]):  # a look at each of a million takes long
-            return {}
+            return
         statuses, details = (np.ravel(np.array(entry, dtype=object)) for entry in ends)
-        return {
-            index: f"{status.value} {detail}".strip()
-            for index, (status, detail) in enumerate(np.broadcast(statuses, details))
-            if status is not Status.SUCCESS
-        }
+        for index, (status, detail) in enumerate(np.broadcast(statuses, details)):
+            if status is not Status.SUCCESS:
+                yield index, f"{status.value} {detail}".strip()
 
     @property
     def _of_many(self) -> bool:

@@ -5,15 +5,17 @@ from __future__ import annotations
 import contextlib
 import errno
 import itertools
-import json
 import re
 import tokenize
 import zipfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
-from contactlab.outcome.chunk_forms import NPZ, About, Chunk, Form
+import attrs
+
+from contactlab.outcome.chunk_forms import NPZ, About, Chunk, Form, checksum, told_in
 
 #: What reading a damaged file raises.
 DAMAGED = (
@@ -68,30 +70,55 @@ def refuse_place(argument: str, path: Path, chunk: Chunk, form: Form = NPZ) -> V
 
 
 @contextlib.contextmanager
-def columns_of(path: Path, form: Form, names: Sequence[str] = ()) -> Iterator[Any]:
-    """Yield the columns of a chunk by name; a damaged file is refused."""
+def columns_of(
+    path: Path,
+    form: Form,
+    names: Sequence[str] = (),
+    sums: Mapping[str, int] = MappingProxyType({}),
+    argument: str = "path",
+) -> Iterator[Any]:
+    """Yield the columns of a chunk by name; a damaged file is refused.
+
+    ``sums`` are the checksums of the columns, which the chunk tells.
+    """
     try:
         with form.read(path, names) as content:
-            yield content
+            yield _Compared(content, sums)
     except DAMAGED as error:
-        raise refuse_damaged("path", path, error) from error
+        raise refuse_damaged(argument, path, error) from error
 
 
-def read_about(path: Path, form: Form) -> About:
+@attrs.frozen
+class _Compared:
+    """Columns of a chunk by name, compared with their checksums."""
+
+    content: Any
+    sums: Mapping[str, int]
+
+    def __getitem__(self, name: str) -> Any:
+        values = self.content[name]
+        if name in self.sums and checksum(values) != self.sums[name]:
+            raise ValueError("its numbers are not those that were written")
+        return values
+
+
+def read_about(path: Path, form: Form, argument: str = "path") -> About:
     """Return what a chunk tells, or refuse a damaged file and one of another version."""
-    with columns_of(path, form) as content:
-        told = dict(json.loads(str(content["about"])))
+    with columns_of(path, form, argument=argument) as content:
+        told = told_in(str(content["about"]))
     if told.keys() != {*About._fields}:
         rule = (
             f"tells {', '.join(told)}; this version of contactlab reads {', '.join(About._fields)}"
         )
         remedy = f"read it by the version that {form.about} names"
-        raise refuse_file("path", path, rule, remedy)
+        raise refuse_file(argument, path, rule, remedy)
     return About(**told)
 
 
 def abouts_in(folder: Path, form: Form) -> list[tuple[Path, About]]:
     """Return the files of a folder, in order, with what each tells.
+
+    Sentences on failures stay in the files: those of a million impacts take more than the memory.
 
     Raises
     ------
@@ -103,7 +130,7 @@ def abouts_in(folder: Path, form: Form) -> list[tuple[Path, About]]:
         about = read_about(path, form)
         if about.chunk != chunk:
             raise refuse_place("path", path, about.chunk, form)
-        found.append((path, about))
+        found.append((path, about._replace(failures={})))
     for (_, before), (path, after) in itertools.pairwise(found):
         if before.sweep != after.sweep or before.stop > after.first:
             rule = "holds impacts of another sweep, or of chunks of another size"

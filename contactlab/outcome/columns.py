@@ -244,10 +244,13 @@ def columns_of(scene: Scene) -> tuple[Column, ...]:
     return tuple(column for column in all_columns() if column.of_scenes not in others)
 
 
-def columns(result: WithScene) -> list[tuple[str, str, Any]]:
-    """Return name, unit and values of every column; entries that vary and are none come first."""
+def columns(result: WithScene, whole: Scene | None = None) -> list[tuple[str, str, Any]]:
+    """Return name, unit and values of every column; entries that vary and are none come first.
+
+    A part of a ``whole`` batch has the columns of all: it may be without spin by chance.
+    """
     scene, table = result.scene, []
-    for column in columns_of(scene):
+    for column in columns_of(whole or scene):
         parts = components(column.name, column.read(result), scene.shape)
         table += [(name, column.unit, values) for name, values in parts]
     names = {name for name, *_ in table}

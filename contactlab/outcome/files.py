@@ -2,7 +2,7 @@
 
 Every file that contactlab writes goes through ``written``. A full disk, an error or a killed
 process leaves the old file unchanged; only a killed process leaves a file
-``.contactlab-*.part`` behind.
+``.contactlab-*.part`` behind. In the folder of a sweep the next sweep deletes it.
 """
 
 from __future__ import annotations
@@ -22,6 +22,8 @@ TEXT: dict[str, Any] = {
 }  # fmt: skip
 #: Largest scene or table that is read, in bytes: enough for a sweep of a million numbers.
 LARGEST = 32_000_000
+#: Names of temporary files, with ``*`` for what is drawn.
+PARTS = ".contactlab-*.part"
 
 
 def stamp(path: str | Path) -> tuple[int, ...]:
@@ -60,7 +62,7 @@ def written(path: str | Path, *, binary: bool = False) -> Iterator[Any]:
     if why_not := unwritable(path):
         raise OSError(f"{path}: {why_not}")
     target = os.path.realpath(path)
-    part = os.path.join(os.path.dirname(target), f".contactlab-{os.urandom(6).hex()}.part")
+    part = os.path.join(os.path.dirname(target), PARTS.replace("*", os.urandom(6).hex()))
     form: Any = {"mode": "xb"} if binary else TEXT
     try:
         with open(part, **form) as stream:

@@ -11,38 +11,41 @@ from pathlib import Path
 
 #: What a system answers if another holds the lock.
 HELD = (errno.EACCES, errno.EAGAIN, errno.EDEADLK)
-#: Name of the file that is locked. It stays, empty: a file that is deleted may be locked by two.
+#: Name of the file that is locked. It stays, empty: two could lock a file that one deletes.
 NAME = ".contactlab-lock"
-#: Descriptors of locks that this process holds.
+#: Descriptors of the locks that this process holds.
 _OURS: set[int] = set()
 
 
 class InUseError(Exception):
-    """Another sweep, here or in another process, holds the lock of a folder."""
+    """Another sweep, of this process or another, holds the lock of a folder."""
 
 
 @contextlib.contextmanager
-def lock(folder: Path) -> Iterator[None]:
-    """Hold the lock of a folder; ``InUseError`` if another holds it.
+def lock(folder: Path) -> Iterator[bool]:
+    """Hold the lock of a folder; False where nothing can be written, or the disk knows no locks.
 
-    Where nothing can be written, and on disks that know no locks, there is none.
+    Raises
+    ------
+    InUseError
+        If another holds it.
     """
-    try:
+    descriptor = None
+    with contextlib.suppress(OSError):
         descriptor = os.open(folder / NAME, os.O_RDWR | os.O_CREAT, 0o666)
-    except OSError:
-        yield
+    if descriptor is None:
+        yield False
         return
+    _OURS.add(descriptor)
     try:
-        _lock(descriptor)
-        _OURS.add(descriptor)
-        yield
+        yield _locked(descriptor)
     finally:
         _OURS.discard(descriptor)
         os.close(descriptor)
 
 
-def _lock(descriptor: int) -> None:
-    """Lock an open file until it is closed, or raise ``InUseError``."""
+def _locked(descriptor: int) -> bool:
+    """Lock an open file until it is closed; return False on a disk without locks."""
     try:
         if sys.platform == "win32":
             import msvcrt
@@ -55,6 +58,8 @@ def _lock(descriptor: int) -> None:
     except OSError as error:
         if error.errno in HELD:
             raise InUseError from error
+        return False
+    return True
 
 
 def _let_go() -> None:

@@ -23,6 +23,7 @@ from contactlab.outcome.chunk_files import (
     DAMAGED,
     abouts_in,
     columns_of,
+    read_about,
     refuse_damaged,
     refuse_file,
 )
@@ -45,13 +46,15 @@ def about_of(
     stop: int,
     sweep: str,
     scene: str,
+    sums: Mapping[str, int],
+    computer: str,
 ) -> About:
     """Return what the chunk of a result tells.
 
     Parameters
     ----------
     result : ImpactResult
-    units, counts, first, stop, sweep, scene
+    units, counts, first, stop, sweep, scene, sums, computer
         As of ``About``.
     """
     error = float(np.max(result.plan.psi2_error))
@@ -66,6 +69,8 @@ def about_of(
         failures={str(first + index): words for index, words in failures.items()},
         cautions=[str(caution) for caution in result.plan.cautions],
         psi2_error=None if math.isnan(error) else error,
+        sums=sums,
+        computer=computer,
     )
 
 
@@ -121,7 +126,7 @@ class SweepFolder(Checked):
 
     @cached_property
     def _abouts(self) -> list[tuple[Path, About]]:
-        """The finished chunks in order."""
+        """The finished chunks in order; sentences on failures stay in their files."""
         found = abouts_in(self.path, self._form)
         self._stamps = {path: stamp(path) for path, _ in found}
         return found
@@ -183,11 +188,8 @@ class SweepFolder(Checked):
                 known = ", ".join(self.units) or "none, as no chunk is finished"
                 remedy = f"{nearest(name, self.units)}known: {known}"
                 raise refuse("column", name, "is not a column of the sweep", remedy)
-        for path, about in self._abouts:
-            if stamp(path) != self._stamps[path]:  # by another sweep, maybe
-                rule = "was written or removed after this folder was opened"
-                raise refuse_file("path", path, rule, f"open {self.path} again")
-            with columns_of(path, self._form, self._names) as content:
+        for path, about in self._unchanged():
+            with columns_of(path, self._form, self._names, about.sums) as content:
                 columns = {
                     name: np.broadcast_to(content[name], about.chunk.size) for name in wanted
                 }
@@ -217,11 +219,19 @@ class SweepFolder(Checked):
         """The number of computed impacts of each status, by its name."""
         return dict(sum((Counter(about.counts) for _, about in self._abouts), Counter()))
 
-    @property
-    def failures(self) -> dict[int, str]:
-        """A sentence for each computed impact that failed, by its index in the sweep."""
-        each = (about.failures.items() for _, about in self._abouts)
-        return {int(index): words for index, words in itertools.chain.from_iterable(each)}
+    def _unchanged(self) -> Iterator[tuple[Path, About]]:
+        """Yield the finished chunks; refuse a file that is not the one that was opened."""
+        for path, about in self._abouts:
+            if stamp(path) != self._stamps[path]:  # by another sweep, maybe
+                rule = "was written or removed after this folder was opened"
+                raise refuse_file("path", path, rule, f"open {self.path} again")
+            yield path, about
+
+    def _failed(self) -> Iterator[tuple[int, str]]:
+        for path, about in self._unchanged():
+            if [*about.counts] != [Status.SUCCESS.name]:
+                for index, sentence in read_about(path, self._form).failures.items():
+                    yield int(index), sentence
 
     @property
     def psi2_error(self) -> float:
@@ -261,7 +271,8 @@ class SweepFolder(Checked):
         if self.complete:
             return ""
         gaps = ", ".join(f"{first} to {stop}" for first, stop in self.missing)
-        what = f"impacts {gaps} are missing" if gaps else f"it stopped after impact {len(self) - 1}"
+        what = f"it stopped after impact {len(self) - 1}" if len(self) else "no chunk is finished"
+        what = f"impacts {gaps} are missing" if gaps else what
         return f"{self.path}: is not complete: {what}; the same sweep into this folder goes on"
 
     def __repr__(self) -> str:

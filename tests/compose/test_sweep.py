@@ -20,7 +20,6 @@ import contactlab
 from contactlab import Scene, Simulation, Status
 from contactlab.compose import into
 from contactlab.compose import sweep as sweeping
-from contactlab.compose import workers as workers_module
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.workers import processes
 from contactlab.contracts import WholeImpactTangentialLaw
@@ -196,7 +195,7 @@ def ending(folder, **options):
 
 
 @pytest.mark.parametrize("status", [0, *longer(None, 3)])
-def test_a_worker_that_dies_has_a_status_and_the_kept_sweep_resumes(monkeypatch, tmp_path, status):
+def test_a_process_that_ends_once_costs_no_impact(monkeypatch, tmp_path, status):
     """``os._exit(0)`` runs nobody's handlers, and looks like a process that ended well."""
     blocks_of(monkeypatch, 50)
     options = {} if status is None else {"status": status}
@@ -204,33 +203,81 @@ def test_a_worker_that_dies_has_a_status_and_the_kept_sweep_resumes(monkeypatch,
     (tmp_path / "ends").mkdir()
     with processes(1) as one:
         result = simulation.sweep(scene(), executor=one, keep=tmp_path / "kept")
-        assert [each.name for each in result.status] == ["SUCCESS"] * 100 + ["WORKER_DIED"] * 50
-        assert result.psi2[:100] == pytest.approx(scene().psi1[:100])
-        assert np.isnan(result.psi2[100:]).all()
-        with pytest.raises(contactlab.ImpactError, match=r"impact 100: .*BrokenProcessPool"):
-            result.check()
-        broken = Simulation(**RIGID).sweep(scene(), executor=one)
-        assert set(broken.status) == {Status.WORKER_DIED}
-    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as another:
-        again = simulation.sweep(scene(), executor=another, keep=tmp_path / "kept")
-    assert again.check().psi2 == pytest.approx(scene().psi1)
+        assert result.check().psi2 == pytest.approx(scene().psi1)
+        with pytest.raises(BrokenExecutor):
+            one.submit(os.getpid)
+        again = Simulation(**RIGID).sweep(scene(), executor=one)
+    assert_same(again, Simulation(**RIGID).sweep(scene()))
 
 
-def test_an_executor_that_loses_a_chunk_loses_no_other(monkeypatch):
+@pytest.mark.slow
+@pytest.mark.parametrize("way", ["here", "keep", "into"])
+def test_a_law_that_ends_its_process_at_one_impact_costs_that_impact(tmp_path, way):
+    simulation, batch = ending(tmp_path / "ends", at=7.0), scene(12_000)
+    (tmp_path / "ends").mkdir()
+    place = int(np.argmin(np.abs(batch.psi1 - 7.0)))
+    batch = Scene.nondimensional(psi1=np.where(batch.index == place, 7.0, batch.psi1), chi=CHI)
+    folder = {} if way == "here" else {way: tmp_path / "swept"}
+    seen = []
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        found = simulation.sweep(batch, executor=pool, **folder, progress=lambda *n: seen.append(n))
+    assert seen[-1] == (12_000, 12_000)
+    assert [*found.failures] == [place]
+    with pytest.raises(contactlab.ImpactError, match=rf"impact {place}: .*ended before") as error:
+        found.check()
+    assert error.value.status is Status.WORKER_DIED
+    psi2 = np.asarray(found["psi2"] if way == "into" else found.psi2)
+    alive = batch.index != place
+    assert psi2[alive] == pytest.approx(batch.psi1[alive])
+    assert np.isnan(psi2[place])
+    if way == "here":
+        return
+    # The folder is complete: what ended a process does not end this one.
+    ends = len([*(tmp_path / "ends").iterdir()])
+    assert ends < 30
+    again = simulation.sweep(batch, **folder, progress=lambda *_: pytest.fail("ran"))
+    assert [*again.failures] == [place]
+    assert len([*(tmp_path / "ends").iterdir()]) == ends
+
+
+@pytest.mark.slow
+def test_a_law_that_ends_every_process_is_given_up(tmp_path):
+    """It takes a minute at most, and the next run tries what was not judged."""
+    simulation = ending(tmp_path / "ends", above=-1.0)
+    (tmp_path / "ends").mkdir()
+    with processes(2) as pool:
+        folder = simulation.sweep(scene(40), executor=pool, into=tmp_path / "swept", chunk=1)
+    assert set(folder.statuses) <= {"WORKER_DIED"}
+    assert len([*(tmp_path / "ends").iterdir()]) < 100
+
+
+class Losing:
+    """An executor that always loses the impact at a place, and the parts with it."""
+
+    def submit(self, function, /, *arguments):
+        future = Future()
+        if arguments[2].first <= 70 < arguments[2].stop:
+            future.set_exception(OSError("the machine went away"))
+        else:
+            future.set_result(function(*arguments))
+        return future
+
+
+def test_an_executor_that_loses_an_impact_loses_no_other(monkeypatch):
     blocks_of(monkeypatch, 50)
-
-    class Losing:
-        def submit(self, function, /, *arguments):
-            future = Future()
-            if arguments[2].first == 50:
-                future.set_exception(OSError("the machine went away"))
-            else:
-                future.set_result(function(*arguments))
-            return future
-
     result = Simulation(**RIGID).sweep(scene(), executor=Losing())
-    assert np.flatnonzero(result.status == Status.WORKER_DIED).tolist() == list(range(50, 100))
-    assert "OSError: the machine went away" in result.failures[50]
+    assert np.flatnonzero(result.status == Status.WORKER_DIED).tolist() == [70]
+    assert "OSError: the machine went away" in result.failures[70]
+    others = np.arange(150) != 70
+    expected = Simulation(**RIGID).sweep(scene()).psi2
+    np.testing.assert_allclose(result.psi2[others], expected[others], rtol=1e-14)
+
+
+def test_a_sweep_in_a_thread_of_its_executor_does_not_wait_for_itself():
+    simulation = Simulation(**RIGID)
+    with ThreadPoolExecutor(1) as one:
+        nested = one.submit(lambda: simulation.sweep(scene(), executor=one)).result(timeout=60)
+    assert_same(nested, simulation.sweep(scene()))
 
 
 def test_processes_that_do_not_start_say_what_a_script_needs():
@@ -322,13 +369,14 @@ def test_a_law_that_is_not_there_is_named(workers, monkeypatch):
         simulation.sweep(scene(3), executor=workers)
 
 
-def test_other_versions_there_are_refused(monkeypatch):
-    versions = itertools.chain([{"normal": "hertz 1"}], itertools.repeat({"normal": "hertz 2"}))
-    monkeypatch.setattr(workers_module, "versions", lambda *_: next(versions))
-    with (
-        ThreadPoolExecutor(1) as executor,
-        pytest.raises(ValueError, match=r"hertz 2.*hertz 1.*same versions"),
-    ):
+def test_other_versions_there_are_refused():
+    def elsewhere(function, *arguments):
+        answer, future = function(*arguments), Future()
+        future.set_result(answer._replace(versions={"normal": "hertz 2"}))
+        return future
+
+    executor = types.SimpleNamespace(submit=elsewhere)
+    with pytest.raises(ValueError, match=r"workers have .*hertz 2.*same versions"):
         Simulation(**RIGID).sweep(scene(3), executor=executor)
 
 

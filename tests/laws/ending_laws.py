@@ -15,7 +15,7 @@ from contactlab.contracts.whole_impact import no_force
 
 @attrs.frozen(kw_only=True)
 class Ending(WholeImpactTangentialLaw):
-    """No force; ends its process where psi1 is more than ``above``, ``times`` times.
+    """No force; ends its process where psi1 is more than ``above``, or is ``at``, ``times`` times.
 
     ``folder`` counts the ends, for no process lives to do so. With a ``status`` the law calls
     ``os._exit`` with it, which runs nobody's handlers; without, the process is killed.
@@ -23,12 +23,13 @@ class Ending(WholeImpactTangentialLaw):
 
     api_version: ClassVar[int] = 2
     folder: str
-    above: float = 5.0
+    above: float = np.inf
+    at: float = np.inf
     times: int = 1000
     status: int | None = None
 
     def whole_impacts(self, scene, normal):
-        if np.max(scene.psi1) > self.above:
+        if np.max(scene.psi1) > self.above or np.any(scene.psi1 == self.at):
             ends = Path(self.folder)
             if len(list(ends.iterdir())) < self.times:
                 (ends / os.urandom(8).hex()).touch()
