@@ -65,9 +65,12 @@ class ChunkFolder:
             raise refuse_file("into", path, "holds impacts of another scene", remedy)
         self._same_columns(dict(about.units), chunk)
         ended = np.zeros(chunk.size, dtype=bool)
-        if Status.WORKER_DIED.name in about.counts:
-            with columns_of(path, self.form, NAMES, about.sums, "into") as content:
-                ended = content[COLUMN_OF_STATUS] == CODES[Status.WORKER_DIED]
+        with columns_of(path, self.form, NAMES, about.sums, "into") as content:
+            for name in about.units:  # each is compared with its checksum
+                if name == COLUMN_OF_STATUS:
+                    ended = ended | (content[name] == CODES[Status.WORKER_DIED])
+                else:
+                    content[name]
         self.sample.add(chunk, part.scene, part.block, ended)
         return True
 

@@ -22,7 +22,7 @@ CODEC = "SNAPPY"
 TOLD = b"contactlab"
 #: Numbers of a column that are added up before they are hashed, each with those so many places on:
 #: a hash of all bytes takes 6 % of a sweep.
-LANES = 61
+LANES = 1021
 
 
 class Chunk(NamedTuple):

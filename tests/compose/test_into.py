@@ -5,6 +5,7 @@ import json
 import shutil
 import subprocess
 import sys
+import zlib
 from concurrent.futures import Future, ThreadPoolExecutor
 
 import attrs
@@ -43,6 +44,8 @@ SCENES = {
     "space": lambda: Scene.nondimensional(
         psi1=np.linspace(0.2, 4.0, 60)[:, None] * [0.6, 0.8], chi=[[2.0, 0.1], [0.1, 1.5]],
         lam=[0.1, 0.05], rho=1.0),
+    "spin in one chunk": lambda: Scene(
+        Sphere(0.01, STEEL), Sphere(0.02, STEEL), friction_coefficient=0.2, normal_speed=np.linspace(1.0, 2.0, 60), normal_spin=np.repeat([0.0, 0.0, 90.0], 20)),
     "encounters": lambda: Encounter(
         *BODIES, 0.2, normal=(0, 0, -1), spin=(0, 9, 600),
         velocity=np.linspace(1.0, 2.0, 60)[:, None] * [0.3, 0.0, -1.0]).scene,
@@ -284,9 +287,28 @@ def test_a_damaged_file_is_told(tmp_path):
     path.write_bytes(bytes(bit))
     with pytest.raises(ValueError, match=r"impacts-40-80.npz': is damaged: .*CRC"):
         SweepFolder(target)["psi2"]
-    np.savez(path, about=np.array('{"first": 40, "last": 79}'))
+    words = '{"first": 40, "last": 79}'
+    np.savez(path, about=np.array(json.dumps([words, zlib.crc32(words.encode())])))
     with pytest.raises(ValueError, match=r"npz': tells first, last; .*; read it by the version"):
         SweepFolder(target)["psi2"]
+    path.write_bytes(sound)
+    with np.load(path) as content:
+        arrays = dict(content)
+    turned = arrays["psi1"][[1, 0, *range(2, 40)]]
+    words = np.array(str(arrays["about"]).replace("SUCCESS", "LAW_RAISED"))
+    for name, values in (
+        ("psi1", arrays["psi1"] * 1.001), ("psi1", turned), ("chi", np.array(2.0)),
+        ("status", np.ones(40, dtype=np.uint8)), ("psi2", arrays["psi2"][:20]), ("about", words),
+    ):  # fmt: skip
+        np.savez(path, **arrays | {name: values})
+        for read in (
+            lambda: [*SweepFolder(target).chunks()],
+            lambda: simulation.sweep(parts(), into=target),
+        ):
+            with pytest.raises(ValueError, match=r"40-80.npz': is damaged: its .*; delete this"):
+                read()
+    np.savez(path, **arrays)
+    assert SweepFolder(target)["psi2"].size == 150
     path.write_bytes(sound)
     finished = target / "finished.json"
     words = finished.read_text("utf-8")
@@ -405,6 +427,17 @@ def test_a_full_disk_leaves_the_chunks_before(tmp_path, monkeypatch):
     assert len(simulation.sweep(parts(), into=target).check()) == 150
 
 
+def test_a_disk_that_is_full_from_the_start_is_told(tmp_path, monkeypatch):
+    simulation, target = Simulation(**RIGID), tmp_path / "swept"
+    with monkeypatch.context() as patched:
+        full_disk(patched, after=1)
+        with pytest.raises(OSError, match=r"impacts 0 to 40 .*holds 0 impacts; .* begins again"):
+            simulation.sweep(parts(), into=target)
+    with pytest.raises(ImpactError, match=r"not complete: no chunk is finished; the same sweep"):
+        SweepFolder(target).check()
+    assert len(simulation.sweep(parts(), into=target).check()) == 150
+
+
 def test_a_folder_that_goes_in_the_middle_is_told(tmp_path):
     target = tmp_path / "swept"
     with pytest.raises(OSError, match=r"impacts 40 to 80.*there is no folder"):
@@ -459,25 +492,31 @@ def test_what_makes_scenes_may_raise(tmp_path, executor):
 
 
 class Losing:
-    """An executor that loses the second chunk."""
+    """An executor that loses all calls from the second to one, as a broken machine does."""
 
-    def __init__(self):
-        self.calls = 0
+    def __init__(self, last):
+        self.calls, self.last = 0, last
 
     def submit(self, call, *arguments):
         self.calls += 1
         future = Future()
-        if self.calls == 2:
+        if 2 <= self.calls <= self.last:
             future.set_exception(OSError("lost"))
         else:
             future.set_result(call(*arguments))
         return future
 
 
-def test_a_chunk_that_is_lost_is_missing_until_the_next_run(tmp_path):
+def test_a_chunk_that_is_lost_once_is_sent_again(tmp_path):
+    folder = Simulation(**RIGID).sweep(parts(), into=tmp_path / "swept", executor=Losing(2))
+    here = Simulation(**RIGID).sweep(parts(), into=tmp_path / "here")
+    assert folder.check()["psi2"].tobytes() == here["psi2"].tobytes()
+
+
+def test_chunks_that_are_lost_are_missing_until_the_next_run(tmp_path):
     simulation, target = Simulation(**RIGID), tmp_path / "swept"
-    folder = simulation.sweep(parts(), into=target, executor=Losing())
-    assert (folder.missing, folder.complete, len(folder)) == ([(40, 80)], False, 110)
+    folder = simulation.sweep(parts(), into=target, executor=Losing(99))
+    assert (folder.missing, folder.complete, len(folder)) == ([(40, 150)], False, 40)
     assert len(simulation.sweep(parts(), into=target).check()) == 150
 
 

@@ -194,7 +194,8 @@ def ending(folder, **options):
     return Simulation(tangential=Ending(folder=str(folder), **options), integrator="symplectic")
 
 
-@pytest.mark.parametrize("status", [0, *longer(None, 3)])
+@pytest.mark.slow
+@pytest.mark.parametrize("status", [0, None, 3])
 def test_a_process_that_ends_once_costs_no_impact(monkeypatch, tmp_path, status):
     """``os._exit(0)`` runs nobody's handlers, and looks like a process that ended well."""
     blocks_of(monkeypatch, 50)
