@@ -38,6 +38,7 @@ from contactlab.impact.grid import GridParts
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Real
+from contactlab.outcome.answer import ImpactError
 from contactlab.outcome.chunk_forms import form_of
 from contactlab.outcome.columns import components, csv_heading
 from contactlab.outcome.export import WRITERS
@@ -177,9 +178,13 @@ def _into_folder(arguments: argparse.Namespace, file: SceneFile | None) -> int:
     ):
         folder = simulation.sweep(scenes, progress=progress, executor=executor, into=arguments.out)
     print(folder)
-    if failures := folder.failures:
-        which = f"{len(failures)} of {len(folder)} impacts: {next(iter(failures.values()))}"
-        print(f"contactlab: failed: {which}", file=sys.stderr)
+    if failed := len(folder) - folder.statuses.get(Status.SUCCESS.name, 0):
+        try:
+            folder.check()  # which reads the first failure alone
+        except ImpactError as error:
+            print(
+                f"contactlab: failed: {failed} of {len(folder)} impacts: {error}", file=sys.stderr
+            )
         return shared.FAILED
     return shared.OK if folder.complete else shared.INTERRUPTED
 

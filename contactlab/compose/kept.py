@@ -28,7 +28,6 @@ from contactlab.outcome.chunk_files import (
 )
 from contactlab.outcome.chunk_forms import NPZ, Chunk
 from contactlab.outcome.files import PARTS
-from contactlab.outcome.locks import NAME
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import PlanColumns
 
@@ -102,7 +101,7 @@ def kept_in(folder: str | Path, laws: Laws, scene: Scene, block: int) -> Iterato
 def remove(folder: Path) -> None:
     """Delete the pieces of a sweep, and their folder if it is empty then."""
     own = [path for _, path in chunks_in("keep", folder)]
-    for path in (*own, *folder.glob(PARTS), folder / NPZ.about, folder / NAME):
+    for path in (*own, *folder.glob(PARTS), folder / NPZ.about):
         path.unlink(missing_ok=True)
     with contextlib.suppress(OSError):
         folder.rmdir()

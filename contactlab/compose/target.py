@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import json
 import os
 from collections.abc import Iterator, Mapping
@@ -15,10 +16,10 @@ from contactlab.compose.fingerprints import fingerprint
 from contactlab.compose.law_files import code_of
 from contactlab.compose.registry import REGISTRY
 from contactlab.numeric.checks import of_kind, refuse
-from contactlab.outcome.chunk_files import chunks_in, name_of, refuse_file
+from contactlab.outcome.chunk_files import chunks_in, name_of
 from contactlab.outcome.chunk_forms import NPZ, Chunk, Form
 from contactlab.outcome.files import PARTS, written
-from contactlab.outcome.locks import InUseError, lock
+from contactlab.outcome.locks import InUseError, alone_with
 from contactlab.registration.names import KINDS, PROJECT
 
 #: Distributions that every number comes from.
@@ -56,10 +57,10 @@ def held(
     origins = {kind: REGISTRY.describe(law) for kind, law in by_kind.items()}
     _make(argument, path, form)
     try:
-        with lock(path) as alone:
-            for part in path.glob(PARTS) if alone else ():  # of a sweep that was killed
+        with alone_with(path / form.about) as (stream, locked):
+            _begin_or_compare(argument, path, stream, about, form)
+            for part in path.glob(PARTS) if locked else ():  # of a sweep that was killed
                 part.unlink(missing_ok=True)
-            _begin_or_compare(argument, path, about, form)
             # "options" has what the words of a law have
             yield path, fingerprint(about | origins)
     except InUseError:
@@ -81,18 +82,16 @@ def _make(argument: str, folder: Path, form: Form) -> None:
         raise refuse(argument, str(folder), rule, "name a folder in one that is there") from None
 
 
-def _begin_or_compare(argument: str, folder: Path, about: Mapping[str, object], form: Form) -> None:
-    """Write what the sweep is, or refuse a folder of another sweep."""
-    path = folder / form.about
-    if not os.path.exists(path):
-        with written(path) as stream:
-            stream.write(json.dumps(about, indent=2) + "\n")
-        return
+def _begin_or_compare(
+    argument: str, folder: Path, stream: IO[str], about: Mapping[str, object], form: Form
+) -> None:
+    """Write what the sweep is into an empty file, or refuse a folder of another sweep."""
     try:
-        before = dict(json.loads(path.read_text(encoding="utf-8")))
-    except OSError as error:
-        rule = f"cannot be read: {error.strerror}"
-        raise refuse_file(argument, path, rule, "try again") from error
+        words = stream.read()
+        if not words:
+            _write(stream.fileno(), (json.dumps(about, indent=2) + "\n").encode())
+            return
+        before = dict(json.loads(words))
     except (ValueError, TypeError) as error:
         rule = f"{form.about} in it cannot be read: {error}"
         raise refuse(argument, str(folder), rule, ANOTHER) from error
@@ -106,6 +105,17 @@ def _begin_or_compare(argument: str, folder: Path, about: Mapping[str, object], 
         if was != now:
             rule = f"holds another sweep: {name} was {was}, is {now}"
             raise refuse(argument, str(folder), rule, ANOTHER)
+
+
+def _write(descriptor: int, words: bytes) -> None:
+    """Write a text into an empty file, which stays empty where there is no room."""
+    try:
+        if os.write(descriptor, words) < len(words):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        os.fsync(descriptor)
+    except OSError:
+        os.ftruncate(descriptor, 0)
+        raise
 
 
 @contextlib.contextmanager

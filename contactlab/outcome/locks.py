@@ -1,4 +1,4 @@
-"""Locks of folders by the operating system, which ends them with the process that holds them."""
+"""Files that one process has for itself: the operating system ends the lock with the process."""
 
 from __future__ import annotations
 
@@ -8,49 +8,60 @@ import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import IO
 
 #: What a system answers if another holds the lock.
 HELD = (errno.EACCES, errno.EAGAIN, errno.EDEADLK)
-#: Name of the file that is locked. It stays, empty: two could lock a file that one deletes.
-NAME = ".contactlab-lock"
+#: The byte that Windows locks, which keeps others from reading it: beyond the end of any file.
+BYTE = 1 << 30
 #: Descriptors of the locks that this process holds.
 _OURS: set[int] = set()
 
 
 class InUseError(Exception):
-    """Another sweep, of this process or another, holds the lock of a folder."""
+    """Another, in this process or another, holds the lock of a file."""
 
 
 @contextlib.contextmanager
-def lock(folder: Path) -> Iterator[bool]:
-    """Hold the lock of a folder; False where nothing can be written, or the disk knows no locks.
+def alone_with(path: Path) -> Iterator[tuple[IO[str], bool]]:
+    """Open a text, made if there is none, and hold its lock, which only one has at a time.
+
+    The second entry is False on a disk without locks. Where nothing can be written the text is
+    open for reading.
 
     Raises
     ------
     InUseError
-        If another holds it.
+        If another holds the lock.
+    OSError
+        If there is no such file, and none can be made.
     """
-    descriptor = None
-    with contextlib.suppress(OSError):
-        descriptor = os.open(folder / NAME, os.O_RDWR | os.O_CREAT, 0o666)
-    if descriptor is None:
-        yield False
-        return
+    mode = "r+"
+    try:
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+    except OSError as error:
+        if error.errno not in (errno.EACCES, errno.EROFS, errno.EPERM) or not path.is_file():
+            raise
+        mode, descriptor = "r", os.open(path, os.O_RDONLY)
     _OURS.add(descriptor)
     try:
-        yield _locked(descriptor)
+        locked = _lock(descriptor)
+        with open(descriptor, mode, encoding="utf-8", newline="", closefd=False) as stream:
+            yield stream, locked
     finally:
         _OURS.discard(descriptor)
         os.close(descriptor)
 
 
-def _locked(descriptor: int) -> bool:
+def _lock(descriptor: int) -> bool:
     """Lock an open file until it is closed; return False on a disk without locks."""
     try:
         if sys.platform == "win32":
             import msvcrt
 
+            os.lseek(descriptor, BYTE, os.SEEK_SET)
             msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+            os.lseek(descriptor, 0, os.SEEK_SET)
         else:
             import fcntl
 

@@ -45,7 +45,7 @@ SCENES = {
         psi1=np.linspace(0.2, 4.0, 60)[:, None] * [0.6, 0.8], chi=[[2.0, 0.1], [0.1, 1.5]],
         lam=[0.1, 0.05], rho=1.0),
     "spin in one chunk": lambda: Scene(
-        Sphere(0.01, STEEL), Sphere(0.02, STEEL), friction_coefficient=0.2, normal_speed=np.linspace(1.0, 2.0, 60), normal_spin=np.repeat([0.0, 0.0, 90.0], 20)),
+        *BODIES, 0.2, np.linspace(1.0, 2.0, 60), normal_spin=np.repeat([0.0, 0.0, 90.0], 20)),
     "encounters": lambda: Encounter(
         *BODIES, 0.2, normal=(0, 0, -1), spin=(0, 9, 600),
         velocity=np.linspace(1.0, 2.0, 60)[:, None] * [0.3, 0.0, -1.0]).scene,

@@ -71,7 +71,9 @@ def test_a_folder_that_goes_in_the_middle_is_told(tmp_path):
     def gone(done, total):
         shutil.rmtree(folder)
 
-    with pytest.raises(OSError, match=r"impacts 40 to 80.*there is no folder.*holds 0 of 150.*again"):
+    with pytest.raises(
+        OSError, match=r"impacts 40 to 80.*there is no folder.*holds 0 of 150.*again"
+    ):
         Simulation(**RIGID).sweep(scene(), keep=folder, progress=gone)
 
 

@@ -263,9 +263,15 @@ def test_the_modules_of_the_user_stay(folder):
     surface = "import attrs\n@attrs.frozen\nclass Surface:\n    pass\n"
     written(folder / "helper.py", surface)
     judge = "import helper\nassert_surface = attrs.validators.instance_of(helper.Surface)\n"
-    own = law(value="0.5").replace("of: object = None", "of: object = attrs.field(validator=SURFACE)")
-    written(folder / "my_law.py", own.replace("from contactlab", judge + "from contactlab", 1)
-            .replace("SURFACE", "assert_surface"))
+    own = law(value="0.5").replace(
+        "of: object = None", "of: object = attrs.field(validator=SURFACE)"
+    )
+    written(
+        folder / "my_law.py",
+        own.replace("from contactlab", judge + "from contactlab", 1).replace(
+            "SURFACE", "assert_surface"
+        ),
+    )
     helper = importlib.import_module("helper")
     assert contactlab.create("my_law.py:Share", of=helper.Surface())
     written(folder / "helper.py", surface + "# changed\n")

@@ -1,6 +1,5 @@
 """Sweeps: the same answers however the work is shared out, and whatever happens to workers."""
 
-import itertools
 import os
 import pickle
 import signal
