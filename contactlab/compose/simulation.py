@@ -235,17 +235,23 @@ class Simulation:
             Solves the chunks; this process by default. Any object with a method ``submit`` that
             returns futures serves: ``ProcessPoolExecutor(4)``, dask's ``client.get_executor()``,
             an ``MPIPoolExecutor``. Workers import laws from the modules of their classes. A
-            chunk that the executor loses has the status ``WORKER_DIED``. Laws that a table answers
-            gain nothing: to send and join takes this process 0.7 to 2.5 times as long as to solve.
+            chunk that the executor loses is solved again, in halves down to the impact that ends
+            its process, which has the status ``WORKER_DIED``; a pool of processes that broke is
+            replaced by one like it. A sweep in a thread of its executor solves its chunks there.
+            Laws that a table answers gain nothing: to send and join takes this process 0.7 to 2.5
+            times as long as to solve.
         keep : str or Path, optional
             A folder where each chunk is written as soon as it is finished. The same sweep with the
             same folder resumes where it stopped; another scene or law is refused, and so is
-            other code: contactlab, numpy and scipy by version, and every Python file of yours
-            that a law imports by its text. Files of data that a law reads are not compared.
+            other code: contactlab, numpy and scipy by version, files of yours that hold the classes
+            of a law by their text. All else that a law calls or reads is known by its work: blocks
+            that are finished are computed again, one that is drawn and those with the smallest and
+            largest psi1 and chi, and other bits are refused.
         into : str or Path, optional
             A folder for more impacts than memory holds, instead of a result. The columns of each
             chunk are written as soon as it is finished; memory is that of two chunks, with an
-            executor of 32. The same sweep resumes as with ``keep``. Files are NPZ, or Parquet where
+            executor of 32. The same sweep resumes as with ``keep``; each column has a checksum.
+            Files are NPZ, or Parquet where
             the name of the folder ends with ``.parquet``, which needs pyarrow.
 
         Returns
@@ -259,8 +265,8 @@ class Simulation:
         ValueError
             If there are no scenes, an entry is not a Scene, or scenes with bodies stand beside
             scenes of psi1 and chi; if a law cannot be sent to ``executor``; if ``keep`` or ``into``
-            holds another sweep, or a law's class is in no file, as in a notebook; if both are
-            given.
+            holds another sweep, other bits than are computed now, or a damaged file, or is in use
+            by another sweep; if both are given.
         ImportError
             If ``into`` is a folder of Parquet, and pyarrow is not installed.
         OSError
