@@ -82,8 +82,8 @@ def swept_into(
                 taken = scene.take(slice(*place))
                 if not isinstance(scenes, Scene):  # the index in the whole sweep
                     taken = taken.numbered(np.arange(*where))
-                part, mark = Part(where, taken, block), fingerprint(taken)
-                if target.holds(part, mark):
+                part, mark = Part(where, taken.unvaried(), block), fingerprint(taken)
+                if target.holds(part._replace(scene=taken), mark):
                     done += where.size
                     continue
                 target.compare(solve, result_of)

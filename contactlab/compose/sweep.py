@@ -73,11 +73,12 @@ def swept(
     size, block = scene.shape[0], block_for(laws, scene)
     step = math.ceil(whole("chunk", block if chunk is None else chunk) / block) * block
     solve = partial(solve_parts, laws, executor=executor)
+    plain = scene.unvaried()
     with _kept(keep, laws, scene, block) as kept:
         finished = [] if kept is None else kept.pieces()
         done = sum(piece.chunk.size for piece in finished)
         missing = cut(_gaps(finished, size), step)
-        parts = (Part(each, scene.take(slice(*each)), block) for each in missing)
+        parts = (Part(each, plain.take(slice(*each)), block) for each in missing)
         pieces = solve(parts)
         try:
             if kept is not None:

@@ -58,6 +58,10 @@ class Batches(Motions):
         lines = tuple((name, batch.locked(np.array(each))) for name, each in entries.items())
         return self._with(_varied=lines)
 
+    def unvaried(self) -> Self:
+        """Return this batch without the values of entries that vary, which no law reads."""
+        return self._with(_axes=(), _varied=()) if self._axes or self._varied else self
+
     @property
     def varied(self) -> Mapping[str, Array]:
         """The values of each entry that varies, of each impact, by name; empty if not known."""
