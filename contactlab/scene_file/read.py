@@ -60,6 +60,9 @@ class SceneFile:
     measured : tuple of Measured
     materials : tuple of str
         Names of the materials that the file takes from the collection.
+    defaulted : tuple of str
+        Entries that stand in neither the file nor ``entries``, so that a default of the reader
+        was taken.
     """
 
     path: Path
@@ -72,6 +75,7 @@ class SceneFile:
     encounter: Encounter | None = None
     measured: tuple[Measured, ...] = ()
     materials: tuple[str, ...] = ()
+    defaulted: tuple[str, ...] = ()
     tables: Mapping[str, object] = attrs.field(factory=dict, repr=False)
 
     @property
@@ -137,6 +141,7 @@ def read_scene(
         about = Table(document.get("about", {}), "about", known=ABOUT_KEYS)
         sweep = read_sweep(document.get("sweep", {}))
         tables = with_materials({key: root.content[key] for key in SECTIONS[1:6] if root.has(key)})
+        own = tables
         if defaults:
             tables = _with_defaults(tables, defaults)
         if entries:
@@ -153,6 +158,11 @@ def read_scene(
             laws=read_laws(document.get("simulation", {}), file.parent, allow_code=allow_code),
             measured=read_measured(document.get("measured", [])),
             materials=named_materials(document),
+            defaulted=tuple(
+                name
+                for name in defaults or ()
+                if name not in (entries or ()) and _has(tables, name) and not _has(own, name)
+            ),
             tables=tables,
         )
     except ValueError as error:
@@ -190,6 +200,13 @@ def _with_defaults(
         if isinstance(table, Mapping) and key not in table:
             completed = replaced(completed, path, value)
     return completed
+
+
+def _has(tables: Mapping[str, object], name: str) -> bool:
+    """Return whether an entry stands in tables."""
+    section, _, key = entry_path(name).partition(".")
+    table = tables.get(section)
+    return isinstance(table, Mapping) and key in table
 
 
 def _document(file: Path) -> dict[str, Any]:

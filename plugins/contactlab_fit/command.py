@@ -29,7 +29,7 @@ from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab_fit import Fit, Ranked, fit, in_order, rank, read_flight
 from contactlab_fit.beside import as_met
 from contactlab_fit.estimation import default_laws, parameters_of
-from contactlab_fit.model import SOME_FRICTION
+from contactlab_fit.model import DEFAULTS
 from contactlab_fit.options import add_columns, read_impacts
 from contactlab_fit.parameters import RESTITUTION
 from contactlab_fit.printed import describe, further_cautions, ranking, write_residuals
@@ -98,9 +98,8 @@ def execute(arguments: argparse.Namespace) -> int:
     else:
         impacts = read_flight(data, columns=dict(arguments.column))
     impacts = as_met(impacts, path)
-    defaults = {"friction_coefficient": SOME_FRICTION}
     allow = arguments.allow_code
-    file = read_scene(path, entries=impacts.given, defaults=defaults, allow_code=allow)
+    file = read_scene(path, entries=impacts.given, defaults=DEFAULTS, allow_code=allow)
     simulations = _simulations(arguments, file)
     shared.tell_normal_spin(file.scene, *simulations.values())
     own = parameters_of(impacts, path, simulations, arguments.fit)

@@ -64,6 +64,8 @@ BLANK = re.compile(r"[^\s(\[]+(?:\s*[(\[][^()\[\]]*[)\]])?")
 #: Cells without a number.
 MISSING = ("", "nan", "na", "n/a")
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+#: First line by which a spreadsheet is told the mark between columns.
+SEPARATOR = re.compile(r'\s*"?sep=([,;\t])"?[,;\s]*', re.IGNORECASE)
 #: Encodings tried in turn: UTF-8 with or without a mark, then that of older spreadsheets.
 ENCODINGS = ("utf-8-sig", "cp1252")
 
@@ -267,17 +269,21 @@ def _role(heading: str, names: Mapping[str, str]) -> str:
 def _cells(text: str) -> Cells:
     """Return headings, cells of each line with its number, and whether decimals have a comma.
 
-    Lines that begin with ``#`` are comments; but headings may begin with one, if the line after
-    them holds numbers.
+    A first line ``sep=;`` tells the mark. Lines that begin with ``#`` are comments; but headings
+    may begin with one, if the line after them holds numbers.
     """
     lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
+    if told := SEPARATOR.fullmatch(lines[0][1]) if lines else None:
+        lines = lines[1:]
     kept = [place for place, (_, line) in enumerate(lines) if not line.lstrip().startswith("#")]
     above = first = lines[kept[0]][1] if kept else ""
     if kept and kept[0] and _is_number(re.split(r"[,;\s]", first.strip())[0]):
         above = lines[kept[0] - 1][1]  # headings, which have no decimal comma
     # Columns are separated by the mark that is most frequent, or by blanks.
     mark = max(",;\t", key=lambda mark: min(first.count(mark), above.count(mark)))
-    if blanks := any(_by_blanks(lines[place][1]) for place in kept[:2]):
+    if told:
+        mark = told[1]
+    if blanks := not told and any(_by_blanks(lines[place][1]) for place in kept[:2]):
         mark = " "
 
     def cells(place: int) -> list[str]:

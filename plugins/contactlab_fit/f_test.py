@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from contactlab.numeric.types import Array
@@ -12,6 +14,8 @@ SPARE = 3
 CHANCE = 1e-3
 #: Scatter below this share of the largest number is numerical error.
 NUMERICAL = 1e-4
+#: Share of a term's square across the slopes that sums of rounded products may leave of nothing.
+ROUNDING = 1e-10
 
 
 def chance_of(residuals: Array, slopes: Array, terms: Array, least: float) -> float:
@@ -28,11 +32,65 @@ def chance_of(residuals: Array, slopes: Array, terms: Array, least: float) -> fl
     return float(fdtrc(added, freedom, max(ratio, 0.0)))
 
 
+def log_chance(count: int, freedom: int, ratio: float) -> float:
+    """Return the logarithm of the chance that F exceeds a ratio, where the chance underflows too.
+
+    Notes
+    -----
+    The chance is the incomplete beta function I_x(a, b), x = freedom/(freedom + count ratio), a =
+    freedom/2, b = count/2: its power series begins with x^a (1 - x)^b / (a B(a, b)), and is bounded
+    by a geometric one. DLMF 8.17.8, https://dlmf.nist.gov/8.17#E8
+    """
+    from scipy.special import betaln, fdtrc  # only a fit needs scipy
+
+    chance = float(fdtrc(count, freedom, ratio))
+    if chance > np.finfo(float).tiny:
+        return math.log(chance)
+    a, b = 0.5 * freedom, 0.5 * count
+    x = a / (a + b * ratio)
+    first = a * math.log(x) + b * math.log1p(-x) - math.log(a) - float(betaln(a, b))
+    return first - math.log1p(-min(x * (a + b) / (a + 1.0), 1.0 - 1e-9))
+
+
+def chances_of_each(
+    residuals: Array, slopes: Array, products: Array, squares: Array, along: Array, least: float
+) -> Array:
+    """Return ``chance_of`` of each of many single terms, shape (terms,), from their sums.
+
+    Parameters
+    ----------
+    residuals, slopes : array
+        As those of ``chance_of``.
+    products : array, shape (terms,)
+        Of each term and the residuals less their projection on the slopes.
+    squares : array, shape (terms,)
+        Of each term with itself.
+    along : array, shape (terms, parameters)
+        Of each term and the ``orthonormal`` slopes.
+    least : float
+    """
+    from scipy.special import fdtrc  # only a fit needs scipy
+
+    freedom = len(residuals) - slopes.shape[1] - 1
+    if freedom < SPARE:
+        return np.ones(len(squares))
+    plain = _remaining_square(residuals, slopes)
+    across = squares - np.sum(along**2, axis=1)
+    new = across > ROUNDING * squares  # no term that the slopes make already
+    gains = np.where(new, products**2 / np.where(new, across, 1.0), 0.0)
+    ratios = gains / ((plain - gains) / freedom + least + np.finfo(float).tiny)
+    return np.asarray(fdtrc(1, freedom, np.maximum(ratios, 0.0)))
+
+
+def remaining(residuals: Array, basis: Array) -> Array:
+    """Return residuals less their projection on an orthonormal basis."""
+    return np.asarray(residuals - basis @ (basis.T @ residuals))
+
+
 def _remaining_square(residuals: Array, columns: Array) -> float:
     """Return the sum of squares of residuals after projection on columns."""
-    basis = orthonormal(columns)
-    remaining = residuals - basis @ (basis.T @ residuals)
-    return float(remaining @ remaining)
+    rest = remaining(residuals, orthonormal(columns))
+    return float(rest @ rest)
 
 
 def orthonormal(columns: Array) -> Array:

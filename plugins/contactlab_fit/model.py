@@ -20,10 +20,15 @@ from contactlab.study.interrupts import uninterrupted
 from contactlab_fit import tabulated
 from contactlab_fit.parameters import RESTITUTION, Parameter, Setup
 
-#: Friction of a scene file without a friction coefficient; searches have their own starts.
-SOME_FRICTION = 0.1
-#: Points whose predictions are kept: those of a search and its diagnosis, not of a bootstrap.
-REMEMBERED = 1000
+FRICTION = "friction_coefficient"
+#: What a scene file may leave out to be read at all. Searches have their own starts, and no number
+#: that this friction moves is met or answered: ``unknown_friction``.
+DEFAULTS = {FRICTION: 0.1}
+#: Points whose predictions are kept: those of a search and its diagnosis, not of a bootstrap; and
+#: impacts at them, of 8 bytes for each quantity.
+REMEMBERED, REMEMBERED_IMPACTS = 1000, 2e7
+#: Impacts that run in one batch, which takes some 300 bytes for each.
+TOGETHER = 500_000
 TABULATED = "exact elastic law (tabulated rebound)"
 #: Digits of an option of a law: within them impacts run once, and normal motions are kept.
 DIGITS = 7
@@ -56,7 +61,8 @@ class Model:
         is not run again.
         """
         points = self._near(points)
-        if len(self._known) > REMEMBERED:
+        count = self.setup.scene.shape[0]
+        if len(self._known) > min(REMEMBERED, REMEMBERED_IMPACTS / count):
             self._known.clear()
         keys = [point.tobytes() for point in points]
         fresh = [
@@ -84,9 +90,11 @@ class Model:
         group = np.reshape(group, -1)  # its shape depends on the version of numpy
         for number in range(int(group.max()) + 1):
             rows = np.flatnonzero(group == number)
-            for name, values in self._together(points[rows], quantities).items():
-                for row, line in zip(rows.tolist(), values, strict=True):
-                    self._known[keys[row]][name] = line
+            most = max(TOGETHER // self.setup.scene.shape[0], 1)
+            for some in np.split(rows, range(most, len(rows), most)):
+                for name, values in self._together(points[some], quantities).items():
+                    for row, line in zip(some.tolist(), values, strict=True):
+                        self._known[keys[row]][name] = line
 
     def _together(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
         """Return the quantities, shape (m, n), at points with equal laws, from one batch."""
@@ -162,15 +170,21 @@ class Model:
         return f"{simulation.normal!r}, {simulation.tangential!r}, {simulation.integrator!r}"
 
 
+def opened(scene: object, given: Mapping[str, Array]) -> Scene | SceneFile:
+    """Return a scene, or a scene file with the measured entries."""
+    if isinstance(scene, Scene):
+        return scene
+    path: Any = scene.path if isinstance(scene, SceneFile) else scene
+    return read_scene(path, entries=given, defaults=DEFAULTS)
+
+
 def scene_of(scene: object, given: Mapping[str, Array], count: int) -> Scene:
     """Return the batch of the measured impacts."""
-    if isinstance(scene, SceneFile):
-        scene = scene.path
-    if not isinstance(scene, Scene):
-        defaults = {"friction_coefficient": SOME_FRICTION}
-        file = read_scene(scene, entries=given, defaults=defaults)  # type: ignore[arg-type]
+    file = opened(scene, given)
+    if isinstance(file, SceneFile):
         batch = file.scene if file.scene.along else file.of_spheres
     else:
+        scene = file
         if given and scene.sphere is None and scene.encounter is not None:
             rule = "has vectors in space, which columns cannot replace"
             raise refuse("scene", scene, rule, "give the TOML file of the bodies, with along")

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.numeric.types import Array, Real
-from contactlab_fit.f_test import CHANCE, NUMERICAL
+from contactlab_fit.f_test import CHANCE, NUMERICAL, log_chance
 from contactlab_fit.parameters import in_words
-from contactlab_fit.problem import Problem, grid, minimum
+from contactlab_fit.problem import Problem, fewer, grid, minimum
 
 #: Standard deviation of normal scatter over its median absolute deviation.
 NORMAL = 1.4826
@@ -55,15 +55,19 @@ def robust(problem: Problem, values: Array) -> tuple[Array, dict[str, Array]]:
     ``scipy.optimize.least_squares`` with the loss "soft_l1": first at a small scale, which nearly
     gives the least absolute deviations, then at the scatter of the first fit.
     """
-    scales = {
-        name: 0.1 * np.asarray(scale)
-        for name, scale in problem.scales(problem.residuals(values[None])).items()
-    }
+    few, _ = fewer(problem)
     points = np.vstack([values, grid(problem.model.parameters)])
-    start = points[int(np.argmin(np.sum(np.abs(problem.weighted(points, scales)), axis=1)))]
+    near = _nearly(few.scales(few.residuals(values[None])))
+    start = points[int(np.argmin(np.sum(np.abs(few.weighted(points, near)), axis=1)))]
+    scales = _nearly(problem.scales(problem.residuals(values[None])))
     first = minimum(problem, start, scales, loss="soft_l1")
     scales = scatter(problem, first)
     return minimum(problem, first, scales, loss="soft_l1"), scales
+
+
+def _nearly(scales: Mapping[str, Real]) -> dict[str, Array]:
+    """Return scales at which a loss is nearly that of absolute deviations."""
+    return {name: 0.1 * np.asarray(scale) for name, scale in scales.items()}
 
 
 def scatter(problem: Problem, values: Array) -> dict[str, Array]:
@@ -90,7 +94,7 @@ def outliers(problem: Problem, values: Array, scales: Mapping[str, Real]) -> Out
     The F test of k numbers with a mean of their own, times the number of ways to choose k
     (Bonferroni). Candidates are the k numbers farthest from the robust fit, for growing k.
     """
-    from scipy.special import fdtrc, gammaln  # only a fit needs scipy
+    from scipy.special import gammaln  # only a fit needs scipy
 
     off = {
         name: np.abs(rows[0]) / scales[name]
@@ -118,7 +122,7 @@ def outliers(problem: Problem, values: Array, scales: Mapping[str, Real]) -> Out
             whole = _square(problem, minimum(problem, values, scales), scales)
         ratio = (whole - square) / count / ((square + least) / freedom)
         ways = gammaln(number + 1) - gammaln(count + 1) - gammaln(number - count + 1)
-        chance = float(fdtrc(count, freedom, max(ratio, 0.0)) * math.exp(min(ways, 500.0)))
+        chance = math.exp(min(log_chance(count, freedom, max(ratio, 0.0)) + ways, 0.0))
         if chance < min(best.chance, CHANCE):
             best = Outliers(chance, {n: p for n, p in places.items() if len(p)}, rest, again)
     return best
@@ -141,16 +145,21 @@ def described(problem: Problem, far: Outliers) -> list[str]:
         kept = np.delete(residuals[name], places)
         rms = float(np.sqrt(np.nanmean(kept**2)))
         largest = float(np.max(np.abs(residuals[name][places])))
-        rows = [str(place + 1) for place in places[:LISTED]]
-        if len(places) > LISTED:
-            rows.append(f"{len(places) - LISTED} more")
-        listed = " and ".join([", ".join(rows[:-1]), rows[-1]] if rows[1:] else rows)
-        impacts, are = ("impacts", "are") if len(places) > 1 else ("impact", "is")
+        are = "are" if len(places) > 1 else "is"
         sentences.append(
-            f"{name}: {impacts} {listed} {are} off by up to {largest:.3g}, the others by "
+            f"{name}: {impacts_in_words(places)} {are} off by up to {largest:.3g}, the others by "
             f"{rms:.2g} (rms); without what is off {without}; # before a line leaves it out"
         )
     return sentences
+
+
+def impacts_in_words(places: NDArray[np.intp]) -> str:
+    """Return rows as impacts by their numbers, the first of many."""
+    rows = [str(place + 1) for place in places[:LISTED]]
+    if len(places) > LISTED:
+        rows.append(f"{len(places) - LISTED} more")
+    listed = " and ".join([", ".join(rows[:-1]), rows[-1]] if rows[1:] else rows)
+    return f"{'impacts' if len(places) > 1 else 'impact'} {listed}"
 
 
 def _square(problem: Problem, values: Array, scales: Mapping[str, Real]) -> float:

@@ -7,10 +7,18 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
+from numpy.typing import NDArray
 
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.columns import QUANTITIES
-from contactlab_fit.f_test import NUMERICAL, SPARE, chance_of, orthonormal
+from contactlab_fit.f_test import (
+    NUMERICAL,
+    SPARE,
+    chance_of,
+    chances_of_each,
+    orthonormal,
+    remaining,
+)
 from contactlab_fit.problem import Problem
 
 #: Degree of the polynomial in the rank of a column.
@@ -49,38 +57,73 @@ def pattern(
     """
     weighted, jacobian = problem.linearised(values, scales)
     residuals, slopes = problem.by_quantity(weighted), problem.by_quantity(jacobian)
+    own = problem.residuals(values[None])
     ranks = _ranked(columns, len(next(iter(problem.measured.values()))))
     sizes = problem.sizes()
     least = {n: (NUMERICAL * size / np.min(scales[n])) ** 2 for n, size in sizes.items()}
     tests: list[Pattern] = []
     ended: list[Pattern] = []
+    count = 0
     for name, numbers in problem.measured.items():
+        present = np.isfinite(numbers)
         for column, rank in ranks.items():
-            x = rank[np.isfinite(numbers)]
+            x = rank[present]
             terms = legendre.legvander(2.0 * (x - x.min()) / max(np.ptp(x), 1.0) - 1.0, DEGREE)
 
             def test(words: str, added: Array, name: str = name) -> Pattern:
                 chance = chance_of(residuals[name], slopes[name], added, least[name])
                 return Pattern(chance, f"{name}: {words}: {LOOK}")
 
-            number = np.asarray(columns.get(column, rank + 1.0), dtype=float)[np.isfinite(numbers)]
-            row = problem.residuals(values[None])[name][0][np.isfinite(numbers)]
-            lows = [x < last for last in range(SPARE, int(x.max()) + 2)]
-            lines = [np.where(low, number, 0.0) for low in lows]
-            gains = [float((row @ one) ** 2 / (one @ one or 1.0)) for one in lines]
-            low = lows[int(np.argmax(gains))]  # the line that is nearest to the residuals
+            number = np.asarray(columns.get(column, rank + 1.0), dtype=float)[present]
+            row = own[name][0][present]
+            order = np.argsort(x, kind="stable")
+            ends = np.searchsorted(x[order], np.arange(SPARE, max(int(x.max()), SPARE) + 2))
+            gains = _to(ends, (row * number)[order]) ** 2 / _nonzero(_to(ends, number[order] ** 2))
+            low = order[: ends[int(np.argmax(gains))]]  # the line nearest to the residuals
             words = _climb(name, number[low], row[low], column)
-            ended += [test(words, one[:, None]) for one in lines]
+            chance = np.min(
+                _chances(
+                    residuals[name][order], slopes[name][order], number[order], ends, least[name]
+                )
+            )
+            ended.append(Pattern(float(chance), f"{name}: {words}: {LOOK}"))
             tests.append(test(_climb(name, number, row, column), terms[:, 1:2]))
             tests.append(test(f"residuals follow {column}", terms[:, 1:]))
+            count += len(ends)
     same = [name for name in ranks if ORDER not in ranks and _in_order(ranks[name])]
-    tests += _changes(problem, weighted, jacobian, max(least.values()), same)
+    changes, changed = _changes(problem, weighted, jacobian, max(least.values()), same)
+    tests += changes
     if not tests:
         return NO_PATTERN
     clearest, line = min(tests), min(ended, default=NO_PATTERN)
+    number_of_tests = len(tests) - len(changes) + changed + count
     if 2.0 * line.chance < clearest.chance:  # not where a changed parameter makes the same line
         clearest = line
-    return clearest._replace(chance=clearest.chance * (len(tests) + len(ended)))
+    return clearest._replace(chance=clearest.chance * number_of_tests)
+
+
+def _to(ends: NDArray[np.intp], products: Array) -> Array:
+    """Return the sums of products, shape (numbers, ...), before each end."""
+    zero = np.zeros((1, *products.shape[1:]))
+    return np.asarray(np.concatenate([zero, np.cumsum(products, axis=0)])[ends])
+
+
+def _nonzero(squares: Array) -> Array:
+    """Return squares, with 1 in place of 0."""
+    return np.where(squares > 0.0, squares, 1.0)
+
+
+def _chances(
+    residuals: Array, slopes: Array, term: Array, ends: NDArray[np.intp], least: float
+) -> Array:
+    """Return the chance that scatter follows a term that is 0 from an end on, for each end.
+
+    Running sums: a projection of each of n terms would take n² numbers.
+    """
+    basis = orthonormal(slopes)
+    products = _to(ends, remaining(residuals, basis) * term)
+    along = _to(ends, basis * term[:, None])
+    return chances_of_each(residuals, slopes, products, _to(ends, term**2), along, least)
 
 
 def _climb(name: str, x: Array, residuals: Array, column: str) -> str:
@@ -97,8 +140,8 @@ def _climb(name: str, x: Array, residuals: Array, column: str) -> str:
 
 def _changes(
     problem: Problem, weighted: Array, jacobian: Array, least: float, same: list[str]
-) -> list[Pattern]:
-    """Return a pattern for each parameter and row after which the parameter may have changed."""
+) -> tuple[list[Pattern], int]:
+    """Return a pattern for each parameter, at the likeliest row of a change, and the tests made."""
     why = f"{ORDER}: what has changed meanwhile?"
     if same:
         why = (
@@ -106,16 +149,21 @@ def _changes(
             "not hold throughout?"
         )
     rows = np.concatenate([np.flatnonzero(np.isfinite(v)) for v in problem.measured.values()])
+    lasts = np.arange(SPARE, int(rows.max()) + 2 - SPARE)
+    if not len(lasts):
+        return [], 0
+    order = np.argsort(-rows, kind="stable")  # a change is a term that begins at a row
+    ends = np.searchsorted(-rows[order], -lasts, side="right")
     changes = []
     for parameter, slope in zip(problem.model.parameters, jacobian.T, strict=True):
-        for last in range(SPARE, int(rows.max()) + 2 - SPARE):
-            terms = (slope * (rows >= last))[:, None]
-            words = (
-                f"{parameter.name} is another up to impact {last} than from impact {last + 1} on, "
-                f"in {why}"
-            )
-            changes.append(Pattern(chance_of(weighted, jacobian, terms, least), words))
-    return changes
+        chances = _chances(weighted[order], jacobian[order], slope[order], ends, least)
+        best = int(np.argmin(chances))
+        words = (
+            f"{parameter.name} is another up to impact {lasts[best]} than from impact "
+            f"{lasts[best] + 1} on, in {why}"
+        )
+        changes.append(Pattern(float(chances[best]), words))
+    return changes, len(lasts) * len(changes)
 
 
 def leverage(problem: Problem, values: Array, scales: Mapping[str, Real]) -> list[str]:

@@ -12,6 +12,7 @@ from contactlab.numeric.types import Array
 from contactlab_fit import tabulated
 from contactlab_fit.f_test import NUMERICAL
 from contactlab_fit.measurements import Measurements
+from contactlab_fit.outliers import impacts_in_words
 from contactlab_fit.problem import Problem
 
 #: Plausible ranges of parameters: from the lowest friction of lubricated solids to that of
@@ -39,9 +40,14 @@ def unlikely_numbers(problem: Problem, table: Measurements) -> list[str]:
     scene, sentences = problem.model.setup.scene, []
     for name, (least, most) in SET.items():
         size: Any = np.abs(table.given.get(name, np.zeros(0)))
-        size = size[size > 0.0]
-        if size.size and (np.median(size) < least or np.median(size) > most):
-            sentences.append(f"{name} of about {np.median(size):.3g} is unlikely: look at its unit")
+        moving = size > 0.0
+        off = np.flatnonzero(moving & ((size < least) | (size > most)))
+        if not off.size:
+            continue
+        of_what = "" if off.size == np.sum(moving) else f" in {impacts_in_words(off)}"
+        sentences.append(
+            f"{name} of about {_middle(size[off]):.3g}{of_what} is unlikely: look at its unit"
+        )
     angle = table.given.get("angle_deg")
     if angle is not None and len(angle) > 2 and 0.3 < np.max(np.abs(angle)) < RADIANS:
         sentences.append(
@@ -49,7 +55,7 @@ def unlikely_numbers(problem: Problem, table: Measurements) -> list[str]:
             "in radians"
         )
     if scene.sphere is not None:
-        radius = float(np.median(np.asarray(scene.sphere.radius)))
+        radius = _middle(np.ravel(scene.sphere.radius))
         if not RADIUS[0] < radius < RADIUS[1]:
             sentences.append(
                 f"the radius of the sphere, {radius:.3g} m, is unlikely: look at its unit"
@@ -66,6 +72,11 @@ def unlikely_numbers(problem: Problem, table: Measurements) -> list[str]:
                 "does: look at its unit, its sign and whether columns have moved"
             )
     return sentences
+
+
+def _middle(numbers: Array) -> float:
+    """Return the number in the middle, which stands in a row where a median may not."""
+    return float(np.sort(numbers)[(len(numbers) - 1) // 2])
 
 
 def restitutions(problem: Problem, table: Measurements) -> list[str]:

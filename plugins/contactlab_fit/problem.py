@@ -27,6 +27,11 @@ GRID, SEARCHES = 400, 4
 #: Most rounds that re-estimate the errors of quantities from residuals, and relative change of
 #: the errors that ends the rounds.
 ROUNDS, STEADY = 6, 0.02
+#: Rows by which long tables are searched first and looked at for mistakes: their scatter lets far
+#: smaller ones be seen than any that is told.
+MANY = 20_000
+#: Rows of a long table are taken in blocks of so many, so that most have their neighbours.
+BLOCK = 100
 #: Least error of a quantity over its size: data made by the model itself have no error.
 LEAST_ERROR = 1e-9
 
@@ -123,6 +128,24 @@ class Problem:
         weighted = self.weighted(points, scales)
         slopes = (weighted[1 + count :] - weighted[1 : 1 + count]).T / (above - below)
         return weighted[0], slopes
+
+
+def fewer(problem: Problem, *tables: Mapping[str, Array]) -> tuple[Problem, list[dict[str, Array]]]:
+    """Return a problem, and columns of its rows, with ``MANY`` rows where there are more.
+
+    The rows are blocks of neighbours, evenly from the whole table.
+    """
+    count = len(next(iter(problem.measured.values())))
+    if count <= MANY:
+        return problem, [dict(table) for table in tables]
+    first = np.linspace(0, count - BLOCK, MANY // BLOCK).astype(int)
+    rows = (first[:, None] + np.arange(BLOCK)).ravel()
+    parts = [
+        {name: values[rows] for name, values in table.items()}
+        for table in (problem.measured, problem.errors, *tables)
+    ]
+    model = problem.model.at(problem.model.setup.scene.take(rows))
+    return Problem(model=model, measured=parts[0], errors=parts[1]), parts[2:]
 
 
 def starting(problem: Problem) -> list[Array]:

@@ -34,11 +34,24 @@ def same(found, expected):
         PLAIN.encode("utf-8-sig"),
         PLAIN.replace(",", ";").replace(".", ",").encode(),
         PLAIN.replace(",", ";").encode(),
+        b"sep=,\r\n" + PLAIN.encode(),
+        b'"SEP=;"\n' + PLAIN.replace(",", ";").encode(),
+        b"sep=\t\n" + PLAIN.replace(",", "\t").encode(),
         PLAIN.replace(",", "\t").replace(".", ",").encode(),
         PLAIN.replace("_deg", " [°]").replace("rpm", "1/min").encode("cp1252"),
         PLAIN.replace("\n", "\r\n").encode(),
     ],
-    ids=["mark", "decimal comma", "semicolons", "tabs", "old encoding", "ends of lines"],
+    ids=[
+        "mark",
+        "decimal comma",
+        "semicolons",
+        "told comma",
+        "told semicolon",
+        "told tab",
+        "tabs",
+        "old encoding",
+        "ends of lines",
+    ],
 )
 def test_what_spreadsheets_write_is_the_same_table(tmp_path, content):
     same(read(tmp_path, content), read(tmp_path, PLAIN.encode()))
