@@ -27,12 +27,15 @@ from contactlab.scene_file.measured import Measured
 from contactlab.scene_file.plane import check_spin, rim
 from contactlab_fit.measurements import Measurements
 from contactlab_fit.struck import SPIN, VELOCITY, to_the_struck_body
+from contactlab_fit.unseen_spin import with_spins
 
 #: A column that varies by less than this share of its mean was kept constant.
 SAME = 0.1
 #: Points of a sweep over the measured range, for a file that has none.
 SWEPT = 61
-#: What the file of a fit may leave out, to be read at all.
+#: The entry of the spin of the first body.
+SPIN_BEFORE = "spin"
+#: What a file may leave out to be read at all; only its geometry is looked at.
 DEFAULTS = {"friction_coefficient": 0.1}
 
 
@@ -52,6 +55,8 @@ def as_met(table: Measurements, scene: object) -> Measurements:
     ValueError
         If a column cannot be changed without another one, or a half-space has a spin.
     """
+    if table.thrown:
+        table = _with_spins(table, scene)
     own: Mapping[str, float] = {}
     arm: tuple[Real, Real] | None = None
     if isinstance(scene, SceneFile | str | Path):
@@ -81,6 +86,16 @@ def as_met(table: Measurements, scene: object) -> Measurements:
     return attrs.evolve(
         table, given=given | at_rest, measured=measured, errors=errors, struck=struck
     )
+
+
+def _with_spins(table: Measurements, scene: object) -> Measurements:
+    """Return the impacts of a film without an angle with their spins before."""
+    if isinstance(scene, Scene):
+        return with_spins(table, scene, np.asarray(scene.spin) if np.any(scene.spin) else None)
+    path: Any = scene.path if isinstance(scene, SceneFile) else scene
+    file = read_scene(path, entries=table.given, defaults=DEFAULTS)
+    impact: Any = file.tables.get("impact", {})
+    return with_spins(table, file.scene, impact.get(SPIN_BEFORE))
 
 
 def _of_file(

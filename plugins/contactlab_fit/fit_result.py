@@ -69,6 +69,8 @@ class Fit:
         What the measurement looks like: reasons to look at it.
     cautions : tuple of str
         Errors of the model that the intervals do not hold, with their size where it is known.
+    taken : tuple of str
+        Numbers that enter the fit and stand in neither table nor scene.
     samples : int
         Samples of the bootstrap; fewer than requested after Ctrl-C, 0 without a bootstrap.
     impacts : callable
@@ -84,6 +86,7 @@ class Fit:
     reduced_chi_square: float | None = None
     notes: tuple[str, ...] = ()
     cautions: tuple[str, ...] = ()
+    taken: tuple[str, ...] = ()
     samples: int = 0
     impacts: Callable[[Mapping[str, Numbers]], ImpactResult]
 
@@ -156,6 +159,7 @@ class Fit:
             "predicted": {name: json_value(values) for name, values in self.predicted.items()},
             "notes": list(self.notes),
             "cautions": list(self.cautions),
+            "taken": list(self.taken),
             "samples": self.samples,
         }
 
@@ -173,5 +177,6 @@ class Fit:
                 )
         for name, rms in self.rms.items():
             lines.append(f"  {name:24} rms {rms:.3g}, largest {self.largest[name]:.3g}")
+        lines += [f"  taken: {each}" for each in self.taken]
         lines += [f"  note: {note}" for note in self.notes]
         return "\n".join([*lines, *(f"  caution: {caution}" for caution in self.cautions)])

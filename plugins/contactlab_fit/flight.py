@@ -79,7 +79,8 @@ def read_flight(
     -------
     Measurements
         Velocities along the normal and along the way of the ball over the floor in m/s, and with
-        ``angle`` spins in rad/s.
+        ``angle`` spins in rad/s. Without it a fit takes the spins before each bounce from the
+        moment about the contact, of a ball that is thrown with the spin of the scene.
 
     Raises
     ------
@@ -146,7 +147,7 @@ def _bounces(film: dict[str, Array]) -> Measurements:
     """Return the impacts of a film."""
     throws = list(_throws(film))
     step = float(np.median(np.concatenate([np.diff(throw["t"]) for throw in throws])))
-    pairs: list[tuple[Flight, Flight, float]] = []
+    pairs: list[tuple[Flight, Flight, float, Flight | None]] = []
     notes: list[str] = []
     every: list[Flight] = []
     for throw in throws:
@@ -154,7 +155,7 @@ def _bounces(film: dict[str, Array]) -> Measurements:
         every += [flight for flight in flights if flight]
         for one, other, time in zip(flights, flights[1:], times, strict=False):
             if one and other:
-                pairs.append((one, other, time))
+                pairs.append((one, other, time, flights[0]))
             else:
                 notes.append(
                     f"bounces with fewer than {FRAMES} frames before or after are left out"
@@ -177,6 +178,7 @@ def _bounces(film: dict[str, Array]) -> Measurements:
         )
     rows = [_row(*pair, scatter) for pair in pairs]
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    thrown = {name: columns.pop(f"thrown_{name}") for name in ("velocity", "error")}
     told = [name for name in columns if f"{name}_error" in columns]
     measured = [name for name in told if columns[f"{name}_error"].all()]
     notes += [
@@ -189,7 +191,15 @@ def _bounces(film: dict[str, Array]) -> Measurements:
         measured={name: columns[name] for name in measured},
         errors={name: columns[f"{name}_error"] for name in measured},
         notes=(*dict.fromkeys(notes), *fall),
+        taken=_taken(film),
+        thrown={} if "angle" in film else thrown,
     )
+
+
+def _taken(film: Mapping[str, Array]) -> tuple[str, ...]:
+    """Return sentences on what is taken of the flights of a film."""
+    level = () if "z" in film else ("z = 0 m: the ball stays in the plane of x and y",)
+    return (f"gravity = {GRAVITY} m/s², of flights without air", *level)
 
 
 def _throws(film: dict[str, Array]) -> Iterator[dict[str, Array]]:
@@ -283,12 +293,14 @@ def _scatter(rests: list[Array]) -> float:
     return math.sqrt(sum(float(each @ each) for each in rests) / freedom)
 
 
-def _row(one: Flight, other: Flight, time: float, scatter: Mapping[str, float]) -> dict[str, float]:
-    """Return the numbers of one impact."""
+def _row(
+    one: Flight, other: Flight, time: float, first: Flight | None, scatter: Mapping[str, float]
+) -> dict[str, float]:
+    """Return the numbers of one impact, and of the ``first`` flight of its throw."""
     fall = GRAVITY * time
-    before, after = (
+    before, after, thrown = (
         np.array([each.lines[name][1] for name in ("x", "z") if name in each.lines])
-        for each in (one, other)
+        for each in (one, other, first or one)
     )
     way = np.ones(1)
     if len(before) > 1:
@@ -302,6 +314,8 @@ def _row(one: Flight, other: Flight, time: float, scatter: Mapping[str, float]) 
         "rebound_normal_velocity_error": scatter["y"] * both,
         "rebound_tangential_velocity": float(after @ way),
         "rebound_tangential_velocity_error": float(np.linalg.norm(spread * way)) * both,
+        "thrown_velocity": float(thrown @ way) if first else math.nan,
+        "thrown_error": float(np.linalg.norm(spread * way)) / (first or one).reach,
     }
     if "angle" in one.lines:
         row |= {

@@ -43,6 +43,11 @@ class Measurements:
         Sentences on impacts and columns that were left out.
     struck : tuple of str
         Columns of the struck body's motion, to whose surface velocities are relative.
+    taken : tuple of str
+        Sentences on numbers that were taken where no column has them.
+    thrown : mapping of str to array, shape (n,)
+        Of a film without an angle: the ``velocity`` along the floor in the first flight of each
+        throw and its standard ``error``, in m/s; empty otherwise.
     """
 
     given: Mapping[str, Array]
@@ -52,6 +57,8 @@ class Measurements:
     source: str = ""
     notes: tuple[str, ...] = ()
     struck: tuple[str, ...] = ()
+    taken: tuple[str, ...] = ()
+    thrown: Mapping[str, Array] = attrs.field(factory=dict)
 
     def __len__(self) -> int:
         """Return the number of impacts."""

@@ -168,6 +168,23 @@ def asks_for(option: str, names: Sequence[str]) -> bool:
     return any(name.rpartition(".")[2] == option for name in names)
 
 
+def defaults_of(setup: Setup, fitted: Collection[str]) -> dict[str, tuple[float, str]]:
+    """Return the options of laws that nobody fits and that have their default: value and unit."""
+    found: dict[str, tuple[float, str]] = {}
+    for name in _choices(setup):
+        kind, _, option = name.partition(".")
+        if not option or name in fitted:
+            continue
+        law: Any = getattr(setup.simulation, kind)
+        try:
+            default = getattr(type(law)(), option)
+        except TypeError:  # a law whose author wants it to be given
+            continue
+        if getattr(law, option) == default:
+            found[name] = float(default), attrs.fields_dict(type(law))[option].metadata["unit"]
+    return found
+
+
 def _full(name: str, choices: Collection[str]) -> str | None:
     """Return the full name of a parameter; None if it is none of the choices, or of several."""
     same = [name] if name in choices else _short(choices).get(name, [])

@@ -44,6 +44,8 @@ def describe(fit: Fit) -> str:
         parts.append(f"columns not used: {', '.join(fit.measurements.unused)}")
     if fit.reduced_chi_square is not None:
         parts.append(f"reduced chi square: {fit.reduced_chi_square:.3g}")
+    if fit.taken:
+        parts.append("taken, for no table or scene has them:\n  " + "\n  ".join(fit.taken))
     parts += [f"note: {note}" for note in fit.notes]
     parts += [f"caution: {caution}" for caution in fit.cautions]
     return "\n\n".join(parts)
