@@ -11,6 +11,7 @@ import numpy as np
 from contactlab.impact.body_contact import seen
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array
+from contactlab_fit.intervals import Spread, spread
 from contactlab_fit.model import Model
 from contactlab_fit.parameters import Parameter, in_words
 from contactlab_fit.problem import Problem
@@ -21,12 +22,14 @@ ALIKE = 1e-3
 #: Largest half-width of a 95 % interval, as a share of the range, or else of the value; and a
 #: half-width of a friction coefficient that is informative for any value.
 VAGUE_IN_RANGE, VAGUE, SHARP = 0.5, 1.0, 0.05
-#: Difference of Akaike's criterion below which a second minimum is as good as the first: at 4 the
-#: second is the right one about one time in eight.
+#: Difference of Akaike's criterion below which a second minimum is as good as the first where no
+#: number is left to tell the scatter by: at 4 the second is the right one one time in eight.
 CLOSE = 4.0
 #: A parameter has no effect if its full change moves no quantity by this share of the quantity's
 #: size; derivatives are good to about 1e-6.
 NO_EFFECT = 1e-4
+#: Factors on a value at which numbers that turn there have changed.
+TURNING = (0.9, 1.1)
 #: Candidate angles of incidence, and candidate psi1 without bodies, for a further measurement.
 ANGLES_DEG = np.array(
     [1.0, 2.0, 4.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0]
@@ -105,7 +108,7 @@ def check_determined(problem: Problem, values: Array) -> None:
     effects = problem.linearised(values, problem.sizes())[1] * _sizes(parameters, values)
     lengths = np.sqrt(np.sum(effects**2, axis=0) / len(effects))
     for place, parameter in enumerate(parameters):
-        if lengths[place] < NO_EFFECT:
+        if lengths[place] < NO_EFFECT and not _turns(problem, values, place):
             raise _undetermined(
                 problem.model, values, [place], f"no measured number depends on {parameter.name}"
             )
@@ -118,10 +121,19 @@ def check_determined(problem: Problem, values: Array) -> None:
         raise _undetermined(problem.model, values, places, reason)
 
 
-def check_precise(problem: Problem, values: Array, reaches: Array) -> None:
+def _turns(problem: Problem, values: Array, place: int) -> bool:
+    """Return whether numbers depend on a parameter whose derivative is 0: where they turn."""
+    low, high = problem.bounds()
+    points = np.tile(values, (3, 1))
+    points[1:, place] = np.clip(values[place] * np.array(TURNING), low[place], high[place])
+    moved = problem.weighted(points, problem.sizes())
+    return bool(np.min(np.max(np.abs(moved[1:] - moved[0]), axis=1)) > NO_EFFECT)
+
+
+def check_precise(problem: Problem, values: Array, ends: Spread) -> None:
     """Refuse parameters whose interval is too wide beside their range or value."""
     for place, parameter in enumerate(problem.model.parameters):
-        value, reach = float(values[place]), float(reaches[place])
+        value, reach = float(values[place]), float(ends.reaches[place])
         allowed = VAGUE_IN_RANGE * parameter.width
         if not math.isfinite(allowed):
             allowed = max(VAGUE * abs(value), SHARP)
@@ -132,17 +144,47 @@ def check_precise(problem: Problem, values: Array, reaches: Array) -> None:
             raise _undetermined(problem.model, values, [place], reason)
 
 
-def check_single(problem: Problem, minima: list[Array]) -> None:
-    """Refuse data that two sets of parameter values meet about equally well."""
-    for second in minima[1:]:
-        if problem.criterion(second) - problem.criterion(minima[0]) < CLOSE:
-            ends = minima[0], second
-            both = " and ".join(in_words(problem.model.parameters, values) for values in ends)
-            names = " and ".join(parameter.name for parameter in problem.model.parameters)
-            remedy = _telling_apart(problem.model, np.array(ends))
-            raise ValueError(
-                f"the data do not determine {names}: they are met as well by {both}; {remedy}"
-            )
+def check_single(problem: Problem, minima: list[Array], ends: Spread) -> None:
+    """Refuse data that other values meet about as well, which lie outside of the intervals.
+
+    Raises
+    ------
+    ValueError
+        With each minimum that the F test does not part from the first, and its intervals.
+    """
+    best, *others = minima
+    alike = [
+        other for other in others if not ends.holds(other) and _meets(problem, other, best, ends)
+    ]
+    if not alike:
+        return
+    parameters = problem.model.parameters
+    told = [_with_ends(parameters, best, ends)]
+    told += [_with_ends(parameters, other, spread(problem, other, best)) for other in alike]
+    names = " and ".join(parameter.name for parameter in parameters)
+    remedy = _telling_apart(problem.model, np.array([best, alike[0]]))
+    raise ValueError(
+        f"the data do not determine {names}: they are met as well by {' and '.join(told)}; {remedy}"
+    )
+
+
+def _meets(problem: Problem, other: Array, best: Array, ends: Spread) -> bool:
+    """Return whether the F test does not part other values from the best ones."""
+    if math.isnan(ends.rise):
+        return problem.criterion(other) - problem.criterion(best) < CLOSE
+    scales = problem.scales(problem.residuals(best[None]))
+    squares = np.sum(problem.weighted(np.array([best, other]), scales) ** 2, axis=1)
+    return bool(squares[1] - squares[0] < ends.rise)
+
+
+def _with_ends(parameters: tuple[Parameter, ...], values: Array, ends: Spread) -> str:
+    """Return parameters with their values and intervals, in words."""
+    if np.isnan(ends.low).any():
+        return in_words(parameters, values)
+    return ", ".join(
+        f"{parameter.name} {value:.4g} (95 % {low:.4g} to {high:.4g})"
+        for parameter, value, low, high in zip(parameters, values, ends.low, ends.high, strict=True)
+    )
 
 
 def _undetermined(model: Model, values: Array, places: list[int], reason: str) -> ValueError:
@@ -175,11 +217,13 @@ def _advised(model: Model, values: Array, place: int) -> str:
     if greatest[name] < NO_EFFECT:
         return f"no rebound of these laws depends on {parameter.name}: fix it, or choose others."
     worth = x[effects[name] >= WORTH * greatest[name]]
-    where = f" from {worth.min():g} to {worth.max():g}" if len(worth) > 1 else f" of {worth[0]:g}"
     if len(worth) == len(x):
         return f"measure {name} to determine {parameter.name}, at any {words}."
     best = x[int(np.argmax(effects[name]))]
-    return f"measure {name} at {words}{where}, best about {best:g}, to determine {parameter.name}."
+    where = f"of about {best:g}"
+    if len(worth) > 1:
+        where = f"from {worth.min():g} to {worth.max():g}, best about {best:g},"
+    return f"measure {name} at {words} {where} to determine {parameter.name}."
 
 
 def _candidates(scene: Scene) -> tuple[Scene, Array, str]:

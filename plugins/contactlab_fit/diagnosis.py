@@ -18,8 +18,9 @@ from contactlab_fit.f_test import CHANCE
 from contactlab_fit.fit_result import Estimate
 from contactlab_fit.measurements import Measurements
 from contactlab_fit.parameters import SHEAR_LOSS
-from contactlab_fit.problem import Problem
+from contactlab_fit.problem import Problem, fewer
 from contactlab_fit.slips import loosened, lossy, slips
+from contactlab_fit.unknown_friction import FRICTIONS, under
 
 #: The chance below which a pattern is reported beside outliers, which explain the residuals better.
 POSSIBLE = 1e-5
@@ -71,7 +72,8 @@ def diagnosed(
     if sum(problem.counts.values()) >= outliers.LEAST + len(values) - 1:
         robust_values, scales = outliers.robust(problem, values)
         far, robust = outliers.outliers(problem, robust_values, scales), robust_values.tolist()
-    certain, possible = slips(problem, table.given, values, far.rest.measured)
+    few, (kept,) = fewer(problem, far.rest.measured)
+    certain, possible = slips(few, table.given, values, kept)
     unlikely = plausible.unlikely_numbers(problem, table)
     slipped = (*certain, *unlikely)
     others = () if slipped or explained else (*_others(problem, table, values, far), *possible)
@@ -101,25 +103,29 @@ def _seen(
     """Return the error of each quantity, and what scatter makes with the least chance."""
     scales = problem.scales(problem.residuals(values[None]))
     pattern = patterns.pattern(problem, values, scales, table.given)
-    common = loosened(problem, table.given, values)
+    common = loosened(fewer(problem)[0], table.given, values)
     return scales, common if common.chance < SIMPLER * pattern.chance else pattern
 
 
 def lost(problem: Problem, values: Array) -> list[str]:
     """Return a sentence if the measured normal motion has another restitution than the laws."""
-    seen = lossy(problem, values)
+    seen = lossy(fewer(problem)[0], values)
     return [seen.words] if seen.chance < CHANCE else []
 
 
-def cautions(problem: Problem, values: Array) -> list[str]:
+def cautions(problem: Problem, values: Array, *, of_any_friction: bool = False) -> list[str]:
     """Return the cautions of the impacts, and the shift of each parameter where one is known.
 
     The shift is that by coupling, in size: the shifts of psi2 of all impacts, each in the worse
-    direction, times the derivatives of the best values by the measured numbers.
+    direction, times the derivatives of the best values by the measured numbers. Of an unknown
+    friction only cautions are told that hold ``of_any_friction``.
     """
     result = problem.model.impacts(values)
-    said = result.cautions
-    said = [*said, *_sheared(problem)]
+    said = list(result.cautions)
+    if of_any_friction:
+        others = [under(problem.model, each).impacts(values).cautions for each in FRICTIONS]
+        said = [text for text in said if all(text in other for other in others)]
+    said += _sheared(problem)
     if not (any(text.startswith(LEFT_OUT) for text in said) and result.scene.planar):
         return said
     if not np.all(coupling_measured(result.scene)):

@@ -31,7 +31,9 @@ from contactlab_fit.diagnosis import (
     table_notes,
 )
 from contactlab_fit.fit_result import Estimate, Fit
+from contactlab_fit.intervals import TAIL, Spread, spread
 from contactlab_fit.measurements import Measurements, read_measurements
+from contactlab_fit.minima import minima
 from contactlab_fit.model import Model, scene_of, simulation_of
 from contactlab_fit.parameters import (
     RESTITUTION,
@@ -42,13 +44,15 @@ from contactlab_fit.parameters import (
     those_of,
 )
 from contactlab_fit.plausible import restitutions, unlikely_parameters
-from contactlab_fit.problem import Problem, solved, starting
+from contactlab_fit.problem import Problem, fewer, solved
 from contactlab_fit.slips import SOME_LOSS, assumed, slips
+from contactlab_fit.taken import taken
+from contactlab_fit.unknown_friction import (
+    lacks_friction,
+    normal_motion_alone,
+    without_friction,
+)
 
-#: Share of each tail beyond a 95 % interval.
-TAIL = 0.025
-#: Relative and absolute distance below which two searches have reached the same minimum.
-SAME = 1e-3
 #: An interruption keeps at least this many samples; fewer make no 95 % interval.
 FEWEST = 100
 
@@ -120,30 +124,36 @@ def fit(
     if laws is None:
         laws = default_laws(parameters)
     problem = _problem(table, scene, parameters, laws)
+    left_out: tuple[str, ...] = ()
+    if unknown := lacks_friction(scene, table.given, parameters):
+        table, unmet = without_friction(problem, table)
+        left_out = (unmet,) if unmet else ()
+        problem = _problem(table, scene, parameters, laws)
     determined.check_enough(problem)
     determined.check_defined(problem)
     said = (*table.notes, *table_notes(table, parameters))
     counted = None if samples else progress
-    values, *others = _solutions(problem, counted)
-    left_out: tuple[str, ...] = ()
+    values, *others = minima(problem, counted)
     slipped: list[str] = []
     every, of_restitution = problem, restitutions(problem, table)
     if idle := determined.idle(problem, values):
-        left_out = (f"{', '.join(idle)}: not met, for no parameter moves it under these laws",)
-        slipped, _ = slips(problem, table.given, values, problem.measured)
+        idle_words = f"{', '.join(idle)}: not met, for no parameter moves it under these laws"
+        left_out = (*left_out, idle_words)
+        few, _ = fewer(problem)
+        slipped, _ = slips(few, table.given, values, few.measured)
         if not slipped and (seen := lost(problem, values)):
             slipped, of_restitution = seen, []
         table = table.only([name for name in table.measured if name not in idle])
         problem = _problem(table, scene, parameters, laws)
-        values, *others = _solutions(problem)
+        values, *others = minima(problem)
     diagnosis = diagnosed(problem, table, values, explained=bool(slipped))
     try:
         determined.check_scatter(problem)
         determined.check_determined(problem, values)
         at = partial(_impacts, scene, problem.model, values)
-        outcome, reaches = _outcome(problem, table, values, diagnosis, at)
-        determined.check_precise(problem, values, reaches)
-        determined.check_single(problem, [values, *others])
+        outcome, ends = _outcome(problem, table, values, diagnosis, at)
+        determined.check_precise(problem, values, ends)
+        determined.check_single(problem, [values, *others], ends)
     except ValueError as error:
         causes = (*slipped, *of_restitution, *diagnosis.sentences, *error_notes(problem, values))
         if not causes:
@@ -151,11 +161,17 @@ def fit(
         raise ValueError(f"{'. '.join(causes)}. As it is, {error}") from None
     notes = (*left_out, *slipped, *of_restitution, *outcome.notes)
     warned = (
-        *cautions(problem, values),
-        *(() if notes else assumed(every, table.given, values, reaches)),
+        *cautions(problem, values, of_any_friction=unknown),
+        *(() if notes else assumed(fewer(every)[0], table.given, values, ends.reaches)),
     )
     aic = every.criterion(values)  # over all numbers, so that laws that leave some out compare
-    outcome = attrs.evolve(outcome, notes=(*said, *notes), cautions=warned, aic=aic)
+    outcome = attrs.evolve(
+        outcome,
+        notes=(*said, *notes),
+        cautions=warned,
+        aic=aic,
+        taken=taken(table, scene, problem.model),
+    )
     if counted is not None:
         counted(1, 1)
     if not samples:
@@ -275,23 +291,11 @@ def _problem(
     return Problem(model=model, measured=table.measured, errors=table.errors)
 
 
-def _solutions(
-    problem: Problem, progress: Callable[[int, int], object] | None = None
-) -> list[Array]:
-    """Return the minima of searches from several starts, the best first."""
-    minima: list[Array] = []
-    starts = starting(problem)
-    for done, start in enumerate(starts, start=1):
-        values = solved(problem, start)
-        if progress is not None:
-            progress(done, len(starts) + 1)  # the diagnosis is the last
-        if not any(np.allclose(values, minimum, rtol=SAME, atol=SAME) for minimum in minima):
-            minima.append(values)
-    return sorted(minima, key=problem.criterion) if len(minima) > 1 else minima
-
-
 def _impacts(
-    scene: object, model: Model, values: Array, entries: Mapping[str, Numbers]
+    scene: Scene | SceneFile | str | Path,
+    model: Model,
+    values: Array,
+    entries: Mapping[str, Numbers],
 ) -> ImpactResult:
     """Return the impacts of ``entries`` at values of the parameters."""
     columns = {name: np.atleast_1d(real(name, column)) for name, column in entries.items()}
@@ -300,7 +304,9 @@ def _impacts(
         what="lengths", remedy="give one number, or as many as the others have",
     )  # fmt: skip
     given = {name: np.broadcast_to(column, size) for name, column in columns.items()}
-    return model.at(scene_of(scene, given, *size)).impacts(values)
+    result = model.at(scene_of(scene, given, *size)).impacts(values)
+    fitted = [parameter.name for parameter in model.parameters]
+    return normal_motion_alone(result) if lacks_friction(scene, given, fitted) else result
 
 
 def _outcome(
@@ -309,47 +315,34 @@ def _outcome(
     values: Array,
     diagnosis: Diagnosis,
     impacts: Callable[[Mapping[str, Numbers]], ImpactResult],
-) -> tuple[Fit, Array]:
-    """Return the fit with intervals from the covariance, and their half-widths."""
-    from scipy.special import stdtrit  # only a fit needs scipy
-
+) -> tuple[Fit, Spread]:
+    """Return the fit with its intervals, and these as arrays."""
     parameters = problem.model.parameters
-    scales = problem.scales(problem.residuals(values[None]))
-    weighted, jacobian = problem.linearised(values, scales)
-    freedom = len(weighted) - len(values)
-    mean_square = float(weighted @ weighted) / freedom if freedom > 0 else math.nan
+    found = spread(problem, values)
+    freedom = sum(problem.counts.values()) - len(values)
     stated = all(name in problem.errors for name in problem.measured)
-    factor = mean_square
-    if stated:  # errors may be stated too small, but are not believed to be too large
-        factor = max(mean_square, 1.0) if freedom else 1.0
-    size = np.sqrt(np.sum(jacobian**2, axis=0))
-    covariance = np.linalg.inv((jacobian / size).T @ (jacobian / size)) / np.outer(size, size)
-    errors = np.sqrt(factor * np.diag(covariance))
-    reaches = errors * (float(stdtrit(freedom, 1.0 - TAIL)) if freedom > 0 else math.nan)
-    low, high = problem.bounds()
     estimates = {}
     for place, parameter in enumerate(parameters):
-        value, reach = float(values[place]), float(reaches[place])
-        ends = (float(max(value - reach, low[place])), float(min(value + reach, high[place])))
+        ends = float(found.low[place]), float(found.high[place])
         estimates[parameter.name] = Estimate(
             name=parameter.name,
             unit=parameter.unit,
-            value=value,
-            standard_error=float(errors[place]),
-            interval=ends if not math.isnan(reach) else (math.nan, math.nan),
+            value=float(values[place]),
+            standard_error=float(found.errors[place]),
+            interval=ends,
             robust=diagnosis.robust[place],
         )
-    deviation = np.sqrt(np.diag(covariance))
+    deviation = np.sqrt(np.diag(found.covariance))
     predicted = problem.model.predicted(values[None], list(problem.measured))
     intervals = {name: estimate.interval for name, estimate in estimates.items()}
     outcome = Fit(
         parameters=estimates,
-        correlation=covariance / np.outer(deviation, deviation),
+        correlation=found.covariance / np.outer(deviation, deviation),
         laws=problem.model.laws(values),
         measurements=table,
         predicted={name: rows[0] for name, rows in predicted.items()},
         aic=problem.criterion(values),
-        reduced_chi_square=mean_square if stated else None,
+        reduced_chi_square=found.mean_square if stated else None,
         notes=(
             *diagnosis.sentences,
             *unlikely_parameters(problem, intervals),
@@ -359,7 +352,7 @@ def _outcome(
         ),
         impacts=impacts,
     )
-    return outcome, reaches
+    return outcome, found
 
 
 @attrs.frozen(kw_only=True)

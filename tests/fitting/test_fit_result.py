@@ -46,7 +46,7 @@ def test_a_fit_as_plain_numbers():
     nan = Estimate(name="mu", unit="1", value=0.5, standard_error=np.nan,
                    interval=(np.nan, np.nan), bootstrap=(0.4, 0.6), robust=0.51)  # fmt: skip
     found = attrs.evolve(
-        made(notes=("a", "b"), cautions=("c",), samples=7, reduced_chi_square=np.nan),
+        made(notes=("a", "b"), cautions=("c",), taken=("d",), samples=7, reduced_chi_square=np.nan),
         parameters={"mu": nan},
     )
     assert found.to_dict() == {

@@ -2,6 +2,7 @@
 
 import json
 
+import attrs
 import numpy as np
 import pytest
 
@@ -9,6 +10,7 @@ import contactlab
 from contactlab import Encounter, HalfSpace, Material, Scene, Sphere
 from contactlab.cli.main import main
 from contactlab_fit import fit, read_flight
+from contactlab_fit.beside import as_met
 
 G, RATE, NOISE = 9.80665, 240.0, 1e-3
 FRICTION = 0.12
@@ -151,6 +153,63 @@ def test_a_scale_off_by_five_percent_and_short_flights_are_told():
         read_flight(few)
 
 
+def without_angle(frames):
+    return {name: values for name, values in frames.items() if not name.startswith("angle")}
+
+
+def test_without_an_angle_spins_follow_from_the_moment_about_the_contact():
+    """As those of the film with one, for a ball thrown with the spin of the scene."""
+    frames, impacts = film(1, noise=0.0)
+    found = as_met(read_flight(without_angle(frames)), BODIES)
+    np.testing.assert_allclose(found.given["spin"], impacts[:, 0, 2], rtol=1e-8, atol=1e-8)
+    assert as_met(found, BODIES) is found or list(as_met(found, BODIES).given) == list(found.given)
+    spun = as_met(read_flight(without_angle(frames)), attrs.evolve(BODIES, spin=3.0))
+    np.testing.assert_allclose(spun.given["spin"], found.given["spin"] + 3.0, atol=1e-8)
+    assert "before the first bounce" in "".join(found.taken)
+    assert "before the first bounce" not in "".join(spun.taken)
+
+
+def test_a_film_without_an_angle_has_the_friction():
+    """Taken for 0 before each bounce, the spins gave half of it."""
+    frames, _ = film(6, noise=3e-4, restitution=0.85)
+    names = ["friction_coefficient", "restitution"]
+    found = fit(read_flight(without_angle(frames)), BODIES, parameters=names)
+    low, high = found.parameters["friction_coefficient"].interval
+    assert low < FRICTION < high
+    assert high - low < 0.03 * FRICTION
+    assert not any(one.startswith("spin = 0 rad/s before each") for one in found.taken)
+
+
+def test_of_a_ball_that_nobody_saw_before_its_first_bounce_the_spin_is_not_taken():
+    frames, _ = film(1, noise=0.0)
+    late = (frames["t (s)"] > -0.01) & (frames["t (s)"] < 50.0)
+    one = {name: values[late] for name, values in without_angle(frames).items()}
+    seen = frames["t (s)"] > 50.0
+    both = {
+        name: np.concatenate([one[name], values[seen]])
+        for name, values in without_angle(frames).items()
+    }
+    found = as_met(read_flight(both), BODIES)
+    assert list(np.isnan(found.measured["rebound_tangential_velocity"])) == [True] * 4 + [False] * 5
+    assert any("whose spin nobody saw" in note for note in found.notes)
+    assert list(as_met(read_flight(one), BODIES).measured) == ["rebound_normal_velocity"]
+
+
+def test_only_of_a_ball_on_a_floor_the_spin_follows(tmp_path):
+    table = read_flight(without_angle(film(1)[0]))
+    balls = Scene(BALL, BALL, friction_coefficient=0.5, normal_speed=1.0)
+    rod = tmp_path / "rod.toml"
+    rod.write_text(
+        "[body]\nshape = 'rod'\nlength = 0.1\nradius = 0.01\ntilt_deg = 30\n"
+        "material = 'steel'\n[target]\nkind = 'half-space'\nmaterial = 'steel'\n"
+        "[impact]\nnormal = [0, 0, -1]\nalong = [1, 0, 0]\n",
+        encoding="utf-8",
+    )
+    for scene in (balls, rod):
+        with pytest.raises(ValueError, match=r"angle: is missing.*add a column angle"):
+            fit(table, scene)
+
+
 def test_a_film_of_one_vertical_has_a_restitution():
     """Its column of zeros has no scatter to weigh it by."""
     frames, _ = film(4, restitution=0.9)
@@ -177,7 +236,9 @@ def test_the_command(tmp_path, capsys):
         "friction_coefficient,restitution",
     ]
     assert main([*command, "--bootstrap", "0", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)["parameters"]
+    content = json.loads(capsys.readouterr().out)
+    assert any(one.startswith("gravity = 9.80665") for one in content["taken"])
+    found = content["parameters"]
     low, high = found["friction_coefficient"]["interval_95"]
     assert low < FRICTION < high
     low, high = found["normal.restitution"]["interval_95"]

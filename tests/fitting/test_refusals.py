@@ -2,6 +2,7 @@
 
 import re
 
+import attrs
 import numpy as np
 import pytest
 
@@ -312,3 +313,10 @@ def test_a_scene_file_needs_no_friction_and_no_velocity(tmp_path):
     found = fit(table(restitution(0.12)), path)
     assert found["friction_coefficient"] == pytest.approx(0.12, abs=1e-6)
     assert fit(table(restitution(0.12)), str(path))["friction_coefficient"] == pytest.approx(0.12)
+
+
+def test_one_angle_alone_is_advised_as_one():
+    """At a friction of 0.01 the ball sticks at the smallest candidate angle alone."""
+    scene = attrs.evolve(BODIES, friction_coefficient=0.01)
+    with pytest.raises(ValueError, match=r"incidence \(degrees\) of about 1 to determine"):
+        fit(table(restitution(0.01, GRAZING), GRAZING), scene, parameters=["stiffness_ratio"])
