@@ -33,6 +33,7 @@ from contactlab_fit.model import DEFAULTS
 from contactlab_fit.options import add_columns, read_impacts
 from contactlab_fit.parameters import RESTITUTION
 from contactlab_fit.printed import describe, further_cautions, ranking, write_residuals
+from contactlab_fit.problem import MANY
 from contactlab_fit.tabulated import LOSSY
 
 #: Name of the exact elastic laws, computed from a table; no installed law has this name.
@@ -67,9 +68,9 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     parser.add_argument(
         "--bootstrap",
         type=int,
-        default=SAMPLES,
         metavar="SAMPLES",
-        help=f"samples of the bootstrap of the first law (default {SAMPLES}; 0 for none)",
+        help=f"samples of the bootstrap of the first law (default {SAMPLES}, of more than {MANY} "
+        "impacts none; 0 for none)",
     )
     parser.add_argument(
         "--flight",
@@ -87,7 +88,8 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Fit and report; the status is 1 if one of several laws could not be fitted."""
-    whole("--bootstrap", arguments.bootstrap, least=0, most=100_000)
+    if arguments.bootstrap is not None:
+        whole("--bootstrap", arguments.bootstrap, least=0, most=100_000)
     for number, name in enumerate(arguments.files, start=1):
         distinct({f"FILE {number}": name, "--csv": arguments.csv, "--figure": arguments.figure})
     data, path = _files(arguments.files, arguments.flight)
@@ -98,6 +100,7 @@ def execute(arguments: argparse.Namespace) -> int:
     else:
         impacts = read_flight(data, columns=dict(arguments.column))
     impacts = as_met(impacts, path)
+    samples = _samples(arguments.bootstrap, len(impacts))
     allow = arguments.allow_code
     file = read_scene(path, entries=impacts.given, defaults=DEFAULTS, allow_code=allow)
     simulations = _simulations(arguments, file)
@@ -118,15 +121,15 @@ def execute(arguments: argparse.Namespace) -> int:
                     progress(done, len(simulations))
                 law = {name: simulations[name]}
                 ranked += rank(impacts, path, law, parameters=own[name], **selection)
-        if arguments.bootstrap:
+        if samples:
             with shared.progress(arguments.progress, "bootstrap") as progress:
-                options = {"bootstrap": arguments.bootstrap, "progress": progress}
+                options: dict[str, Any] = {"bootstrap": samples, "progress": progress}
                 fitted = fit(impacts, path, **reported, **options)
     except KeyboardInterrupt:  # report what is done
         if fitted is None:
             raise
         interrupted = True
-    interrupted |= 0 < fitted.samples < arguments.bootstrap
+    interrupted |= 0 < fitted.samples < samples
     if ranked:
         ranked = in_order([*ranked, Ranked(name=first, fit=fitted)])
     shown = [law for law in ranked if law.fit] or [Ranked(name=first, fit=fitted)]
@@ -138,6 +141,20 @@ def execute(arguments: argparse.Namespace) -> int:
     )
     _report(fitted, ranked, complete=not interrupted, as_json=arguments.json)
     return shared.INTERRUPTED if interrupted else max(saved, _failures(ranked))
+
+
+def _samples(wanted: int | None, impacts: int) -> int:
+    """Return the samples of the bootstrap, and tell if a long table has none by default."""
+    if wanted is not None:
+        return wanted
+    if impacts <= MANY:
+        return SAMPLES
+    print(
+        f"contactlab fit: no bootstrap of more than {MANY} impacts by default, as each sample is "
+        f"a fit; --bootstrap {SAMPLES} makes it",
+        file=sys.stderr,
+    )
+    return 0
 
 
 def _report(fitted: Fit, ranked: list[Ranked], *, complete: bool, as_json: bool) -> None:

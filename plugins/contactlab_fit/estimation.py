@@ -111,6 +111,9 @@ def fit(
     intervals by its square root. Without such a column the error of a quantity is estimated
     from its residuals.
 
+    Where the friction coefficient is neither given nor fitted, the numbers that it would move are
+    not met, and a note names them. ``taken`` of the fit lists what enters it and nobody gave.
+
     An interruption (Ctrl-C) keeps the finished samples of the bootstrap if there are at least a
     hundred; ``samples`` and a note of the fit state their number.
     """

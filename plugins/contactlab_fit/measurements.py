@@ -86,6 +86,7 @@ class Measurements:
             given={name: values[rows] for name, values in self.given.items()},
             measured={name: values[rows] for name, values in measured.items()},
             errors={name: e[rows] for name, e in self.errors.items() if name in measured},
+            thrown={name: values[rows] for name, values in self.thrown.items()},
         )
 
 

@@ -163,6 +163,8 @@ def test_without_an_angle_spins_follow_from_the_moment_about_the_contact():
     found = as_met(read_flight(without_angle(frames)), BODIES)
     np.testing.assert_allclose(found.given["spin"], impacts[:, 0, 2], rtol=1e-8, atol=1e-8)
     assert as_met(found, BODIES) is found or list(as_met(found, BODIES).given) == list(found.given)
+    along = read_flight(without_angle(frames)).only(["rebound_tangential_velocity"])
+    np.testing.assert_array_equal(as_met(along, BODIES).given["spin"], found.given["spin"])
     spun = as_met(read_flight(without_angle(frames)), attrs.evolve(BODIES, spin=3.0))
     np.testing.assert_allclose(spun.given["spin"], found.given["spin"] + 3.0, atol=1e-8)
     assert "before the first bounce" in "".join(found.taken)

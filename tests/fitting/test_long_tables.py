@@ -1,5 +1,6 @@
 """Tables of very many rows, and the tests of residuals whose cost grows as the rows."""
 
+import json
 import math
 
 import attrs
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 
 from contactlab import fit
+from contactlab.cli.main import main
 from contactlab_fit import tabulated
 from contactlab_fit.f_test import chance_of, chances_of_each, log_chance, orthonormal, remaining
 from tests.fitting.impacts import BODIES
@@ -65,3 +67,17 @@ def test_outliers_of_very_many_rows_are_told():
     table = long_table(30_000)
     table["tangential_restitution"][::1500] += 0.5
     assert any("impacts 1, 1501, " in note for note in fit(table, BODIES).notes)
+
+
+@pytest.mark.slow
+def test_the_command_tells_that_it_makes_no_bootstrap_of_a_long_table(tmp_path, capsys):
+    data, bodies = tmp_path / "impacts.csv", tmp_path / "bodies.toml"
+    columns = long_table(20_001)
+    np.savetxt(data, np.transpose([*columns.values()]), header=",".join(columns), comments="",
+               delimiter=",")  # fmt: skip
+    bodies.write_text("[sphere]\nradius = 0.01\nmaterial = 'steel'\n[target]\n"
+                      "kind = 'half-space'\nmaterial = 'steel'\n", encoding="utf-8")  # fmt: skip
+    assert main(["fit", str(data), str(bodies), "--json"]) == 0
+    told = capsys.readouterr()
+    assert "no bootstrap of more than 20000 impacts" in told.err
+    assert json.loads(told.out)["samples"] == 0
