@@ -65,6 +65,7 @@ def test_a_fit_as_plain_numbers():
         "predicted": {"psi2": [0.1, 7.0, -0.7], "rebound_spin": [1.0, 1.0, 3.0]},
         "notes": ["a", "b"],
         "cautions": ["c"],
+        "taken": ["d"],
         "samples": 7,
     }  # fmt: skip
     plain = made(reduced_chi_square=1.5).to_dict()
