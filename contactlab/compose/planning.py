@@ -11,6 +11,7 @@ import numpy as np
 from contactlab.compose.answers import Mask
 from contactlab.compose.composition import Laws
 from contactlab.compose.coupled import WHOLE
+from contactlab.compose.error_cautions import of_errors
 from contactlab.compose.normal_motion import normal_motion, normal_or_failed
 from contactlab.compose.normal_spin_words import with_normal_spin
 from contactlab.compose.solve import ways
@@ -141,6 +142,9 @@ def _words(
         left_out.append(Clause(reason, masks.known))
     with np.errstate(under="ignore"):
         cautions = _cautions(way, scene, motion, masks)
+        if some(masks.marched):
+            error = columns.psi2_error
+            cautions += tuple(of_errors(used, way.scene, error, masks.marched, advice))
     return tuple(computed), tuple(left_out), cautions
 
 

@@ -26,7 +26,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import for_share
+from contactlab.numeric.arrays import chosen, every, for_share
 from contactlab.numeric.checks import count, flag
 from contactlab.numeric.types import Real
 from contactlab_laws.march import together
@@ -141,10 +141,16 @@ class FixedSteps(CoupledIntegrator):
     def errors(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Errors:
         """Return the errors that the tangential law declares for as many steps."""
         if scene.inverse_mass is None:
-            return tangential.errors(scene, normal, self.resolution_for(normal, tangential, scene))
-        assert isinstance(tangential, CausalTangentialLaw)
-        taken = self._taken_together(together.needed_steps(scene, normal, tangential))
-        return tangential.errors(scene, normal, taken)
+            needed = needed_steps(normal, tangential, scene)
+            taken = self._taken(needed)
+        else:
+            assert isinstance(tangential, CausalTangentialLaw)
+            needed = together.needed_steps(scene, normal, tangential)
+            taken = self._taken_together(needed)
+        declared = tangential.errors(scene, normal, taken)
+        if every(followed := np.less_equal(needed, taken) & np.isfinite(taken)):
+            return declared
+        return Errors(*(chosen(followed, each, math.nan) for each in declared))
 
     def _taken_together(self, needed: Real) -> Real:
         """Return the steps of each impact in the approach without friction; infinite if refused."""
