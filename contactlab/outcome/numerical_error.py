@@ -54,7 +54,8 @@ def error_cautions(result: WithPlan) -> list[str]:
     with np.errstate(all="ignore"):
         contradicted = estimate > CONTRADICTS * declared
         unit, width, _ = range_of(result.scene)
-        share: Any = np.fmax(estimate, declared) * np.divide(unit, width)
+        error = np.where(np.isnan(estimate), declared, estimate)  # a bound may be far larger
+        share: Any = error * np.divide(unit, width)
         share = np.where(result.plan.marched, share, 0.0)
     cautions = []
     if contradicted.any():

@@ -74,7 +74,7 @@ def test_table_of_a_nondimensional_scene_claims_no_units(run):
 
 def test_nobody_is_told_to_estimate_what_was_estimated(run):
     """The plan said how to estimate the error, below the estimate."""
-    scene = ("run", "--psi1", "2", "--chi", "1.44", "--tangential", "springs")
+    scene = ("run", "--psi1", "2", "--chi", "1.44", "--tangential", "mindlin_cap")
     for words, advised in ((scene, False), ((*scene, "--no-estimate"), True)):
         out = run(*words).out
         assert ("estimates it" in out) is advised

@@ -15,7 +15,7 @@ from tests.laws.outside_laws import Walton
 from tests.longer import longer
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
-UNDECLARED = ["springs", *longer("annulus"), "mindlin_cap", "linear_spring"]
+UNDECLARED = [*longer("annulus"), "mindlin_cap", "linear_spring"]
 
 
 def test_what_nobody_declared_is_not_a_number():
@@ -102,6 +102,13 @@ def test_discretised_laws_declare_nothing_where_they_march(tangential):
         result = Simulation(tangential=tangential, integrator=integrator).run(scene)
         assert np.array_equal(np.isnan(result.plan.psi2_error), result.plan.marched)
         assert json.loads(json.dumps(result.plan.to_dict()))["psi2_error"][1] is None
+
+
+def test_springs_declare_nothing_where_a_tolerance_is_no_bound():
+    """Under even steps they declare (``tests/laws/test_springs_errors.py``)."""
+    scene = Scene.nondimensional(psi1=[0.0, 1.2, 50.0], chi=1.44)
+    plan = Simulation(tangential="springs", integrator="adaptive").plan(scene)
+    assert np.array_equal(np.isnan(plan.psi2_error), plan.marched)
 
 
 @pytest.mark.parametrize("count", [120, *longer(600)])

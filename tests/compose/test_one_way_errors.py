@@ -37,7 +37,7 @@ def test_the_exact_law_declares_its_errors(name):
 
 def test_in_a_mixed_batch_each_impact_has_its_own_errors():
     plan = EXACT.plan(BATCHES["mixed"])
-    assert np.isnan(plan.psi2_error).tolist() == [False, False, True]
+    assert np.isfinite(plan.psi2_error).all()
     assert np.isnan(plan.restitution_error).tolist() == [False, False, True]
     for place, name in enumerate(ONES):
         alone = EXACT.plan(ONES[name])
