@@ -1,8 +1,8 @@
 """Bounds of the numerical error of springs, as measured on random impacts.
 
 With x = chi + abs(eta), n springs and m steps the error of psi2 is at most 0.46 x/n² of the springs
-and 18 x^1.5/m² of the steps: of 2,000 impacts of spheres and of bodies, in the plane and in space,
-chi to 1,000, beside the exact law or four times finer ones. It falls as the squares of both.
+and 18 x^1.5/m² of the steps: of impacts of spheres and of bodies, in the plane and in space, chi to
+1,000, beside the exact law or four times finer ones. It falls as the squares of both.
 """
 
 from __future__ import annotations
