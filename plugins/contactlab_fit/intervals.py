@@ -147,6 +147,8 @@ def _profile(
             inside = outside
         return inside if outside != bound else bound
 
+    if excess(value) >= 0.0:
+        return value, value
     return end(-1.0, least), end(1.0, most)
 
 
