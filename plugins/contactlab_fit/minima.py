@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab_fit.model import FRICTION
-from contactlab_fit.problem import Problem, fewer, solved, starting
+from contactlab_fit.problem import Problem, fewer, grid, solved, starting
 
 #: Relative and absolute distance below which two searches have reached the same minimum.
 SAME = 1e-3
 #: Frictions that are scanned about a minimum: e_t has the same value on either side of its least
 #: one, and the grid of starts is coarser than their distance. Farther off the grid sees both.
 SCANNED, NEAR = 1.05 ** np.arange(-18.0, 19.0), 0.04
+#: Sum of squares over the least one up to which the data may allow a friction, and the share within
+#: which a profile sees another minimum.
+ALLOWED, BESIDE = 4.0, 0.12
 
 
 def minima(problem: Problem, progress: Callable[[int, int], object] | None = None) -> list[Array]:
@@ -51,6 +54,10 @@ def _further(problem: Problem, about: Array, found: list[Array]) -> list[Array]:
     points[:, place] *= SCANNED
     points = points[(points[:, place] >= low) & (points[:, place] <= high)]
     scales = problem.scales(problem.residuals(about[None]))
+    if not problem.model.tabled and len(names) == 1:
+        points = _allowed(problem, about, points, scales)
+        if not len(points):
+            return []
     squares = np.sum(problem.weighted(points, scales) ** 2, axis=1)
     inner = (squares[1:-1] < squares[:-2]) & (squares[1:-1] <= squares[2:])
     known = np.array([minimum[place] for minimum in found])
@@ -59,3 +66,26 @@ def _further(problem: Problem, about: Array, found: list[Array]) -> list[Array]:
         for start in points[1:-1][inner]
         if np.all(np.abs(start[place] - known) > NEAR * known)
     ]
+
+
+def _allowed(problem: Problem, about: Array, points: Array, scales: Mapping[str, Real]) -> Array:
+    """Return the points up to the last that the data allow, by lines through the grid of starts.
+
+    Laws that are marched take long. Residuals on the grid are known; between its points they are
+    off by no more than lines and curves through them differ, and by that much they may be less.
+    """
+    from scipy.interpolate import PchipInterpolator  # only a fit needs scipy
+
+    starts = grid(problem.model.parameters)
+    at, x = np.log(starts[:, 0]), np.log(points[:, 0])
+    known = problem.weighted(starts, scales)
+    curve = PchipInterpolator(at, known)(np.clip(x, at[0], at[-1]))
+    line = np.stack([np.interp(x, at, row) for row in known.T], axis=-1)
+    least = np.maximum(np.abs(curve) - np.abs(curve - line), 0.0)
+    best = float(np.sum(problem.weighted(about[None], scales) ** 2))
+    near = np.abs(points[:, 0] / about[0] - 1.0) < BESIDE
+    allowed = np.flatnonzero((np.sum(least**2, axis=1) < ALLOWED * best) & ~near)
+    if not allowed.size:
+        return points[:0]
+    middle = len(points) // 2
+    return points[max(min(allowed[0], middle) - 1, 0) : max(allowed[-1], middle) + 2]

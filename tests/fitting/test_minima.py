@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from scipy.special import stdtrit
 
-from contactlab import HalfSpace, Material, Scene, Sphere, fit
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, fit
 from contactlab_fit import tabulated
 from tests.fitting.impacts import BODIES as IMPACTS
 from tests.fitting.impacts import restitution, table
+from tests.longer import longer
 
 STEEL = Material.named("steel")
 BALL = Sphere(0.01, STEEL), HalfSpace(STEEL)
@@ -27,10 +28,12 @@ def measured(friction, angle, noise):
             "tangential_restitution": e_t}  # fmt: skip
 
 
-def told(impacts):
+def told(impacts, simulation=None):
     """Return the intervals of friction that a fit tells, as its answer or in its refusal."""
     try:
-        return [fit(impacts, BODIES).parameters["friction_coefficient"].interval]
+        return [
+            fit(impacts, BODIES, simulation=simulation).parameters["friction_coefficient"].interval
+        ]
     except ValueError as error:
         return [(float(low), float(high)) for _, low, high in TOLD.findall(str(error))]
 
@@ -56,10 +59,11 @@ def test_of_two_hundred_sets_at_one_angle_the_truth_is_told():
     assert sum(not is_told(seed) for seed in range(200)) <= 12
 
 
-def test_both_frictions_are_told_with_their_intervals():
+@pytest.mark.parametrize("laws", [None, *longer({"tangential": "annulus"})])
+def test_both_frictions_are_told_with_their_intervals(laws):
     noise = NOISE * np.random.default_rng(1).standard_normal(8)
     impacts = measured(0.2, 30.0, noise)
-    intervals = told(impacts)
+    intervals = told(impacts, laws and Simulation(**laws))
     assert any(low <= 0.2 <= high for low, high in intervals)
     middles = [0.5 * (low + high) for low, high in intervals]
     assert sorted(middles) == pytest.approx([0.155, 0.2], abs=0.008)
