@@ -16,6 +16,7 @@ from contactlab.compose.target import written_piece
 from contactlab.contracts.status import Status, succeeded
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
+from contactlab.numeric.types import AnyArray
 from contactlab.outcome.chunk_files import (
     chunks_in,
     columns_of,
@@ -155,7 +156,7 @@ def _arrays(
     return arrays, units
 
 
-def _named(arrays: Mapping[str, Any]) -> dict[str, Any]:
+def _named(arrays: Mapping[str, AnyArray]) -> dict[str, AnyArray]:
     """Return columns with statuses by name."""
     return {**arrays, COLUMN_OF_STATUS: np.array(NAMES)[arrays[COLUMN_OF_STATUS]]}
 

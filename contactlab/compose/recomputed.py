@@ -16,14 +16,14 @@ from contactlab.compose.target import ANOTHER
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.types import Array, Mask
+from contactlab.numeric.types import AnyArray, Array, Mask
 from contactlab.outcome.chunk_forms import Chunk
 
 
 class Finished(NamedTuple):
     """What a folder holds of a block: its numbers and statuses by name, and what computed them."""
 
-    numbers: Mapping[str, Any]
+    numbers: Mapping[str, AnyArray]
     computer: str
 
     def take(self, place: slice) -> Finished:
@@ -87,16 +87,17 @@ def _ranges(scene: Scene) -> dict[str, Array]:
     }
 
 
-def numbers_of(piece: Piece) -> dict[str, Any]:
+def numbers_of(piece: Piece) -> dict[str, AnyArray]:
     """Return the numbers of a piece by name, and its statuses."""
     motion = piece.motion
+    numbers = {name: getattr(motion, name) for name in motion.numbers()}
+    numbers |= {name: getattr(piece.columns, name) for name in ("psi2_error", "restitution_error")}
     names = np.array([status.name for status in motion.status])
-    errors = {name: getattr(piece.columns, name) for name in ("psi2_error", "restitution_error")}
-    return {"status": names, **{name: getattr(motion, name) for name in motion.numbers()}, **errors}
+    return {"status": names, **{name: np.asarray(values) for name, values in numbers.items()}}
 
 
 def refuse_other_bits(
-    argument: str, folder: Path, fresh: Piece, found: Mapping[str, Any], kept: Finished
+    argument: str, folder: Path, fresh: Piece, found: Mapping[str, AnyArray], kept: Finished
 ) -> None:
     """Refuse a folder whose numbers of a block are not those ``found`` of the ``fresh`` piece."""
     if not fresh.solved or not (name := _differing(kept.numbers, found, fresh.chunk.size)):
@@ -110,7 +111,7 @@ def refuse_other_bits(
     raise refuse(argument, str(folder), rule, ANOTHER)
 
 
-def _differing(kept: Mapping[str, Any], found: Mapping[str, Any], size: int) -> str:
+def _differing(kept: Mapping[str, AnyArray], found: Mapping[str, AnyArray], size: int) -> str:
     """Return the name of a column with other bits, where impacts succeeded; empty if none has."""
     if (kept["status"] != found["status"]).any():
         return "status"
@@ -126,7 +127,7 @@ def _differing(kept: Mapping[str, Any], found: Mapping[str, Any], size: int) -> 
     return ""
 
 
-def _rows(values: Any, size: int) -> Array:
+def _rows(values: AnyArray, size: int) -> Array:
     """Return a column with a row for each impact; all have the same if it is one number."""
     array = np.asarray(values, dtype=np.float64)
     return np.ascontiguousarray(np.broadcast_to(array, (size, *array.shape[1:])))

@@ -182,7 +182,7 @@ class Batches(Motions):
         spread = taken._checked(normal_speed=np.full(count, taken.normal_speed))
         return spread.numbered(taken.index)
 
-    def _varied_at(self, part: Any) -> tuple[tuple[str, Array], ...]:
+    def _varied_at(self, part: Index) -> tuple[tuple[str, Array], ...]:
         """Return the values of each entry that varies, of the impacts that ``part`` indexes."""
         if not self._axes:
             return tuple((name, batch.locked(values[part])) for name, values in self._varied)
