@@ -187,8 +187,10 @@ class Batches(Motions):
         if not self._axes:
             return tuple((name, batch.locked(values[part])) for name, values in self._varied)
         size = self.shape[0]  # a grid is flat, and too large to be made anew for each part
-        slices = isinstance(part, slice)
-        impacts = np.arange(*part.indices(size)) if slices else np.arange(size)[part]
+        if isinstance(part, slice):
+            impacts = np.arange(*part.indices(size))
+        else:
+            impacts = np.arange(size)[part]
         places = zip(self._axes, np.unravel_index(impacts, self.dimensions), strict=True)
         return tuple((name, batch.locked(values[place])) for (name, values), place in places)
 
