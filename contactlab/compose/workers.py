@@ -36,7 +36,7 @@ def pieces_of(
     if isinstance(executor, type) or not callable(getattr(executor, "submit", None)):
         remedy = "give ProcessPoolExecutor(4), or client.get_executor() of dask"
         raise refuse("executor", executor, "must have a method submit", remedy)
-    if isinstance(executor, ThreadPoolExecutor) and threading.current_thread() in executor._threads:
+    if isinstance(executor, ThreadPoolExecutor) and _runs_in(executor):
         # A sweep inside a thread of its executor would wait for a thread, perhaps its own.
         yield from (solve_chunk(laws, scene, chunk, block) for chunk, scene, block in parts)
         return
@@ -49,6 +49,12 @@ def pieces_of(
                 unsent = itertools.chain(again, unsent)
         finally:
             calls.cancel()
+
+
+def _runs_in(pool: ThreadPoolExecutor) -> bool:
+    """Return whether this is a thread of a pool."""
+    with pool._shutdown_lock:  # a thread runs before the pool, which holds this lock, lists it
+        return threading.current_thread() in pool._threads
 
 
 def _answered(
