@@ -255,7 +255,8 @@ def tell_normal_spin(scene: Scene, *simulations: Simulation | None) -> None:
     from contactlab.compose.normal_spin_words import with_normal_spin  # only for vectors
 
     answered = all(
-        each is not None and "normal_spin" in each.tangential.offers for each in simulations
+        each is not None and "normal_spin" in each.laws.capability.tangential_claims
+        for each in simulations
     )
     _, _, cautions = with_normal_spin(((), (), ()), scene, answered=answered)
     for sentence in cautions:

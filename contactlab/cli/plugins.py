@@ -20,7 +20,7 @@ from typing import Any
 from contactlab.cli.arguments import FAILED, OK, add_progress, finite, print_json, progress
 from contactlab.compose.options import Option, options
 from contactlab.compose.registry import REGISTRY, PluginInfo
-from contactlab.contracts import Integrator, PathTangentialLaw, Scene, TangentialLaw
+from contactlab.contracts import Integrator, Law, PathTangentialLaw, Scene, TangentialLaw
 from contactlab.numeric.checks import POSITIVE, real, refuse
 from contactlab.numeric.names import nearest
 from contactlab.outcome.text_table import WIDTH, table
@@ -173,16 +173,18 @@ def _show(arguments: argparse.Namespace) -> int:
     law = REGISTRY.law_class(arguments.name)
     entry["summary"] = (inspect.getdoc(law) or "").partition("\n")[0]
     if issubclass(law, Integrator):
-        entry["runs"] = ", ".join(sorted(each.__name__ for each in law.needs))
+        runs = [need.__name__ for need in law.needs if isinstance(need, type)]
+        entry["runs"] = ", ".join(sorted(runs))
     if issubclass(law, TangentialLaw):
         entry["is a"] = [way.__name__ for way in WAYS if issubclass(law, way)]
-    made = REGISTRY.create(arguments.name)  # claims may depend on parameters
-    if isinstance(made, PathTangentialLaw):
+    if issubclass(law, PathTangentialLaw):
         scene = Scene.nondimensional(psi1=1.0, chi=1.0)
-        if solver := made.cost(scene, None).solver:
+        if solver := REGISTRY.create(arguments.name).cost(scene, None).solver:
             entry["solver"] = solver
-    needed = {each for each in made.needs if isinstance(each, str)}
-    entry["needs"], entry["offers"] = sorted(needed), sorted(made.offers)
+    entry["needs"] = sorted(need for need in law.needs if isinstance(need, str))
+    entry["offers"] = sorted(law.offers)
+    if law.waives is not Law.waives:
+        entry["waives"] = "some of these words, by options"
     accepted, sources = options(law), references(law)
     if arguments.json:
         details = {"options": [option.to_dict() for option in accepted], "references": sources}

@@ -9,7 +9,7 @@ import attrs
 
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import faults
-from contactlab.contracts.law import Law
+from contactlab.contracts.law import Law, law_kind
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 
@@ -51,7 +51,7 @@ def accept(law: Law, scene: Scene) -> None:
     if not scene.has_units and (options := in_units(law)):
         name, unit = options[0]
         raise refuse(
-            f"{law.kind}: {name}",
+            f"{law_kind(law)}: {name}",
             getattr(law, name),
             f"is in {unit}, and {REGISTRY.short_name(law)} needs a scene with units",
             "give bodies and speeds in SI in place of psi1 and chi",
@@ -61,5 +61,5 @@ def accept(law: Law, scene: Scene) -> None:
     except ValueError:
         raise
     except Exception as error:
-        told = f"{law.kind} = {type(law).__name__}: its accept raised {faults.raised(error)}"
+        told = f"{law_kind(law)} = {type(law).__name__}: its accept raised {faults.raised(error)}"
         raise ValueError(told) from error

@@ -14,7 +14,7 @@ from contactlab.contracts import faults, judges
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status, succeeded
-from contactlab.contracts.tangential import Errors, TangentialLaw, WholeImpactTangentialLaw
+from contactlab.contracts.tangential import Errors, TangentialLaw
 from contactlab.contracts.tangential_motion import Observer, Sample, TangentialMotion
 from contactlab.contracts.whole_impact import WholeImpact
 from contactlab.numeric.arrays import locked
@@ -40,6 +40,7 @@ def answers(
     normal: NormalMotion,
     tangential: TangentialLaw,
     *,
+    always: bool,
     history: bool | str,
     largest_error: Real = math.inf,
 ) -> list[Answered]:
@@ -47,12 +48,11 @@ def answers(
 
     The list is empty if fields are requested, or the history of a batch: tractions and stick/slip
     fields come of a march only, and the impacts of a batch share the time axis of its history. If
-    the law can be marched, an answer without a course is not used for a history, and no answer
-    with an error of psi2 above ``largest_error`` is used.
+    the law does not answer ``always``, an answer without a course is not used for a history, and no
+    answer with an error of psi2 above ``largest_error`` is used.
     """
     scene = normal.scene
     shape = scene.shape
-    always = WholeImpactTangentialLaw in type(tangential).__mro__  # isinstance is slow
     if history == "fields" and not always:
         return []
     if not shape:
@@ -158,10 +158,7 @@ def _checked(answer: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) ->
     LawFaultError
         If it is not.
     """
-    entries: tuple[Any, ...] = answer.slip_velocity_change, answer.friction_work
-    if "normal_spin" in law.offers:
-        entries = (*entries, answer.normal_spin_change)
-    for entry in entries:
+    for entry in (answer.slip_velocity_change, answer.friction_work, answer.normal_spin_change):
         if faults.malformed(entry, shape):
             sentence = faults.sentence(law, f"the answer {shown(entry)} to a whole impact", 1)
             raise faults.LawFaultError(Status.MALFORMED, sentence)

@@ -9,11 +9,11 @@ from typing import Any
 
 import attrs
 
-from contactlab.compose.acceptance import may_refuse
-from contactlab.compose.loading import outdated
+from contactlab.compose.capability import Capability
+from contactlab.compose.law_classes import unfit
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.contracts.integrator import Integrator
-from contactlab.contracts.law import Law
+from contactlab.contracts.law import Law, claims, law_kind, requirements
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
 from contactlab.contracts.path import PathTangentialLaw
 from contactlab.contracts.tangential import (
@@ -57,7 +57,7 @@ STEPS = {SteppedTangentialLaw}
 
 @attrs.frozen
 class Laws:
-    """Three laws that fit together, and the kinds of those that the user ``named``.
+    """Three laws that fit together, the kinds of those that the user ``named``, what they can do.
 
     Iterating yields the laws in the order of their kinds.
     """
@@ -66,11 +66,11 @@ class Laws:
     tangential: TangentialLaw
     integrator: Integrator
     named: frozenset[str] = frozenset(KINDS)
-    #: The laws that may refuse a scene, found once for all runs.
-    choosy: tuple[Law, ...] = attrs.field(init=False, eq=False, repr=False)
+    capability: Capability = attrs.field(init=False, eq=False, repr=False)
 
-    def __attrs_post_init__(self) -> None:
-        object.__setattr__(self, "choosy", tuple(filter(may_refuse, self)))
+    @capability.default
+    def _capability(self) -> Capability:
+        return Capability.of(self.normal, self.tangential, self.integrator)
 
     def __iter__(self) -> Iterator[Law]:
         return iter((self.normal, self.tangential, self.integrator))
@@ -93,13 +93,11 @@ def law(kind: str, value: object, **options: object) -> Any:
     if isinstance(value, str):
         name = full_name(kind, value)
         law_class = REGISTRY.law_class(name)
-        if law_class.kind != kind:
-            raise refuse(
-                kind, value, f"is a law of kind {law_class.kind!r}", f"pass it as {law_class.kind}"
-            )
+        if (own := law_kind(law_class)) != kind:
+            raise refuse(kind, value, f"is a law of kind {own!r}", f"pass it as {own}")
         return REGISTRY.create(name, **options) if options else _with_defaults(name, law_class)
-    if isinstance(value, Law) and value.kind == kind:
-        if (complaint := outdated(type(value))) is not None:
+    if isinstance(value, Law) and law_kind(value) == kind:
+        if (complaint := unfit(type(value))) is not None:
             raise ValueError(f"{kind} = {complaint}")
         return value
     remedy = f"installed: {', '.join(REGISTRY.names(kind))}"
@@ -167,9 +165,9 @@ def _preferred(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> tuple[st
     """Return the preferred law with its name; arguments as in ``preferred``."""
     installed: list[tuple[str, Any]] = []
     which = kind
-    if kind == "tangential" and "elastic_hertz" in before[0].offers:
+    if kind == "tangential" and "elastic_hertz" in claims(before[0]):
         which = "elastic"
-    elif kind == "tangential" and "viscous" in before[0].offers:
+    elif kind == "tangential" and "viscous" in claims(before[0]):
         which = "viscous"
     elif kind == "integrator" and {way for way in WAYS if isinstance(before[-1], way)} == STEPS:
         which = "steps"  # no other integrator is imported
@@ -179,7 +177,7 @@ def _preferred(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> tuple[st
         except ValueError:  # blocked, or not installed
             continue
         if _fits(*before, candidate, *after):
-            if installed and after and "rigid" in candidate.offers:
+            if installed and after and "rigid" in claims(candidate):
                 _refuse_rigid(name, installed, before[0], after[0])
             return name, candidate
         installed.append((name, candidate))
@@ -213,7 +211,7 @@ def _fits(*parts: Law) -> bool:
 
 def misfit(normal: Law, tangential: Any, integrator: Any = None) -> str | None:
     """Return why laws do not fit, with the names of both; None if they fit."""
-    if "elastic_hertz" in normal.offers and not isinstance(normal, ClosedFormNormalLaw):
+    if "elastic_hertz" in claims(normal) and not isinstance(normal, ClosedFormNormalLaw):
         return (
             f"normal = {_name(normal)}: offers 'elastic_hertz', and is no ClosedFormNormalLaw; "
             "derive it from that class, or do not offer the word"
@@ -230,16 +228,17 @@ def misfit(normal: Law, tangential: Any, integrator: Any = None) -> str | None:
 
 def _lacking(law: Law, other: Law) -> str | None:
     """Return what a law needs and another has not, with the names of both; or None."""
-    for need in sorted(law.needs, key=str):
+    kind, others = law_kind(law), law_kind(other)
+    for need in sorted(requirements(law), key=str):
         if isinstance(need, str):
-            if other.kind == "normal" and need not in other.offers:
+            if others == "normal" and need not in claims(other):
                 return (
-                    f"{law.kind} = {_name(law)}: needs {need!r} of the normal law, which "
+                    f"{kind} = {_name(law)}: needs {need!r} of the normal law, which "
                     f"{_name(other)} does not offer"
                 )
-        elif need.kind == other.kind and not isinstance(other, need):
+        elif law_kind(need) == others and not isinstance(other, need):
             return (
-                f"{law.kind} = {_name(law)}: runs a {need.__name__}, and {other.kind} = "
+                f"{kind} = {_name(law)}: runs a {need.__name__}, and {others} = "
                 f"{_name(other)} is not one"
             )
     return None
@@ -301,4 +300,4 @@ def versions(*laws: Law) -> dict[str, str]:
 
 @lru_cache(maxsize=128)
 def _versions(*classes: type[Law]) -> dict[str, str]:
-    return {law_class.kind: REGISTRY.describe(law_class) for law_class in classes}
+    return {law_kind(law_class): REGISTRY.describe(law_class) for law_class in classes}

@@ -13,16 +13,10 @@ from contactlab.compose.normal_motion import normal_or_failed
 from contactlab.compose.solved_motion import FailedMotion
 from contactlab.compose.way import ONE_BY_ONE, Masks, Prepared, Way, ask, halves
 from contactlab.contracts import faults, judges
-from contactlab.contracts.law import derived
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
-from contactlab.contracts.tangential import (
-    CoupledTangentialLaw,
-    Errors,
-    TangentialLaw,
-    shares_loss,
-)
+from contactlab.contracts.tangential import Errors, TangentialLaw
 from contactlab.contracts.tangential_motion import Observer
 from contactlab.impact.cautions import OUTSIDE
 from contactlab.impact.scene import Scene
@@ -71,28 +65,28 @@ class Coupled(Way):
     def prepare(self, history: bool | str) -> Prepared:
         """Return the approach without friction and columns of the plan, or raise LawFaultError."""
         scene, laws = self.scene, self.laws
-        if history and derived(laws.tangential, CoupledTangentialLaw):
+        if history and laws.capability.coupled is not None:
             self.refuse_history(history)
-        normal = normal_or_failed(laws.normal, scene.central)
+        normal = normal_or_failed(laws, scene.central)
         with faults.blaming(laws.tangential):
             bound = judges.books_bound_of(laws.tangential, normal.scene)
             return Prepared(normal, [], self._columns(normal), bound)
 
     def _columns(self, normal: NormalMotion) -> PlanColumns:
         """Return the columns of the plan: who answers, and the declared errors."""
-        scene, law, integrator = self.scene, self.laws.tangential, self.laws.integrator
-        whole = derived(law, CoupledTangentialLaw)
-        code = chosen(separated(normal), 0 if whole else MARCHED, ENDLESS)
+        scene, laws = self.scene, self.laws
+        law, integrator = laws.capability.coupled, laws.integrator
+        code = chosen(separated(normal), MARCHED if law is None else 0, ENDLESS)
         errors: object
         if type(normal) is FailedMotion:  # no law is asked about an approach that is not known
             errors = Errors()
-        elif whole:
-            errors = law.errors(scene, normal, np.inf, integrator.accuracy)
+        elif law is None:
+            errors = integrator.errors(scene, normal, laws.tangential)
         else:
-            errors = integrator.errors(normal, law, scene)
-        judged = judges.judge_errors(law, errors, scene.shape)
+            errors = law.errors(scene, normal, np.inf, integrator.accuracy)
+        judged = judges.judge_errors(laws.tangential, errors, scene.shape)
         psi2, restitution = (spread(error, scene.shape) for error in judged)
-        return PlanColumns(code, psi2, (WHOLE,) if whole else (), restitution)
+        return PlanColumns(code, psi2, () if law is None else (WHOLE,), restitution)
 
     def solve(self, prepared: Prepared, recorder: Recorder | None) -> Motion:
         """Return the motion, of a batch with the impacts solved again that failed beside others."""
@@ -106,14 +100,16 @@ class Coupled(Way):
 
     def _answered(self, normal: NormalMotion, observer: Observer | None) -> Motion:
         """Return the motion that law or integrator answers, or raise LawFaultError."""
-        scene, law, integrator = self.scene, self.laws.tangential, self.laws.integrator
-        whole = derived(law, CoupledTangentialLaw)
-        blamed: Any = law if whole else integrator
+        scene, laws, able = self.scene, self.laws, self.laws.capability
+        blamed = laws.integrator if able.coupled is None else able.coupled
         with faults.blaming(blamed):
-            if whole:
-                answer = blamed.solve_coupled(scene, normal, integrator.accuracy, observer)
-            else:
-                answer = blamed.integrate_coupled(normal, law, scene, observer)
+            if able.coupled is not None:
+                accuracy = laws.integrator.accuracy
+                answer = able.coupled.solve_coupled(scene, normal, accuracy, observer)
+            else:  # other laws are stood in for
+                assert able.marcher is not None
+                assert able.causal is not None
+                answer = able.marcher.integrate_coupled(scene, normal, able.causal, observer)
             moved = check_motion(answer, scene.shape, scene.slip_axes)
             if moved.normal is None and np.any(np.asarray(moved.status) == Status.SUCCESS):
                 told = "the answer has not the ends of its normal motion"
@@ -210,7 +206,7 @@ class Coupled(Way):
     def cautions_of_laws(self, scene: Scene, normal: NormalMotion, known: Mask) -> list[str]:
         """Return what the laws say, and what one that shares the loss adds of the smaller slip."""
         said, law = super().cautions_of_laws(scene, normal, known), self.laws.tangential
-        if shares_loss(law, self.laws.normal):
+        if self.laws.capability.shares_loss:
             grip = self._gripping if every(known) else self._gripping.take(known)
             usual = TangentialLaw.cautions(law, grip, normal)
             said += [text for text in ask(law, law.cautions, grip, normal) if text not in usual]
@@ -222,15 +218,15 @@ class Coupled(Way):
 
     def own_cautions(self, of_laws: bool) -> list[str]:
         """Return a sentence for each doubt that only such impacts raise."""
-        scene, law = self.scene, self.laws.tangential
+        scene, able = self.scene, self.laws.capability
         said = [OF_SPHERES] if of_laws else []
-        if not scene.planar and "partial_slip" in law.offers:
+        if not scene.planar and "partial_slip" in able.tangential_claims:
             said.append(
                 "springs in space: abs(q) <= mu p holds for each spring, not at every point; psi2 "
                 "moves by less than 0.01 in four of five random impacts, by up to 0.1 where the "
                 "slip turns most (model)"
             )
-        return said if derived(law, CoupledTangentialLaw) else said + _near_singular(scene)
+        return said + _near_singular(scene) if able.coupled is None else said
 
 
 def _near_singular(scene: Scene) -> list[str]:

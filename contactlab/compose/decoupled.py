@@ -13,7 +13,6 @@ from contactlab.compose.normal_motion import normal_or_failed
 from contactlab.compose.way import ONE_BY_ONE, Prepared, Way, halves
 from contactlab.contracts import faults, judges
 from contactlab.contracts.motion import NormalMotion
-from contactlab.contracts.normal import ClosedFormNormalLaw
 from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.status import Status, succeeded
 from contactlab.contracts.tangential_motion import Observer, TangentialMotion
@@ -51,7 +50,7 @@ class Decoupled(Way):
 
     def how(self) -> str:
         """Return words on how the normal motion is found."""
-        if isinstance(self.laws.normal, ClosedFormNormalLaw):
+        if self.laws.capability.closed is not None:
             return "in closed form"
         if self.laws.normal.unfollowed_rate(self.scene) is not None:
             return "by its rebound alone, as no step can follow it"
@@ -60,11 +59,14 @@ class Decoupled(Way):
     def prepare(self, history: bool | str) -> Prepared:
         """Return normal motion, answers and columns of the plan, or raise LawFaultError."""
         scene, laws = self.scene, self.laws
-        normal = normal_or_failed(laws.normal, scene)
+        normal = normal_or_failed(laws, scene)
         try:
             size, accuracy = psi_magnitude(scene), laws.integrator.accuracy
             most = math.inf if accuracy is None else accuracy * (1.0 + ROUNDING) * size
-            answered = answers(normal, laws.tangential, history=history, largest_error=most)
+            always = laws.capability.whole is not None
+            answered = answers(
+                normal, laws.tangential, always=always, history=history, largest_error=most
+            )
             bound = judges.books_bound_of(laws.tangential, scene)
             return Prepared(normal, answered, self._columns(normal, answered, size), bound)
         except BaseException as error:
@@ -121,7 +123,7 @@ class Decoupled(Way):
             error = error + np.where(one.where, one.answer.psi2_error, 0.0)
         if some(marched):
             with np.errstate(all="ignore"):
-                errors = laws.integrator.errors(normal, laws.tangential, scene)
+                errors = laws.integrator.errors(scene, normal, laws.tangential)
                 declared = judges.judge_errors(laws.tangential, errors, scene.shape).psi2
                 if math.isnan(normal.accuracy):
                     declared = math.nan  # no better known than the motion that it follows
@@ -163,7 +165,7 @@ class Decoupled(Way):
             return TangentialMotion.joined([part(0)], shape)
         try:
             with np.errstate(under="ignore"):  # harmless, even where a user has numpy raise
-                given = laws.integrator.integrate(normal, laws.tangential, normal.scene, observer)
+                given = laws.integrator.integrate(normal.scene, normal, laws.tangential, observer)
             motion = check_motion(given, shape)
         except KeyboardInterrupt:
             raise

@@ -11,7 +11,7 @@ import numpy as np
 from contactlab.compose.composition import Laws
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
-from contactlab.contracts.law import Law
+from contactlab.contracts.law import Law, law_kind
 from contactlab.contracts.motion import NormalMotion
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, some, spread
@@ -38,7 +38,7 @@ def of_errors(laws: Laws, scene: Scene, error: Real, marched: Mask, advice: str)
         part = scene if every(large) else scene.take(large)
         text = f"numerical error of psi2: up to {{:.2g}}, declared; {_remedy(laws, part)}"
         clauses.append(Clause(text, large, (spread(error, scene.shape),)))
-    if advice and "partial_slip" in laws.tangential.offers and np.isnan(error).any():
+    if advice and "partial_slip" in laws.capability.tangential_claims and np.isnan(error).any():
         size = spread(scene.largest_chi + scene.size_of(np.asarray(scene.eta)), scene.shape)
         if some(unknown := np.asarray(marched & np.isnan(error) & (size >= LARGE_CHI))):
             text = f"numerical error of psi2: not declared, chi + abs(eta) up to {{:.3g}}{advice}"
@@ -66,7 +66,7 @@ def _remedy(laws: Laws, scene: Scene) -> str:
 
 def _errors(laws: Laws, normal: NormalMotion, scene: Scene) -> tuple[Array, Array]:
     """Return the declared errors, and the part of them that steps do not change."""
-    all_of = laws.integrator.errors(normal, laws.tangential, scene).psi2
+    all_of = laws.integrator.errors(scene, normal, laws.tangential).psi2
     own = laws.tangential.errors(scene, normal, math.inf).psi2
     return np.asarray(all_of), np.nan_to_num(own)
 
@@ -85,7 +85,7 @@ def _finer(law: Law, errors: Array) -> Law:
 
 def _resolution(law: Law) -> str:
     """Return the name of a law, with its resolution."""
-    name = f"{law.kind}.{REGISTRY.short_name(law)}"
+    name = f"{law_kind(law)}.{REGISTRY.short_name(law)}"
     if law.resolution is None:
         return name
     return f"{name} with {law.resolution}={getattr(law, law.resolution)}"

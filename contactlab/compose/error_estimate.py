@@ -86,8 +86,8 @@ def _fill(
 
 def _resolution(laws: Laws, scene: Scene) -> Any:
     """Return the resolution of the integrator for each impact; 0 if it has none."""
-    normal = normal_or_failed(laws.normal, scene.central)
-    resolution = laws.integrator.resolution_for(normal, laws.tangential, scene)
+    normal = normal_or_failed(laws, scene.central)
+    resolution = laws.integrator.resolution_for(scene, normal, laws.tangential)
     return np.broadcast_to(resolution, scene.shape)
 
 

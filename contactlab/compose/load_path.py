@@ -15,6 +15,7 @@ from contactlab.compose.acceptance import accept
 from contactlab.compose.path_steps import Followed, Points, followed
 from contactlab.compose.unfollowed import refusal
 from contactlab.contracts import faults
+from contactlab.contracts.law import claims
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.restitution import LEAST_RESTITUTION
 from contactlab.contracts.tangential import SteppedTangentialLaw, TangentialLaw
@@ -90,12 +91,12 @@ class LoadPath(Answer):
     def cautions(self) -> list[str]:
         """Doubts about the model: of the friction law on such paths, and of the bodies."""
         deepest = float(np.nanmax(self.approach, initial=0.0))
-        round_ = [law for law in (self.normal, self.tangential) if "elliptic" not in law.offers]
+        round_ = [law for law in (self.normal, self.tangential) if "elliptic" not in claims(law)]
         return [
             *self.tangential.path_cautions(),
             *of_taken(self.normal, self.tangential),
             *(text for law in round_ for text in of_ellipse(self.scene, type(law).__name__)),
-            *path_cautions(self.scene, deepest, plastic="plastic" in self.normal.offers),
+            *path_cautions(self.scene, deepest, plastic="plastic" in claims(self.normal)),
         ]
 
     def __repr__(self) -> str:

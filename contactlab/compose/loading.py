@@ -13,8 +13,9 @@ from typing import Any, TypeGuard
 
 import numpy as np
 
+from contactlab.compose.law_classes import unfit
 from contactlab.compose.law_files import checksum, is_users
-from contactlab.contracts.law import API_VERSION, Law
+from contactlab.contracts.law import Law, law_kind
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
 from contactlab.outcome.files import stamp
@@ -82,7 +83,7 @@ def law_at(place: str) -> type[Law]:
         remedy = f"{nearest(title, laws)}{where} has {', '.join(laws) or 'no law'}"
         rule = f"{title} is no law" if title else "the class is missing"
         raise refuse("name", place, rule, remedy)
-    return checked(law, law.kind, repr(place))
+    return checked(law, law_kind(law), repr(place))
 
 
 def _module(path: str) -> ModuleType:
@@ -105,7 +106,7 @@ def _module(path: str) -> ModuleType:
     if other := _mistaken(module, content, folder):
         raise ImportError(f"it imports {other}, not the file beside it; rename one of the two")
     for title, law in _laws(module).items():
-        own = f"{law.kind}.{Path(path).name}:{title}"
+        own = f"{law_kind(law)}.{Path(path).name}:{title}"
         IN_FILES[law] = PluginInfo(own, FILE, checksum(content), path, False)
         copyreg.pickle(law, _reduced)
     LOADED[path] = now, module
@@ -139,7 +140,7 @@ def _laws(module: ModuleType) -> dict[str, type[Law]]:
 
 def _is_law(value: object) -> TypeGuard[type[Law]]:
     """Return True for the class of a law of one of the three kinds."""
-    return isinstance(value, type) and issubclass(value, Law) and hasattr(value, "kind")
+    return isinstance(value, type) and issubclass(value, Law) and hasattr(value, "_kind")
 
 
 def _reduced(law: Law) -> tuple[Any, ...]:
@@ -157,25 +158,14 @@ def checked(law: object, kind: str, source: str) -> type[Law]:
     """Return ``law``, or raise PluginError unless it is a law's class of right kind and version."""
     if not _is_law(law):
         raise PluginError(f"{source} returned {law!r}, which is not the class of a law")
-    if law.kind != kind:
+    if (own := law_kind(law)) != kind:
         raise PluginError(
-            f"{source} returned {law.__name__}, a {law.kind} law; an entry point names "
+            f"{source} returned {law.__name__}, a {own} law; an entry point names "
             "a class of its kind, or a module whose contactlab_law returns one"
         )
-    if (complaint := outdated(law)) is not None:
+    if (complaint := unfit(law)) is not None:
         raise PluginError(f"{source}: {complaint}")
     if law.__abstractmethods__:
         missing = ", ".join(sorted(law.__abstractmethods__))
         raise PluginError(f"{source}: {law.__name__} does not define {missing}")
     return law
-
-
-def outdated(law: type[Law]) -> str | None:
-    """Return a complaint on the version of the contracts that a law was written for, or None."""
-    version = getattr(law, "api_version", None)
-    if version == API_VERSION:
-        return None
-    return (
-        f"{law.__name__}.api_version is {version!r}, contactlab has {API_VERSION}; if the law "
-        f"keeps to these contracts, write api_version: ClassVar[int] = {API_VERSION} in its class"
-    )

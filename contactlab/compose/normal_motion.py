@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -17,6 +17,7 @@ from contactlab.compose.solved_motion import (
     Units,
 )
 from contactlab.contracts import faults
+from contactlab.contracts.law import claims
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
 from contactlab.contracts.status import Status
@@ -25,28 +26,47 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every
 from contactlab.numeric.checks import shown
 
+if TYPE_CHECKING:
+    from contactlab.compose.composition import Laws
+
 
 def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
     """Return the motion from first touch to separation, or raise LawFaultError for a bad law.
 
     Where no step can follow it, the motion is that of the ends alone.
     """
-    if ClosedFormNormalLaw in type(law).__mro__:  # isinstance of an abstract class is slow
-        try:
-            closed: Any = law
-            motion = closed.motion(scene)
-            if NormalMotion not in type(motion).__mro__:  # isinstance of an abstract class is slow
-                raise TypeError(f"motion returned {shown(motion)}, which is no NormalMotion")
-            if motion.scene is not scene:
-                raise ValueError("motion returned the motion of another scene")
-        except BaseException as error:
-            faults.blame(law, error)
-            raise
-        found: NormalMotion = motion
-        return found
+    closed = law if isinstance(law, ClosedFormNormalLaw) else None
+    return _closed(closed, scene) if closed is not None else _open(law, scene)
+
+
+def normal_or_failed(laws: Laws, scene: Scene) -> NormalMotion:
+    """Return the normal motion of ``scene``; all its values are NaN if the law fails."""
+    closed = laws.capability.closed
+    try:
+        return _closed(closed, scene) if closed is not None else _open(laws.normal, scene)
+    except faults.LawFaultError as fault:
+        return FailedMotion(laws.normal, scene, fault.status, fault.detail)
+
+
+def _closed(law: ClosedFormNormalLaw, scene: Scene) -> NormalMotion:
+    """Return the motion in closed form."""
+    try:
+        motion = law.motion(scene)
+        if not isinstance(motion, NormalMotion):
+            raise TypeError(f"motion returned {shown(motion)}, which is no NormalMotion")
+        if motion.scene is not scene:
+            raise ValueError("motion returned the motion of another scene")
+    except BaseException as error:
+        faults.blame(law, error)
+        raise
+    return motion
+
+
+def _open(law: NormalLaw, scene: Scene) -> NormalMotion:
+    """Return the motion of a law that returns forces."""
     if (rate := law.unfollowed_rate(scene)) is not None and every(np.isfinite(rate)):
         return UnfollowedMotion(law, scene, rate)
-    if "similar" in law.offers:
+    if "similar" in claims(law):
         one = Scene.nondimensional(psi1=0.0, chi=1.0)
         alone = _common(law, one)
         if alone is not None and alone.status[0] is Status.SUCCESS:
@@ -56,14 +76,6 @@ def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
         return SolvedMotion(law, scene, table)
     with np.errstate(all="ignore"):
         return _solved(law, scene)
-
-
-def normal_or_failed(law: NormalLaw, scene: Scene) -> NormalMotion:
-    """Return the normal motion of ``scene``; all its values are NaN if the law fails."""
-    try:
-        return normal_motion(law, scene)
-    except faults.LawFaultError as fault:
-        return FailedMotion(law, scene, fault.status, fault.detail)
 
 
 def _solved(law: NormalLaw, scene: Scene) -> SolvedMotion:

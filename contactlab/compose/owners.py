@@ -8,7 +8,7 @@ from inspect import signature
 
 from contactlab.compose.composition import EXACT, PREFERRED, RESTITUTION
 from contactlab.compose.registry import REGISTRY, PluginError
-from contactlab.contracts.law import Law
+from contactlab.contracts.law import Law, law_kind
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
@@ -74,7 +74,7 @@ def with_restitution(law: Law, restitution: object) -> str:
     """Return how a user makes a law with a restitution: ``law``, or that which takes its place."""
     name = FIRST[0]
     if takes_restitution(type(law)):
-        name = full_name(law.kind, REGISTRY.short_name(law))
+        name = full_name(law_kind(law), REGISTRY.short_name(law))
         try:
             known = REGISTRY.law_class(name) is type(law)
         except ValueError:  # a class that nobody installed

@@ -16,11 +16,10 @@ from contactlab.compose.normal_motion import normal_motion, normal_or_failed
 from contactlab.compose.normal_spin_words import with_normal_spin
 from contactlab.compose.solve import ways
 from contactlab.compose.way import Masks, Way, ask
+from contactlab.contracts.law import claims
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
-from contactlab.contracts.path import PathTangentialLaw
 from contactlab.contracts.status import Status
-from contactlab.contracts.tangential import shares_loss
 from contactlab.impact.cautions import (
     of_ellipse,
     rigid_bodies,
@@ -78,7 +77,7 @@ def plan_of(
 
     def words() -> Words:
         answered = ~columns.marched & (
-            "normal_spin" in laws.tangential.offers
+            "normal_spin" in laws.capability.tangential_claims
         )  # no march takes spin
         return with_normal_spin(of_impacts(), scene, answered=answered)
 
@@ -122,8 +121,8 @@ def _words(
         text = f"tangential motion: {used.integrator!r} over {used.tangential!r}"
         computed.append(Clause(text, masks.marched, code=TANGENTIAL_MOTION))
     alone = way.one_by_one(masks)
-    if scene.shape and some(alone) and isinstance(used.tangential, PathTangentialLaw):
-        cost = used.tangential.cost(way.scene.central, used.integrator.accuracy)
+    if scene.shape and some(alone) and (path := used.capability.path) is not None:
+        cost = path.cost(way.scene.central, used.integrator.accuracy)
         if cost.one_by_one:
             computed.append(Clause(f"run time: impacts one by one, by {cost.solver}", alone))
     computed += way.remarks(masks)
@@ -136,7 +135,7 @@ def _words(
         left_out.append(Clause(f"loss in shear: {name} has none beside this law", masks.known))
     left_out += way.left_out(masks)
     words, unknown, pressure = yield_unknown(scene)
-    if words and "plastic" not in used.normal.offers:
+    if words and "plastic" not in used.capability.normal_claims:
         left_out.append(Clause(words, masks.known & unknown, (pressure,)))
     if reason := _no_history(asked_for.history, columns, masks.marched):
         left_out.append(Clause(reason, masks.known))
@@ -150,10 +149,10 @@ def _words(
 
 def _loses_in_pressure_alone(way: Way) -> bool:
     """Return whether the normal law is viscous, and the tangential law does not share its loss."""
-    normal, tangential = way.laws.normal, way.laws.tangential
-    if "viscous" not in normal.offers or "partial_slip" not in tangential.offers:
+    able = way.laws.capability
+    if "viscous" not in able.normal_claims or "partial_slip" not in able.tangential_claims:
         return False
-    return not shares_loss(tangential, normal) and way.scene_of_cautions.rubs
+    return not able.shares_loss and way.scene_of_cautions.rubs
 
 
 def _in_place(laws: Laws, used: Laws) -> str:
@@ -181,16 +180,16 @@ def _cautions(way: Way, scene: Scene, motion: Motion | None, masks: Masks) -> Cl
     of_laws: list[str] = []
     moved = way.motion_of_cautions(motion)
     if some(masks.ended):
-        normal = _motion_of(laws.normal, central, moved, known)
+        normal = _motion_of(laws, central, moved, known)
         of_laws += way.cautions_of_laws(whole, normal, known)
         said += way.cautions_of_contact(whole, normal)
     if some(masks.marched):
         marched = part if every(masks.marched) else part.take(masks.marched)
-        normal = _motion_of(laws.normal, central, moved, masks.marched)
+        normal = _motion_of(laws, central, moved, masks.marched)
         remarks = laws.integrator.cautions
-        of_laws += ask(laws.integrator, remarks, normal, laws.tangential, marched)
+        of_laws += ask(laws.integrator, remarks, marched, normal, laws.tangential)
     for law in (laws.normal, laws.tangential):
-        if "elliptic" not in law.offers:
+        if "elliptic" not in claims(law):
             said += of_ellipse(whole, type(law).__name__)
     own = [text for text in dict.fromkeys(of_laws) if text not in said]
     said += [*own, *way.own_cautions(bool(own)), *of_taken(way.laws.normal, way.laws.tangential)]
@@ -206,12 +205,14 @@ def _cautions(way: Way, scene: Scene, motion: Motion | None, masks: Masks) -> Cl
     return (*clauses, *(Clause(text, np.ones(scene.shape, dtype=bool)) for text in vectors))
 
 
-def _motion_of(law: NormalLaw, scene: Scene, motion: Motion | None, where: Mask) -> Any:
+def _motion_of(laws: Laws, scene: Scene, motion: Motion | None, where: Mask) -> Any:
     """Return the normal motion of some impacts: by its ends after a run, else made now."""
     part = scene if every(where) else scene.take(where)
     if motion is None:
-        return normal_or_failed(law, part)
-    return _AfterRun(law, part, motion if every(where) else taken(motion, scene.shape, where))
+        return normal_or_failed(laws, part)
+    return _AfterRun(
+        laws.normal, part, motion if every(where) else taken(motion, scene.shape, where)
+    )
 
 
 def _books(laws: Laws, scene: Scene, motion: Motion) -> list[Clause]:
@@ -236,7 +237,7 @@ class _AfterRun:
 
     def __init__(self, law: NormalLaw, scene: Scene, motion: Motion) -> None:
         self.law, self.scene, self._motion = law, scene, motion
-        self.offers = law.offers
+        self.claims = claims(law)
 
     def __getattr__(self, name: str) -> Any:
         """Return an entry of the motion, or of the normal motion made again."""

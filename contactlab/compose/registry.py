@@ -8,7 +8,7 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 from contactlab.compose.loading import IN_FILES, checked, law_at, law_class
-from contactlab.contracts.law import Law
+from contactlab.contracts.law import Law, law_kind
 from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import nearest
 from contactlab.registration.hooks import PluginError
@@ -103,7 +103,9 @@ class Registry:
         """
         if is_place(name):
             found = law_at(name)
-            info = PluginInfo(f"{found.kind}.{name}", "not installed", "", found.__module__, False)
+            info = PluginInfo(
+                f"{law_kind(found)}.{name}", "not installed", "", found.__module__, False
+            )
             return IN_FILES.get(found, info)
         distribution, plain = parted(name)
         installed = self.installed()
@@ -165,7 +167,7 @@ class Registry:
             if required and option not in options:
                 raise ValueError(
                     f"{name}: {option} must be given; in Python create({name!r}, {option}=...), "
-                    f"on the command line --set {law.kind}.{option}=..."
+                    f"on the command line --set {law_kind(law)}.{option}=..."
                 )
         try:
             return law(**options)

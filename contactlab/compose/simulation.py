@@ -328,7 +328,7 @@ class Simulation:
             If ``scene`` is not a Scene, or the law cannot run it.
         """
         accept(self.normal, _scene(scene).central)
-        return normal_or_failed(self.normal, scene.central)
+        return normal_or_failed(self.laws, scene.central)
 
 
 def _result(

@@ -40,7 +40,7 @@ def accept_scene(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]
     found = ways(laws, scene, as_one=as_one)
     for way in found:
         _, part, used = way
-        for law in used.choosy:
+        for law in used.capability.refusing:
             accept(law, part.central)
         refuse_march(way, history=as_one)
     return found

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Any
 
 from contactlab.compose.composition import RIGID, TOGETHER, Laws, misfit
-from contactlab.contracts.integrator import CoupledIntegrator
-from contactlab.contracts.law import Law, derived
-from contactlab.contracts.tangential import CausalTangentialLaw, CoupledTangentialLaw
+from contactlab.contracts.law import Law
 from contactlab.impact.scene import Scene
 from contactlab.registration.names import KINDS
 
@@ -39,17 +36,16 @@ def coupled(laws: Laws, part: Scene) -> Laws:
 
 def _no_answer(laws: Laws, part: Scene) -> str | None:
     """Return why laws have no answer where friction changes the approach; None if they have one."""
-    tangential: Any = laws.tangential
-    integrator, turns = laws.integrator, not part.planar
-    name, reason = _name(tangential), None
-    if turns and "vectors" not in tangential.offers:
+    able, turns = laws.capability, not part.planar
+    name, reason = _name(laws.tangential), None
+    if turns and "vectors" not in able.tangential_claims:
         reason = "it follows slip along one line"
-    elif derived(tangential, CoupledTangentialLaw):
+    elif able.coupled is not None:
         return None
-    elif not derived(tangential, CausalTangentialLaw):
+    elif able.causal is None:
         reason = "it needs the normal motion before the march"
-    elif not derived(integrator, CoupledIntegrator):
-        name, reason = _name(integrator), "it follows a normal motion that is known before"
+    elif able.marcher is None:
+        name, reason = _name(laws.integrator), "it follows a normal motion that is known before"
     if reason is None:
         return None
     where = "and slip turns" if turns else "and slip keeps to a line"
@@ -71,7 +67,7 @@ def _fitting(laws: Laws, kinds: Iterable[str]) -> Iterator[tuple[dict[str, str],
 
 def _rigid_in_silence(laws: Laws) -> bool:
     """Return whether nobody named rigid theory, and an elastic law runs beside the normal law."""
-    if "tangential" in laws.named or "rigid" not in laws.tangential.offers:
+    if "tangential" in laws.named or "rigid" not in laws.capability.tangential_claims:
         return False
     return next(_fitting(laws, KINDS), None) is not None
 

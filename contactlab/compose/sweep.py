@@ -9,16 +9,12 @@ from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import AbstractContextManager
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from contactlab.compose.composition import Laws
 from contactlab.compose.pieces import Part, Piece, unsolved
 from contactlab.compose.solve import solve_chunk
-from contactlab.contracts.law import derived
-from contactlab.contracts.normal import ClosedFormNormalLaw
-from contactlab.contracts.path import PathTangentialLaw
 from contactlab.contracts.status import Status
-from contactlab.contracts.tangential import WholeImpactTangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse, whole
 from contactlab.outcome.chunk_forms import Chunk
@@ -41,12 +37,11 @@ def block_for(laws: Laws, scene: Scene) -> int:
     # The last bits of an answer may depend on the impacts beside it: on the iterations of an array
     # solver, and on whether the processor uses scalar or vector arithmetic. So the size of a block
     # depends on the laws alone.
-    law: Any = laws.tangential
-    if derived(law, PathTangentialLaw):
-        block: int = law.cost(scene, laws.integrator.accuracy).block
-        return block
-    closed = derived(laws.normal, ClosedFormNormalLaw)
-    return WHOLE_IMPACTS if closed and derived(law, WholeImpactTangentialLaw) else MARCHED
+    able = laws.capability
+    if able.path is not None:
+        return able.path.cost(scene, laws.integrator.accuracy).block
+    known = able.closed is not None and able.whole is not None
+    return WHOLE_IMPACTS if known else MARCHED
 
 
 def solve_parts(

@@ -7,7 +7,7 @@ options (``quantity``, ``count``, ``choice``, ``flag``, ``restitution``), status
 from contactlab.contracts import faults, judges
 from contactlab.contracts.contact import NormalContact, without_tension
 from contactlab.contracts.integrator import CoupledIntegrator, Integrator
-from contactlab.contracts.law import API_VERSION, Law
+from contactlab.contracts.law import API_VERSION, Law, claims
 from contactlab.contracts.motion import (
     ClosedFormMotion,
     NormalMotion,
@@ -93,6 +93,7 @@ __all__ = [
     "WholeImpact",
     "WholeImpactTangentialLaw",
     "choice",
+    "claims",
     "count",
     "faults",
     "flag",

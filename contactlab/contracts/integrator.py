@@ -39,19 +39,19 @@ class Integrator(Law, kind="integrator"):
         """Controlled error of psi2 over max(1, abs(psi1)); None if no error is controlled."""
         return None
 
-    def resolution_for(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
+    def resolution_for(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Real:
         """Return the resolution used for each impact, 0 if there is none; by default the option's.
 
         Errors are estimated by refining this value.
         """
         return float(getattr(self, self.resolution)) if self.resolution else 0.0
 
-    def errors(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Errors:
+    def errors(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Errors:
         """Return declared bounds of the numerical errors; NaN, the default: not declared."""
         return Errors()
 
     def cautions(
-        self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene
+        self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw
     ) -> tuple[str, ...]:
         """Return one sentence for each doubt about the resolution of these impacts."""
         return ()
@@ -59,9 +59,9 @@ class Integrator(Law, kind="integrator"):
     @abstractmethod
     def integrate(
         self,
+        scene: Scene,
         normal: NormalMotion,
         tangential: TangentialLaw,
-        scene: Scene,
         observer: Observer | None = None,
     ) -> TangentialMotion:
         """Return the tangential motion from first touch to separation.
@@ -79,9 +79,9 @@ class CoupledIntegrator(Integrator):
     @abstractmethod
     def integrate_coupled(
         self,
+        scene: Scene,
         normal: NormalMotion,
         tangential: TangentialLaw,
-        scene: Scene,
         observer: Observer | None = None,
     ) -> TangentialMotion:
         """Return the motion of impacts in which friction changes the approach.

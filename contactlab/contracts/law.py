@@ -10,11 +10,7 @@ from contactlab.impact.scene import Scene
 
 #: Version of the contracts in this package. A plug-in states the version it was written for.
 API_VERSION = 2
-
-
-def derived(law: Law, contract: Any) -> bool:
-    """Return whether a law has a contract; ``isinstance`` of an abstract class is slow."""
-    return contract in type(law).__mro__
+NO_WORDS: frozenset[str] = frozenset()
 
 
 class Law(ABC):
@@ -27,7 +23,8 @@ class Law(ABC):
        read-only. Each parameter is checked when the law is made, under a word as its name.
     2. ``api_version`` is set in the class itself, to the version the law was written for.
     3. The base classes of a law determine how it is run. ``offers`` are its further claims, which
-       ``contactlab.testing`` checks; a property where they depend on parameters. Words in use:
+       ``contactlab.testing`` checks: a constant of the class, to which a subclass adds by
+       ``Parent.offers | {...}``. Words in use:
 
        ========================  ====================================================
        ``radius``                the normal contact knows its contact radius
@@ -55,7 +52,7 @@ class Law(ABC):
        ========================  ====================================================
 
     4. ``needs`` are the words of the normal law, and the classes of the other laws, beside which
-       alone the law runs. ``accept(scene)`` raises a ``ValueError`` for a scene it cannot run.
+       alone the law runs: a constant too. Parameters take words away from both by ``waives``.
     5. ``resolution`` names the parameter that makes answers finer, or is None: a count
        (``steps``, ``annuli``), finer the greater, or ``tolerance``, finer the smaller.
     6. ``expected_failures`` maps the checks of ``contactlab.testing`` that the law fails by
@@ -64,11 +61,10 @@ class Law(ABC):
 
     #: An option of a law is one number, for all impacts.
     _plain_options: ClassVar[bool] = True
-    kind: ClassVar[str]
+    _kind: ClassVar[str]
     api_version: ClassVar[int]
-    #: Of str and classes; ``ClassVar[Any]``, as a checker would refuse a property in their place.
-    needs: ClassVar[Any] = frozenset()
-    offers: ClassVar[Any] = frozenset()
+    offers: ClassVar[frozenset[str]] = frozenset()
+    needs: ClassVar[frozenset[str | type]] = frozenset()
     resolution: ClassVar[str | None] = None
     expected_failures: ClassVar[Any] = MappingProxyType({})
 
@@ -76,7 +72,14 @@ class Law(ABC):
         """Set the kind of the laws of a contract."""
         super().__init_subclass__(**options)
         if kind is not None:
-            cls.kind = kind
+            cls._kind = kind
+
+    def waives(self) -> frozenset[str]:
+        """Return the words of ``offers`` and ``needs`` that these parameters take away; none here.
+
+        A subclass adds to ``super().waives()``.
+        """
+        return NO_WORDS
 
     def accept(self, scene: Scene) -> None:  # noqa: B027 most laws run every scene
         """Raise a ``ValueError``, with argument, value, rule and remedy, for a scene it cannot run.
@@ -86,3 +89,34 @@ class Law(ABC):
         scene : Scene
             One impact or a batch.
         """
+
+
+def law_kind(law: Law | type[Law]) -> str:
+    """Return ``"normal"``, ``"tangential"`` or ``"integrator"``.
+
+    Parameters
+    ----------
+    law : Law or type
+    """
+    return law._kind
+
+
+def claims(law: Law) -> frozenset[str]:
+    """Return the words that a law offers with its parameters.
+
+    Parameters
+    ----------
+    law : Law
+    """
+    waived = law.waives()
+    return law.offers.difference(waived) if waived else law.offers
+
+
+def requirements(law: Law) -> frozenset[str | type]:
+    """Return the words and classes that a law needs with its parameters.
+
+    Parameters
+    ----------
+    law : Law
+    """
+    return law.needs.difference(law.waives())

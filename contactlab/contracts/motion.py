@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.contracts.law import Law, claims
 from contactlab.contracts.status import Status
 from contactlab.numeric.types import Index, Real
 
 if TYPE_CHECKING:
     from contactlab.contracts.contact import NormalContact
-    from contactlab.contracts.law import Law
     from contactlab.impact.scene import Scene
 
 
@@ -104,10 +104,9 @@ class NormalMotion(ABC):
         return None
 
     @property
-    def offers(self) -> frozenset[str]:
-        """Claims of the normal law."""
-        offers: frozenset[str] = self.law.offers
-        return offers
+    def claims(self) -> frozenset[str]:
+        """Words that the normal law offers, with its parameters."""
+        return claims(self.law)
 
     def once(self, key: Hashable, make: Callable[[], T]) -> T:
         """Return ``make()``, or what it returned before for this key and an equal motion.

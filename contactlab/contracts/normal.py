@@ -7,7 +7,7 @@ from abc import abstractmethod
 from typing import Any
 
 from contactlab.contracts.contact import NormalContact
-from contactlab.contracts.law import Law
+from contactlab.contracts.law import Law, claims
 from contactlab.contracts.motion import ClosedFormMotion, NormalMotion
 from contactlab.impact.cautions import large_contact, named, size_of_contact, yielding
 from contactlab.impact.scene import Scene
@@ -70,7 +70,7 @@ class NormalLaw(Law, kind="normal"):
         """Return one sentence for each doubt about the model; asked when a plan is read."""
         if not named(scene):
             return ()
-        cautions = () if "plastic" in self.offers else yielding(scene)
+        cautions = () if "plastic" in claims(self) else yielding(scene)
         return (*cautions, *large_contact(size_of_contact(scene, motion.maximum_radius)))
 
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from contactlab.contracts.contact import NormalContact
-from contactlab.contracts.law import Law
+from contactlab.contracts.law import Law, claims
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.tangential_motion import Observer, TangentialMotion
 from contactlab.contracts.whole_impact import WholeImpact, no_force
@@ -119,7 +119,7 @@ def shares_loss(tangential: Law, normal: Law) -> bool:
     ----------
     tangential, normal : Law
     """
-    return "viscous" in normal.offers and "shares_loss" in tangential.offers
+    return "viscous" in claims(normal) and "shares_loss" in claims(tangential)
 
 
 class TangentialLaw(Law, kind="tangential"):
@@ -150,7 +150,7 @@ class TangentialLaw(Law, kind="tangential"):
         slip: Any = scene.slip_velocity
         friction: Any = scene.friction_coefficient
         central, smooth = slip == 0.0, friction == 0.0
-        if scene.turns and "normal_spin" in self.offers:
+        if scene.turns and "normal_spin" in claims(self):
             central = central & (scene.normal_spin == 0.0)
         reasons = (
             (central, "central impact, no slip velocity"),

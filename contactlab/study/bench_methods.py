@@ -12,6 +12,7 @@ from contactlab.compose.composition import DEFAULT_NORMAL
 from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.contracts import WholeImpactTangentialLaw
+from contactlab.contracts.law import law_kind
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
@@ -177,7 +178,7 @@ def methods(laws: Iterable[str] | None = None) -> list[Method]:
     """
     named: dict[str, list[str]] = {kind: [] for kind in KINDS}
     for law in laws or ():
-        kind = REGISTRY.law_class(law).kind if is_place(law) else kind_of(law)
+        kind = law_kind(REGISTRY.law_class(law)) if is_place(law) else kind_of(law)
         kind = kind if kind in KINDS else "tangential"
         named[kind].append(short_name(full_name(kind, law)))
         _law(kind, named[kind][-1])  # raises if the law is not installed

@@ -256,7 +256,7 @@ def _timed(name: str, simulation: Simulation, scene: Scene, *, history: bool) ->
         name=name,
         result=result,
         run_time_per_impact=min(times) / impacts,
-        model=_model(simulation.laws.tangential.offers, result),
+        model=_model(simulation.laws.capability.tangential_claims, result),
     )
 
 

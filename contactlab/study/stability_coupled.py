@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts.integrator import CoupledIntegrator
+from contactlab.contracts.law import claims
 from contactlab.contracts.tangential import CausalTangentialLaw, CoupledTangentialLaw
 from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
@@ -75,7 +76,7 @@ def tried_coupled(method: Method) -> bool:
     stepped = isinstance(law, CausalTangentialLaw)
     return (
         stepped
-        and "partial_slip" in law.offers
+        and "partial_slip" in claims(law)
         and isinstance(simulation.integrator, CoupledIntegrator)
     )
 

@@ -13,7 +13,7 @@ from contactlab.compose.error_estimate import estimated
 from contactlab.compose.registry import PluginError
 from contactlab.compose.simulation import Simulation
 from contactlab.compose.solved_motion import ACCURACY
-from contactlab.contracts import ClosedFormNormalLaw
+from contactlab.contracts import ClosedFormNormalLaw, claims
 from contactlab.contracts.status import Status
 from contactlab.impact.error_model import LARGEST_SHARE, range_of
 from contactlab.impact.scene import Scene
@@ -164,9 +164,9 @@ def marched(simulation: Simulation, scene: Scene) -> ImpactResult:
     """Return the result of an impact marched by the integrator, without whole-impact answers."""
     law, integrator = simulation.tangential, simulation.integrator
     normal = simulation.normal_motion(scene)
-    tangential = integrator.integrate(normal, law, scene, None)
+    tangential = integrator.integrate(scene, normal, law, None)
     code = np.full(scene.shape, MARCHED)
-    plan = Plan(PlanColumns(code, integrator.errors(normal, law, scene).psi2))
+    plan = Plan(PlanColumns(code, integrator.errors(scene, normal, law).psi2))
     motion = sound(Motion.along(normal, tangential))
     return ImpactResult(scene=scene, plan=plan, motion=motion, run_time=0.0, laws={})
 
@@ -206,7 +206,7 @@ def _of_bodies(simulation: Simulation, result: ImpactResult) -> tuple[float, flo
             wrong.append(f"{float(books.end / start - 1.0):.2g} of the energy from nothing")
         if abs(books.imbalance) > bound * start:
             wrong.append("energy books do not close")
-    if result.scene.pair.stiffness_ratio < STIFF or "partial_slip" not in law.offers:
+    if result.scene.pair.stiffness_ratio < STIFF or "partial_slip" not in claims(law):
         return np.nan, UNDECLARED, wrong
     rigid = Simulation(**composition.RIGID).run(result.scene).check()
     error = float(distance(result, rigid))
@@ -218,7 +218,7 @@ def _of_bodies(simulation: Simulation, result: ImpactResult) -> tuple[float, flo
 def _wrong(simulation: Simulation, result: ImpactResult, error: float, bound: float) -> list[str]:
     """Return sentences on what exceeds ``bound``; ``error`` is without its uncertainty."""
     normal, tangential = simulation.normal, simulation.tangential
-    elastic = "elastic_hertz" in normal.offers
+    elastic = "elastic_hertz" in claims(normal)
     wrong = broken_invariants(
         result,
         bound,

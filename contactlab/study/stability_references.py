@@ -23,6 +23,7 @@ from contactlab.contracts import (
     TangentialLaw,
     WholeImpactTangentialLaw,
 )
+from contactlab.contracts.law import claims, requirements
 from contactlab.contracts.tangential import shares_loss
 from contactlab.impact.error_model import range_of
 from contactlab.impact.hertz import rigid_body_rebound
@@ -51,9 +52,9 @@ POINTWISE = "coulomb_at_a_point_damped"
 Reference = Callable[[Scene, TangentialLaw], float | None]
 
 
-def converges(law: Law | type[Law]) -> bool:
+def converges(law: Law) -> bool:
     """Return whether a law claims to converge to the axisymmetric continuum."""
-    return "partial_slip" in law.offers
+    return "partial_slip" in claims(law)
 
 
 def reference_for(law: TangentialLaw, normal: NormalLaw) -> Reference:
@@ -64,10 +65,10 @@ def reference_for(law: TangentialLaw, normal: NormalLaw) -> Reference:
     at high resolution, a rigid body by the impulse of the friction load. A law of whole impacts
     that has a resolution is judged by itself at twice that.
     """
-    elastic = "elastic_hertz" in normal.offers
-    if "no_friction" in law.offers:
+    elastic = "elastic_hertz" in claims(normal)
+    if "no_friction" in claims(law):
         return lambda *_: 0.0
-    if "rigid" in law.offers:
+    if "rigid" in claims(law):
         return rigid if elastic else partial(_rigid_under, normal)
     if isinstance(law, WholeImpactTangentialLaw) and law.resolution is not None:
         return partial(finer, normal)
@@ -141,7 +142,7 @@ def judging_laws(normal: NormalLaw, judged: TangentialLaw) -> list[type[Tangenti
             law = REGISTRY.create(full_name("tangential", name))
         except (ValueError, PluginError):  # blocked, broken, or an option has no default
             continue
-        suits = converges(law) and law.needs <= {"radius"} and misfit(normal, law) is None
+        suits = converges(law) and requirements(law) <= {"radius"} and misfit(normal, law) is None
         suits = suits and shares_loss(law, normal) is shares_loss(judged, normal)
         if suits and _refines(law) and type(law) is not type(judged):
             pointwise = (POINTWISE in law.expected_failures, POINTWISE in judged.expected_failures)

@@ -18,6 +18,7 @@ import numpy as np
 from contactlab.compose import composition
 from contactlab.compose.rebound import rebound
 from contactlab.compose.simulation import Simulation
+from contactlab.contracts.law import claims
 from contactlab.impact.scene import Scene
 from contactlab.outcome.result import ImpactResult
 from contactlab.study.bench_methods import Method, Options, scenes
@@ -122,7 +123,7 @@ def _limit(method: Method) -> tuple[str, str, bool]:
     """
     laws = method.simulation({"tangential": {}, "integrator": {}}).laws
     normal, sized = laws.normal, method.normal != composition.DEFAULT_NORMAL or need_units(laws)
-    if "elastic_hertz" in normal.offers:
+    if "elastic_hertz" in laws.capability.normal_claims:
         return method.normal, "", sized
     own = converges(composition.law("tangential", method.tangential))
     other = method.tangential if own else composition.preferred("tangential", normal)
@@ -135,7 +136,7 @@ def _truths(
     """Return scenes with true answers: exact, or by a fine law of the same limit."""
     law = composition.law("normal", normal)
     truths = []
-    elastic = "elastic_hertz" in law.offers
+    elastic = "elastic_hertz" in claims(law)
     for scene in scenes(quick=quick, sized=sized, elsewhere=elsewhere):
         if elastic:
             exact = Simulation(normal=law, **composition.exact(EXACT_TOLERANCE))

@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contactlab.contracts import Law, TangentialMotion
+from contactlab.contracts import Law, TangentialMotion, claims
 from contactlab.contracts.status import Status
 from contactlab.testing.limits import SECONDS, OutOfTimeError, limited
 
@@ -72,7 +72,7 @@ class Check:
         """
         if not isinstance(law, self.contracts):
             return False
-        return self.word is None or (self.word[0] in law.offers) == self.word[1]
+        return self.word is None or (self.word[0] in claims(law)) == self.word[1]
 
     @property
     def holds(self) -> str:

@@ -51,7 +51,7 @@ def drift(integrator: Integrator) -> None:
     apply_if(SteppedTangentialLaw in integrator.needs, "It has no steps.")
     law, impact = Noting(), scene(ANGLES[1], CHI)
     normal = normal_motion(REGISTRY.create("normal.hertz"), impact)
-    integrator.integrate(normal, law, impact, None)
+    integrator.integrate(impact, normal, law, None)
     apply_if(law.seen, "It did not ask the law.")
     told = np.array([(*step[:2], step.drift) for step in law.seen], dtype=np.float64)
     moved, velocity, drifts = told.T

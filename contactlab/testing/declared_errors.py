@@ -9,10 +9,9 @@ from typing import Any, TypeVar
 import attrs
 import numpy as np
 
-from contactlab.compose.answers import answers
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.simulation import Simulation
-from contactlab.contracts import ClosedFormNormalLaw, Integrator, Law, TangentialLaw
+from contactlab.contracts import ClosedFormNormalLaw, Integrator, Law, TangentialLaw, claims
 from contactlab.impact.error_model import psi_magnitude
 from contactlab.impact.scene import Scene
 from contactlab.testing.check import NotApplicableError, apply_if, check, hold, within
@@ -20,7 +19,7 @@ from contactlab.testing.impacts import CHI
 from contactlab.testing.integrators import CHI as SOLID
 from contactlab.testing.integrators import marched_impact
 from contactlab.testing.load_paths import scene
-from contactlab.testing.ways import Way, at_resolution, sound, ways
+from contactlab.testing.ways import Way, at_resolution, sound, ways, whole_answers
 
 #: Impacts that stick, slip in part, and slip nearly throughout.
 ANGLES = (0.3, 0.9, 1.2, 2.0, 3.5)
@@ -66,9 +65,9 @@ def _declared(way: Way, impact: Scene) -> float:
     """Return the declared error of psi2; NaN if none is declared."""
     normal = normal_motion(way.normal, impact)
     if way.integrator is None:
-        whole = [answer for _, answer in answers(normal, way.law, history=False)]
+        whole = whole_answers(way.law, normal)
         return float(np.asarray(whole[0].psi2_error)) if whole else math.nan
-    steps = way.integrator.resolution_for(normal, way.law, impact)
+    steps = way.integrator.resolution_for(impact, normal, way.law)
     if way.integrator.accuracy is None:
         return float(np.asarray(way.law.errors(impact, normal, steps).psi2))
     own = float(np.asarray(way.law.errors(impact, normal, math.inf).psi2))
@@ -77,7 +76,7 @@ def _declared(way: Way, impact: Scene) -> float:
 
 def _better(way: Way, impact: Scene) -> tuple[float | None, str]:
     """Return a change of psi that is closer to the truth, and by what; None if nothing is."""
-    if "partial_slip" in way.law.offers:
+    if "partial_slip" in claims(way.law):
         motion = Simulation(normal=way.normal).run(impact).motion
         return float(impact.psi(motion.slip_velocity_change)), "the exact solution"
     law, integrator = _finer(way.law), way.integrator
@@ -143,7 +142,7 @@ def resolution_told(integrator: Integrator) -> None:
     for simulation in sound(integrator):
         impact = scene(2.0, SOLID)
         normal = normal_motion(simulation.normal, impact)
-        stated = float(np.max(integrator.resolution_for(normal, simulation.tangential, impact)))
+        stated = float(np.max(integrator.resolution_for(impact, normal, simulation.tangential)))
         value = type(getattr(integrator, integrator.resolution))(stated)
         asked = at_resolution(integrator, value)
         change = marched_impact(simulation, 2.0).slip_velocity_change

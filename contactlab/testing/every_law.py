@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from contactlab.compose.composition import WAYS
-from contactlab.compose.registry import KINDS
+from contactlab.compose.law_classes import unfit
 from contactlab.contracts import (
     API_VERSION,
     CausalTangentialLaw,
@@ -19,7 +19,9 @@ from contactlab.contracts import (
     Law,
     NormalLaw,
     TangentialLaw,
+    claims,
 )
+from contactlab.contracts.law import law_kind
 from contactlab.testing.check import CHECKS, check, hold
 from contactlab.testing.compare import same
 from contactlab.testing.units import with_parameters
@@ -31,6 +33,12 @@ BAD_NUMBERS = (float("nan"), float("inf"), float("-inf"), "seven", 1j)
 #: Values that a parameter must refuse if it is a word, or True or False.
 BAD_WORDS, BAD_FLAGS = ("no such word", 3.5), (float("nan"), "yes", 2)
 
+#: The base of each kind of law.
+BASES: dict[str, type[Law]] = {
+    "normal": NormalLaw,
+    "tangential": TangentialLaw,
+    "integrator": Integrator,
+}
 #: Words that no check tests, by the contract of the laws that offer them.
 UNTESTED = {"similar": NormalLaw, "plastic": NormalLaw, "shares_loss": TangentialLaw}
 
@@ -41,7 +49,7 @@ PROMISED: tuple[tuple[str, Any, str], ...] = (
 )
 
 
-def claims(contract: type[Law]) -> frozenset[str]:
+def known_words(contract: type[Law]) -> frozenset[str]:
     """Return the words that laws of ``contract`` may offer: the claims that checks test."""
     checked = [each for each in CHECKS if any(issubclass(one, contract) for one in each.contracts)]
     own = {word for word, base in UNTESTED.items() if base is contract}
@@ -52,40 +60,33 @@ def claims(contract: type[Law]) -> frozenset[str]:
 
 @check(Law)
 def contract(law: Law) -> None:
-    """Kind, needs, offers and resolution are valid (contract of Law, 2 to 4)."""
-    bases = {"normal": NormalLaw, "tangential": TangentialLaw, "integrator": Integrator}
-    hold(law.kind in KINDS, f"kind = {law.kind!r}: must be one of {', '.join(KINDS)}.")
-    hold(
-        isinstance(law, bases[law.kind]), f"A {law.kind} law must be a {bases[law.kind].__name__}."
-    )
-    hold(isinstance(law.needs, frozenset), f"needs = {law.needs!r}: must be a frozenset of words.")
-    hold(not law.needs or law.kind != "normal", "A normal law needs nothing.")
-    words = {each for each in law.needs if isinstance(each, str)}
-    for name, contract, own in (
-        ("needs", NormalLaw, words),
-        ("offers", bases[law.kind], law.offers),
-    ):
-        good = isinstance(own, frozenset | set) and all(isinstance(word, str) for word in own)
-        hold(good, f"{name} = {own!r}: must be a frozenset of words.")
-        known_words = claims(contract)
-        for word in sorted(own - known_words):
-            listed = ", ".join(sorted(known_words)) or "none"
+    """Needs, offers, what parameters waive, and resolution are valid (contract of Law, 2 to 5)."""
+    base = BASES[law_kind(law)]
+    hold((complaint := unfit(type(law))) is None, f"{complaint}.")
+    hold(not law.needs or base is not NormalLaw, "A normal law needs nothing.")
+    words = frozenset(each for each in law.needs if isinstance(each, str))
+    for name, contract, own in (("needs", NormalLaw, words), ("offers", base, law.offers)):
+        known = known_words(contract)
+        for word in sorted(own - known):
+            listed = ", ".join(sorted(known)) or "none"
             hold(False, f"{name}: {word!r} is a word that no check knows; there are: {listed}.")
+    waived = law.waives()
+    hold(isinstance(waived, frozenset), f"waives() gave {waived!r}: must be a frozenset of words.")
+    for word in sorted(waived - law.offers - words):
+        hold(False, f"waives() names {word!r}, which is neither in offers nor in needs.")
     if isinstance(law, TangentialLaw):
         ways = ", ".join(way.__name__ for way in WAYS)
         hold(isinstance(law, WAYS), f"It must be derived from one of {ways}: nobody can run it.")
     if isinstance(law, Integrator):
-        needed = [each for each in law.needs if isinstance(each, type) and issubclass(each, Law)]
-        hold(len(needed) == len(law.needs), f"needs = {law.needs!r}: must be classes of laws.")
         hold(
-            any(issubclass(each, TangentialLaw) for each in needed),
+            any(isinstance(each, type) and issubclass(each, TangentialLaw) for each in law.needs),
             f"needs = {law.needs!r}: must have a class derived from TangentialLaw.",
         )
-    for word, base, method in PROMISED:
-        if isinstance(law, base) and word in law.offers:
-            own = getattr(type(law), method) is not getattr(base, method)
-            hold(own, f"It has the word {word!r}, and does not define {method}.")
-    if "elastic_hertz" in law.offers:
+    for word, promising, method in PROMISED:
+        if isinstance(law, promising) and word in claims(law):
+            defined = getattr(type(law), method) is not getattr(promising, method)
+            hold(defined, f"It has the word {word!r}, and does not define {method}.")
+    if "elastic_hertz" in claims(law):
         hold(
             isinstance(law, ClosedFormNormalLaw),
             "It offers 'elastic_hertz', and is no ClosedFormNormalLaw.",
@@ -135,7 +136,7 @@ def expected_failures(law: Law) -> None:
         hold(name in by_name, f"expected_failures names {name!r}, which is not a check.")
         hold(isinstance(reason, str) and len(reason.split()) > 2, f"{name!r} needs a reason.")
         claim = by_name[name].claim
-        hold(claim not in law.offers, f"It offers {claim!r} and expects to fail {name!r}.")
+        hold(claim not in claims(law), f"It offers {claim!r} and expects to fail {name!r}.")
         hold(by_name[name].applies_to(law), f"{name!r} is not a check of such a law.")
 
 

@@ -35,7 +35,7 @@ def marched(
     """Return the motion of a scene by the integrator alone, without whole-impact answers."""
     limits.begin(f"an impact under {type(simulation.tangential).__name__}")
     normal = normal_motion(simulation.normal, impact)
-    return simulation.integrator.integrate(normal, simulation.tangential, impact, recorder)
+    return simulation.integrator.integrate(impact, normal, simulation.tangential, recorder)
 
 
 @check(Integrator)

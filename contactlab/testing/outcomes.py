@@ -9,7 +9,7 @@ from enum import Enum
 import attrs
 
 from contactlab.compose.registry import REGISTRY
-from contactlab.contracts import Law
+from contactlab.contracts import Law, claims
 from contactlab.testing.check import (
     CHECKS,
     Check,
@@ -64,7 +64,7 @@ def checks_for(law: Law | str) -> list[Check]:
 
 def claimed(law: Law, check: Check) -> bool:
     """Return whether ``check`` applies to ``law`` by its claim; see ``Check.claim``."""
-    return check.claim is None or check.claim in law.offers or check.name in expected(law)
+    return check.claim is None or check.claim in claims(law) or check.name in expected(law)
 
 
 def expected(law: Law) -> dict[str, str]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
-from contactlab.contracts import CausalTangentialLaw, SteppedTangentialLaw
+from contactlab.contracts import CausalTangentialLaw, SteppedTangentialLaw, claims
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.types import Array
 from contactlab.testing import limits
@@ -171,7 +171,7 @@ def two_stiffnesses(law: SteppedTangentialLaw) -> None:
         path = wandering(SEEDS[0])
         gap = worst(drive(law, bench, path).force - drive(law, circle, path).force)
         within(gap, slack(law), f"The stiffness of t2 moves forces along t1 by {gap:.2g} mu P_max.")
-        if not isinstance(law, CausalTangentialLaw) or "vectors" not in law.offers:
+        if not isinstance(law, CausalTangentialLaw) or "vectors" not in claims(law):
             continue
         level, way = 0.8, np.array((0.6, 0.8))
         path = straight((0.0, level), (LITTLE, level), (DRAGGED, level), steps=STEPS)

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from contactlab.compose import composition
+from contactlab.compose.answers import answers
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
@@ -24,6 +25,7 @@ from contactlab.contracts import (
     SteppedTangentialLaw,
     TangentialLaw,
     TangentialMotion,
+    WholeImpact,
     WholeImpactTangentialLaw,
 )
 from contactlab.impact.scene import Scene
@@ -94,7 +96,7 @@ class Way(NamedTuple):
         else:
             normal = normal_motion(self.normal, impact)
             _followed(self, normal, impact)
-            motion = self.integrator.integrate(normal, self.law, impact, recorder)
+            motion = self.integrator.integrate(impact, normal, self.law, recorder)
         hold_success(motion, f"{_which(impact)}: {{}} ({self})")
         unit = impact.pair.tangential_mass / np.square(impact.psi_scale)
         change = impact.psi(motion.slip_velocity_change)
@@ -120,7 +122,7 @@ def _together(way: Way, impact: Scene, recorder: Observer | None) -> TangentialM
         assert isinstance(way.law, CoupledTangentialLaw)
         return way.law.solve_coupled(impact, normal, None, recorder)
     assert isinstance(way.integrator, CoupledIntegrator)
-    return way.integrator.integrate_coupled(normal, way.law, impact, recorder)
+    return way.integrator.integrate_coupled(impact, normal, way.law, recorder)
 
 
 def _followed(way: Way, normal: NormalMotion, impact: Scene) -> None:
@@ -128,7 +130,7 @@ def _followed(way: Way, normal: NormalMotion, impact: Scene) -> None:
     assert way.integrator is not None
     if not isinstance(way.law, SteppedTangentialLaw):
         return
-    steps = float(np.max(way.integrator.resolution_for(normal, way.law, impact)))
+    steps = float(np.max(way.integrator.resolution_for(impact, normal, way.law)))
     if steps > MOST_STEPS:
         stiffness = float(np.max(way.law.stiffness(impact, normal)))
         hold(
@@ -198,6 +200,12 @@ def ways(law: TangentialLaw | Integrator, normal: NormalLaw | None = None) -> li
         listed = []
     apply_if(listed, f"There is no way to run it under {type(normal_law).__name__}.")
     return listed
+
+
+def whole_answers(law: TangentialLaw, normal: NormalMotion) -> list[WholeImpact]:
+    """Return the whole-impact answers of a law that hold."""
+    always = isinstance(law, WholeImpactTangentialLaw)
+    return [answer for _, answer in answers(normal, law, always=always, history=False)]
 
 
 def ways_of_bodies(law: TangentialLaw | Integrator) -> list[Way]:

@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactlab.compose.answers import answers
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import NormalMotion, TangentialLaw, WholeImpact
@@ -20,7 +19,15 @@ from contactlab.testing.compare import well_formed
 from contactlab.testing.impacts import CHI, PSI1
 from contactlab.testing.laws import DampedHertz
 from contactlab.testing.load_paths import scene, slack
-from contactlab.testing.ways import INTEGRATION, ROUNDING, Way, allowed, course, ways
+from contactlab.testing.ways import (
+    INTEGRATION,
+    ROUNDING,
+    Way,
+    allowed,
+    course,
+    ways,
+    whole_answers,
+)
 
 #: psi1 of these checks: ``PSI1``, the onset of slip throughout (46), and negative angles.
 ANGLES = (0.0, *PSI1, *(4.0 * chi for chi in CHI), -0.3, -6.0)
@@ -50,7 +57,7 @@ def answered_impacts(law: TangentialLaw) -> Iterator[AnsweredImpact]:
     for chi, psi1 in itertools.product(CHI, ANGLES):
         impact = scene(psi1, chi)
         normal = normal_motion(normal_law, impact)
-        for _, answer in answers(normal, law, history=False):
+        for answer in whole_answers(law, normal):
             yield AnsweredImpact(psi1, chi, impact, normal, answer)
 
 
@@ -168,7 +175,7 @@ def changes(
     """Iterate over changes of slip velocity (m/s) by ways and whole-impact answers, in words."""
     for way in marches:
         yield way, way.run(impact).motion.slip_velocity_change, str(way)
-    for _, answer in answers(normal, law, history=False):
+    for answer in whole_answers(law, normal):
         yield None, spread(answer.slip_velocity_change, ()), answer.reason
 
 

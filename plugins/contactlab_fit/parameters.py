@@ -248,7 +248,10 @@ def _choices(setup: Setup) -> dict[str, Callable[[], Parameter]]:
         for field in attrs.fields(type(law)) if attrs.has(type(law)) else ():
             value = getattr(law, field.name)
             if field.init and isinstance(value, float) and kind != "integrator":
-                if field.name == SHEAR_LOSS and "viscous" not in simulation.normal.offers:
+                if (
+                    field.name == SHEAR_LOSS
+                    and "viscous" not in simulation.laws.capability.normal_claims
+                ):
                     continue  # nothing is lost
                 choices[f"{kind}.{field.name}"] = partial(_option, kind, field, value)
     return choices

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from contactlab.contracts.law import claims
 from contactlab.numeric.types import Array
 from contactlab_fit import tabulated
 from contactlab_fit.f_test import NUMERICAL
@@ -101,7 +102,7 @@ def restitutions(problem: Problem, table: Measurements) -> list[str]:
             f"{name}: a restitution of {mean:.3g}, above 1: no law here gains energy; look at the "
             "speeds, the angle and the spin"
         ]
-    lossless = laws is None or "elastic_hertz" in laws.normal.offers
+    lossless = laws is None or "elastic_hertz" in claims(laws.normal)
     if off < 0.0 and mean > 0.0 and lossless:
         return [
             f"{name}: a restitution of {mean:.3g}, under laws that lose nothing: {tabulated.TOO}"

@@ -212,7 +212,7 @@ def lossy(problem: Problem, values: Array) -> Pattern:
     scene, simulation = problem.model.setup
     if simulation is None or tabulated.holds(simulation):
         return _better_with(problem, values, _restituted(problem, values))
-    if scene.sphere is None or "elastic_hertz" not in simulation.normal.offers:
+    if scene.sphere is None or "elastic_hertz" not in simulation.laws.capability.normal_claims:
         return NO_PATTERN
     quick = _elastic(problem)
     best = solved(quick, _first(quick))

@@ -54,7 +54,7 @@ def with_loss(restitution: float) -> Simulation:
 
 def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
     """Return the impacts of a batch by the table of psi2; friction work is NaN."""
-    lossy = simulation is not None and "viscous" in simulation.normal.offers
+    lossy = simulation is not None and "viscous" in simulation.laws.capability.normal_claims
     laws: Any = simulation if lossy else Simulation()
     course = laws.normal_motion(scene)
     ends = {name: getattr(course, source) for name, source in ENDS.items()}

@@ -120,7 +120,7 @@ def instants(normal: NormalMotion, rings: int, parts: int) -> Instants:
 def _phases(normal: NormalMotion, places: Array, top: int) -> Array:
     """Return the phases at which the radius over its largest is ``places``, shape (K + 1, n)."""
     # Radii below those at first touch or at separation get the phase of that end.
-    if isinstance(normal, ClosedFormMotion) and "elastic_hertz" in normal.offers:
+    if isinstance(normal, ClosedFormMotion) and "elastic_hertz" in normal.claims:
         rate = np.sqrt(1.0 - places**5)  # energy: V² + b⁵ = 1
         rate[top + 1 :] *= -1.0
         phases = np.asarray(normal.phase_at_rate(rate), float)[:, None]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import attrs
 import numpy as np
@@ -60,6 +60,8 @@ class HalfSpace(WholeImpactTangentialLaw):
     """
 
     api_version: ClassVar[int] = 2
+    offers: ClassVar[frozenset[str]] = frozenset({"normal_spin"})
+    needs: ClassVar[frozenset[str]] = frozenset({"radius", "elastic_hertz"})
     resolution: ClassVar[str | None] = "rings"
 
     rings: int = count(default=32, least=4, most=MOST_RINGS)
@@ -91,11 +93,15 @@ class HalfSpace(WholeImpactTangentialLaw):
                 "give fewer rings, or angles=1",
             )
 
-    def _offers(self) -> frozenset[str]:
-        """Return the word without coupling and with more than one angle: slip and spin are one."""
-        return frozenset({"normal_spin"}) if self._options.spins else frozenset()
+    def waives(self) -> frozenset[str]:
+        """Return the words of another coupling.
 
-    offers: ClassVar[Any] = property(_offers)
+        Slip and spin are one without coupling and with more than one angle; two-way coupling finds
+        the pressure, from elastic surfaces.
+        """
+        needed = self._options.spins, self.coupling == "two_way"
+        words = zip(("normal_spin", "elastic_hertz"), needed, strict=True)
+        return frozenset(word for word, holds in words if not holds)
 
     @property
     def _options(self) -> Options:
@@ -108,12 +114,6 @@ class HalfSpace(WholeImpactTangentialLaw):
         number = np.minimum(coupling_number(scene), LARGEST_LOSS)
         bound: Real = 0.02 + ONE_WAY_LOSS * number * number
         return bound
-
-    def _needs(self) -> frozenset[str]:
-        """Return the words; two-way coupling finds the pressure, from elastic surfaces."""
-        return frozenset({"elastic_hertz" if self.coupling == "two_way" else "radius"})
-
-    needs: ClassVar[Any] = property(_needs)
 
     def accept(self, scene: Scene) -> None:
         """Refuse two-way coupling where the friction coefficient is 1 by choice of units."""

@@ -7,11 +7,14 @@ from collections.abc import Callable
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.taken import Taken
 
+#: What a law offers that loses energy, and what it offers if a restitution gives the loss.
+OF_LOSS = frozenset({"viscous", "similar"})
 
-def claims_of_loss(restitution: float | None, loses: bool) -> frozenset[str]:
-    """Return ``viscous`` of a law that loses, and ``similar`` of one that a restitution gives."""
+
+def waived_of_loss(restitution: float | None, loses: bool) -> frozenset[str]:
+    """Return the words of ``OF_LOSS`` that do not hold."""
     words = ("viscous", loses), ("similar", restitution is not None)
-    return frozenset(word for word, holds in words if holds)
+    return frozenset(word for word, holds in words if not holds)
 
 
 def root(function: Callable[[float], float], low: float, high: float) -> float:

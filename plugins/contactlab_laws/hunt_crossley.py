@@ -14,7 +14,7 @@ from contactlab.impact.hertz import hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, quantity
 from contactlab.numeric.types import Real
-from contactlab_laws.calibrated import claims_of_loss, one_of_two, root
+from contactlab_laws.calibrated import OF_LOSS, one_of_two, root, waived_of_loss
 
 
 @lru_cache(maxsize=256)
@@ -60,6 +60,7 @@ class HuntCrossley(NormalLaw):
     """
 
     api_version: ClassVar[int] = 2
+    offers: ClassVar[frozenset[str]] = OF_LOSS | {"radius", "hertzian_pressure", "elliptic"}
 
     restitution: float | None = restitution(default=None)
     damping: float | None = quantity("s/m", rule=NON_NEGATIVE, default=None)
@@ -67,12 +68,10 @@ class HuntCrossley(NormalLaw):
     def __attrs_post_init__(self) -> None:
         one_of_two(self, "restitution", "damping", default=TAKEN_RESTITUTION)
 
-    def _offers(self) -> frozenset[str]:
-        """Return the claims, with those of the loss."""
+    def waives(self) -> frozenset[str]:
+        """Return the words of a loss that does not hold."""
         loses = self.restitution not in (None, 1.0) or bool(self.damping)
-        return claims_of_loss(self.restitution, loses) | {"radius", "hertzian_pressure", "elliptic"}
-
-    offers: ClassVar[Any] = property(_offers)
+        return waived_of_loss(self.restitution, loses)
 
     def start(self, scene: Scene) -> Parts:
         """Return stiffness and damping of the pair; the law has no memory."""

@@ -222,7 +222,7 @@ class MindlinCap(CausalTangentialLaw):
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of every law, of partial slip, and of energy that the form makes."""
-        elastic = "elastic_hertz" in normal.offers
+        elastic = "elastic_hertz" in normal.claims
         gains, most = (ELASTIC, ELASTIC_CHI) if elastic else (DAMPED_GAIN, DAMPED_CHI)
         made = [gains[self.form]] if self.form in gains else []
         least = LEAST_E * (1.0 - 1e-5) * scene.normal_speed
@@ -233,7 +233,7 @@ class MindlinCap(CausalTangentialLaw):
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
         """Return the whole-impact answers, with elastic impacts at the cap from start to end."""
         answers = super().whole_impacts(scene, normal)
-        if "elastic_hertz" not in normal.offers or self.damping:
+        if "elastic_hertz" not in normal.claims or self.damping:
             return answers
         stiffer = self._stiffer(scene)
         where = self._slips_throughout(stiffer.psi1, stiffer.chi)

@@ -13,7 +13,7 @@ from contactlab.impact.hertz import hertz_scales, hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, quantity
 from contactlab.numeric.types import Real
-from contactlab_laws.calibrated import claims_of_loss, one_of_two
+from contactlab_laws.calibrated import OF_LOSS, one_of_two, waived_of_loss
 
 
 class Parts(NamedTuple):
@@ -28,7 +28,7 @@ class Parts(NamedTuple):
 class Relaxing(NormalLaw):
     """Base of laws of a relaxation time A, which a restitution gives at each speed."""
 
-    claims: ClassVar[frozenset[str]] = frozenset({"radius", "elliptic"})
+    offers: ClassVar[frozenset[str]] = OF_LOSS | {"radius", "elliptic"}
 
     restitution: float | None = restitution(default=None)
     relaxation_time: float | None = quantity("s", rule=NON_NEGATIVE, default=None)
@@ -46,11 +46,9 @@ class Relaxing(NormalLaw):
         """True if there is any loss."""
         return self.restitution not in (None, 1.0) or bool(self.relaxation_time)
 
-    def _offers(self) -> frozenset[str]:
-        """Return the claims, with those of the loss."""
-        return claims_of_loss(self.restitution, self.loses) | self.claims
-
-    offers: ClassVar[Any] = property(_offers)
+    def waives(self) -> frozenset[str]:
+        """Return the words of a loss that does not hold."""
+        return waived_of_loss(self.restitution, self.loses)
 
     def restitution_in(self, scene: Scene) -> Real | None:
         """Return e of each impact, where no relaxation time is given."""

@@ -21,8 +21,8 @@ class Tight(type(contactlab.create("integrator.adaptive"))):
 
     api_version: ClassVar[int] = 2
 
-    def integrate(self, normal, tangential, scene, observer=None):
-        motion = super().integrate(normal, tangential, scene, observer)
+    def integrate(self, scene, normal, tangential, observer=None):
+        motion = super().integrate(scene, normal, tangential, observer)
         sentence = "The tolerance is not kept."
         return motion.failing(
             np.full(scene.shape, self.tolerance < 1e-3), Status.UNRESOLVED, sentence

@@ -263,13 +263,13 @@ class Spoiling(CoupledIntegrator):
     needs: ClassVar[frozenset[type]] = frozenset({SteppedTangentialLaw})
     how: str
 
-    def integrate(self, normal, tangential, scene, observer=None):
+    def integrate(self, scene, normal, tangential, observer=None):
         sound = create("integrator.symplectic")
-        return self.spoilt(sound.integrate(normal, tangential, scene, observer))
+        return self.spoilt(sound.integrate(scene, normal, tangential, observer))
 
-    def integrate_coupled(self, normal, tangential, scene, observer=None):
+    def integrate_coupled(self, scene, normal, tangential, observer=None):
         sound = create("integrator.symplectic", steps=20)
-        return self.spoilt(sound.integrate_coupled(normal, tangential, scene, observer))
+        return self.spoilt(sound.integrate_coupled(scene, normal, tangential, observer))
 
     def spoilt(self, motion):
         change = motion.slip_velocity_change

@@ -191,9 +191,9 @@ class GivesUpNeighbours(Integrator):
     api_version: ClassVar[int] = 2
     needs: ClassVar[frozenset[type]] = frozenset({SteppedTangentialLaw})
 
-    def integrate(self, normal, tangential, scene, observer=None):
+    def integrate(self, scene, normal, tangential, observer=None):
         inner = contactlab.create("integrator.symplectic", steps=50)
-        motion = inner.integrate(normal, tangential, scene, observer)
+        motion = inner.integrate(scene, normal, tangential, observer)
         fast = np.asarray(scene.psi1) > 2.0
         if scene.shape:
             fast = fast | np.roll(fast, -1)

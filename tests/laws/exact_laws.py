@@ -26,7 +26,7 @@ def marched_change(sim, psi1, chi):
     """psi2 - psi1 of the integrator itself, where the plan would take eq. (45)."""
     scene = Scene.nondimensional(psi1=psi1, chi=chi)
     normal = sim.normal_motion(scene)
-    motion = sim.integrator.integrate(normal, sim.tangential, scene)
+    motion = sim.integrator.integrate(scene, normal, sim.tangential)
     return scene.psi(motion.slip_velocity_change)
 
 

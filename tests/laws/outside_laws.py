@@ -217,7 +217,7 @@ class Heun(Integrator):
 
     steps: int = count(default=400)
 
-    def integrate(self, normal, tangential, scene, observer=None):
+    def integrate(self, scene, normal, tangential, observer=None):
         law, mass, shape = tangential, scene.pair.tangential_mass, scene.shape
         state = law.start(scene, normal)
         velocity = scene.slip_velocity + np.zeros(shape)

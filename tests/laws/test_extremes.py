@@ -36,7 +36,7 @@ def integrate(law, scene):
     if isinstance(simulation.tangential, WholeImpactTangentialLaw):
         return simulation.run(scene).motion
     normal = simulation.normal_motion(scene)
-    motion = simulation.integrator.integrate(normal, simulation.tangential, scene)
+    motion = simulation.integrator.integrate(scene, normal, simulation.tangential)
     return sound(Motion.along(normal, motion))
 
 

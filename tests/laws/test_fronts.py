@@ -269,7 +269,7 @@ def test_fields_and_extremes():
     sim, spoiled = exact(), scene(1.0)
     normal = sim.normal_motion(spoiled)
     object.__setattr__(spoiled, "tangential_velocity", float("nan"))
-    motion = sim.integrator.integrate(normal, sim.tangential, spoiled)
+    motion = sim.integrator.integrate(spoiled, normal, sim.tangential)
     assert motion.status is Status.NON_FINITE
 
 

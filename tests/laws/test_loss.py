@@ -299,7 +299,7 @@ def test_the_loss_in_shear_of_slip_throughout():
     from contactlab.compose.normal_motion import normal_motion
 
     normal = normal_motion(viscoelastic(e), scene)
-    motion = march.integrate(normal, law, scene, None)
+    motion = march.integrate(scene, normal, law, None)
     share = float(motion.shear_loss) / float(motion.friction_work + motion.shear_loss)
     phase = np.linspace(0.0, np.pi, 20001)
     sample = normal.at(phase)

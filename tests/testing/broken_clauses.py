@@ -134,27 +134,27 @@ def motion(member, change):
 class MassOfTheSphere(STEPS):
     """2 m/7 of the sphere for M_t, as if it met a wall."""
 
-    def integrate(self, normal, tangential, scene, observer=None):
+    def integrate(self, scene, normal, tangential, observer=None):
         if scene.sphere is not None:
             mass = scene.sphere.mass / (1.0 + 1.0 / scene.sphere.gyration_ratio**2)
             pair = attrs.evolve(scene.pair, tangential_mass=mass)
             scene = attrs.evolve(scene, sphere=None, target=None, pair=pair)
             normal = normal_motion(normal.law, scene)
-        return super().integrate(normal, tangential, scene, observer)
+        return super().integrate(scene, normal, tangential, observer)
 
 
 class ShowsInstantsTwice(STEPS):
-    def integrate(self, normal, tangential, scene, observer=None):
+    def integrate(self, scene, normal, tangential, observer=None):
         def twice(sample):
             observer(sample)
             observer(sample)
 
         watched = twice if observer is not None else None
-        return super().integrate(normal, tangential, scene, watched)
+        return super().integrate(scene, normal, tangential, watched)
 
 
 class ShowsTheFirstHalf(STEPS):
-    def integrate(self, normal, tangential, scene, observer=None):
+    def integrate(self, scene, normal, tangential, observer=None):
         half = 0.5 * float(np.max(normal.duration))
 
         def early(sample):
@@ -162,7 +162,7 @@ class ShowsTheFirstHalf(STEPS):
                 observer(sample)
 
         watched = early if observer is not None else None
-        return super().integrate(normal, tangential, scene, watched)
+        return super().integrate(scene, normal, tangential, watched)
 
 
 class FailsInABatch(Steps):
@@ -183,9 +183,9 @@ class FailsInABatch(Steps):
 class ReportsItsEndlessness(AsksTillItGives):
     """Repeats a step of a stiff law until it raises, and reports that."""
 
-    def integrate(self, normal, tangential, scene, observer=None):
+    def integrate(self, scene, normal, tangential, observer=None):
         try:
-            return super().integrate(normal, tangential, scene, observer)
+            return super().integrate(scene, normal, tangential, observer)
         except Exception as error:
             detail = faults.raised(error)
             return TangentialMotion.nothing(scene.shape, Status.LAW_RAISED, detail)
@@ -197,8 +197,8 @@ EVENTS = contactlab.compose.registry.REGISTRY.law_class("integrator.events")
 class EndsTheEndless(EVENTS):
     """Takes events without end for a success."""
 
-    def integrate(self, normal, tangential, scene, observer=None):
-        motion = super().integrate(normal, tangential, scene, observer)
+    def integrate(self, scene, normal, tangential, observer=None):
+        motion = super().integrate(scene, normal, tangential, observer)
         if scene.shape or motion.status is Status.SUCCESS:
             return motion
         return attrs.evolve(motion, status=Status.SUCCESS, detail="", slip_velocity_change=-1.0)
@@ -273,9 +273,9 @@ class InFurlongs(Sound):
 class ShowsSuccessesOnly(STEPS):
     """Keeps what an observer should see until the end, and shows nothing of a failed run."""
 
-    def integrate(self, normal, tangential, scene, observer=None):
+    def integrate(self, scene, normal, tangential, observer=None):
         seen = []
-        motion = super().integrate(normal, tangential, scene, seen.append)
+        motion = super().integrate(scene, normal, tangential, seen.append)
         if observer is not None and np.all(motion.status == Status.SUCCESS):
             for sample in seen:
                 observer(sample)
@@ -337,9 +337,10 @@ BROKEN = [
     (ShowsSuccessesOnly, "faults_reported", "0 instants of the history are left"),
     (RunsItsOwnLawsOnly, "impact_odd", "It fits none of the laws of the kit"),
     (OtherwiseAtOnce, "impact_repeatable", "Watched, an impact ends differently, by 1"),
-    *broken(Sound, "kind",
-        ("OfNoKind", "elastic", "contract", "kind = 'elastic': must be one of"),
-        ("OfAnotherKind", "normal", "contract", "A normal law must be a NormalLaw"),
+    *broken(Sound, "waives",
+        ("WaivesTheUnknown", lambda: frozenset({"elliptic"}),
+         "contract", "waives() names 'elliptic', which is neither in offers nor in needs"),
+        ("WaivesAWord", lambda: "elliptic", "contract", "waives() gave 'elliptic': must be"),
     ),
     *broken(Press, "needs",
         ("NeedsAsANormalLaw", frozenset({"radius"}),
@@ -351,7 +352,7 @@ BROKEN = [
     ),
     *broken(Sound, "needs",
         ("NeedsInAList", ["radius"],
-         "contract", "needs = ['radius']: must be a frozenset of words"),
+         "contract", "needs must be a frozenset, a constant of the class"),
     ),
     *broken(Press, "offers",
         ("OffersHertzWithoutAMotion", frozenset({"radius", "elastic_hertz"}),

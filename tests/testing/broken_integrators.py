@@ -28,14 +28,14 @@ class AlwaysSucceeds(Steps):
 
 
 class HeedsItsObserver(STEPS):
-    def integrate(self, normal, tangential, scene, observer=None):
-        motion = super().integrate(normal, tangential, scene, observer)
+    def integrate(self, scene, normal, tangential, observer=None):
+        motion = super().integrate(scene, normal, tangential, observer)
         return motion if observer is None else attrs.evolve(motion, friction_work=0.5)
 
 
 class KeepsItsObserverWaiting(STEPS):
-    def integrate(self, normal, tangential, scene, observer=None):
-        return super().integrate(normal, tangential, scene, None)
+    def integrate(self, scene, normal, tangential, observer=None):
+        return super().integrate(scene, normal, tangential, None)
 
 
 class MeanOfTheBatch(Steps):
@@ -64,8 +64,8 @@ class ShortImpulse(Steps):
 class FirstLoad(STEPS):
     """The load of a step from its sample, as for a march of points: not the mean over it."""
 
-    def integrate(self, normal, tangential, scene, observer=None):
-        return super().integrate(Pointwise(normal), tangential, scene, observer)
+    def integrate(self, scene, normal, tangential, observer=None):
+        return super().integrate(scene, Pointwise(normal), tangential, observer)
 
 
 class Pointwise(NormalMotion):
@@ -119,27 +119,27 @@ class NamesNobodyAtTheStart(Steps):
 class IgnoresItsSteps(STEPS):
     """As many steps as it likes, whatever is asked; it claims no order."""
 
-    def integrate(self, normal, tangential, scene, observer=None):
-        return STEPS(steps=50).integrate(normal, tangential, scene, observer)
+    def integrate(self, scene, normal, tangential, observer=None):
+        return STEPS(steps=50).integrate(scene, normal, tangential, observer)
 
 
 class AsksTillItGives(STEPS):
     """Repeats a step of a stiff law until there is a force."""
 
-    def integrate(self, normal, tangential, scene, observer=None):
+    def integrate(self, scene, normal, tangential, observer=None):
         if isinstance(tangential, Unyielding):
             contact = NormalContact(1.0, 1.0, 1.0, 1.0)
             given, state = Increment(1.0, 1.0, 1.0, 1.0), tangential.start(scene, normal)
             while tangential.advance(state, given, contact, contact)[0].force == 0.0:
                 pass
-        return super().integrate(normal, tangential, scene, observer)
+        return super().integrate(scene, normal, tangential, observer)
 
 
 class ReadsNanAsTheEnd(STEPS):
     """Takes a normal contact that is not a number for none."""
 
-    def integrate(self, normal, tangential, scene, observer=None):
-        return super().integrate(Mended(normal), tangential, scene, observer)
+    def integrate(self, scene, normal, tangential, observer=None):
+        return super().integrate(scene, Mended(normal), tangential, observer)
 
 
 class Mended(Pointwise):
@@ -185,6 +185,6 @@ BROKEN = [
     ),
     *broken(STEPS, "needs",
         ("NoContract", frozenset({"stepped"}), "contract", "is a word that no check knows"),
-        ("RunsNumbers", frozenset({int}), "contract", "must be classes of laws"),
+        ("RunsNumbers", frozenset({int}), "contract", "must be words, or classes of laws"),
     ),
 ]  # fmt: skip

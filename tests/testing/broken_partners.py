@@ -34,8 +34,8 @@ class Seen(SteppedTangentialLaw):
 class MisTellsDrift(STEPS):
     """Tells half of the drift."""
 
-    def integrate(self, normal, tangential, scene, observer=None):
-        return super().integrate(normal, Seen(law=tangential, times=0.5), scene, observer)
+    def integrate(self, scene, normal, tangential, observer=None):
+        return super().integrate(scene, normal, Seen(law=tangential, times=0.5), observer)
 
 
 class RefusesSpeechless(Sound):

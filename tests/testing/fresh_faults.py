@@ -116,8 +116,8 @@ class Steps(STEPS):
     def alter(self, motion, scene):
         return motion
 
-    def integrate(self, normal, tangential, scene, observer=None):
-        return self.alter(super().integrate(normal, tangential, scene, observer), scene)
+    def integrate(self, scene, normal, tangential, observer=None):
+        return self.alter(super().integrate(scene, normal, tangential, observer), scene)
 
 
 class IntegratorNotOdd(Steps):
@@ -241,11 +241,11 @@ class DrawsFromTheGlobalGenerator(HardSphere):
 class IntegratorIgnoresSpin(STEPS):
     """Takes the velocity of the centre for that of the contact."""
 
-    def integrate(self, normal, tangential, scene, observer=None):
+    def integrate(self, scene, normal, tangential, observer=None):
         if scene.sphere is not None:
             scene = attrs.evolve(scene, spin=0.0)
             normal = normal_motion(normal.law, scene)
-        return super().integrate(normal, tangential, scene, observer)
+        return super().integrate(scene, normal, tangential, observer)
 
 
 def alone(pair, body):

@@ -1,5 +1,6 @@
 """Broken laws out of a sound one, of which one member is another; and one check of a law."""
 
+from functools import wraps
 from types import FunctionType
 
 from contactlab.testing import checks_for, outcome
@@ -46,6 +47,7 @@ def _method(value):
 def _after(sound, change):
     """Return a method that changes what a sound one answers."""
 
+    @wraps(sound)
     def method(law, *given, **named):
         answer = sound(law, *given, **named)
         return change(*(answer if type(answer) is tuple else (answer,)), *given)

@@ -48,8 +48,8 @@ class Worked(Steps):
 class ShowsWhatIsOver(STEPS):
     """Shows an instant half a duration after separation."""
 
-    def integrate(self, normal, tangential, scene, observer=None):
-        motion = super().integrate(normal, tangential, scene, last := Last(observer))
+    def integrate(self, scene, normal, tangential, observer=None):
+        motion = super().integrate(scene, normal, tangential, last := Last(observer))
         if observer is not None:
             observer(last.sample._replace(time=1.5 * normal.duration))
         return motion
@@ -109,7 +109,7 @@ NARROW = [
     ),
     *broken(Sound, "offers",
         ("OffersNumbers", frozenset({1}),
-         "contract", "offers = frozenset({1}): must be a frozenset of words."),
+         "contract", "OffersNumbers.offers = frozenset({1}): must be words"),
     ),
     *broken(STEPS, "needs",
         ("RunsNothing", frozenset(),

@@ -24,16 +24,16 @@ FAULTY = "None of the faulty laws of the kit fits it."
 class AsksNobody(STEPS):
     """Returns a motion without a step."""
 
-    def integrate(self, normal, tangential, scene, observer=None):
+    def integrate(self, scene, normal, tangential, observer=None):
         return TangentialMotion(slip_velocity_change=0.0, friction_work=0.0)
 
 
 class TellsNoDrift(STEPS):
     """Leaves the drift of each step out."""
 
-    def integrate(self, normal, tangential, scene, observer=None):
+    def integrate(self, scene, normal, tangential, observer=None):
         law = Seen(law=tangential, times=np.nan)
-        return super().integrate(normal, law, scene, observer)
+        return super().integrate(scene, normal, law, observer)
 
 
 class WithoutResolution(STEPS):

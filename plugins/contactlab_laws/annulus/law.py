@@ -92,7 +92,7 @@ class Annulus(PartialSlip):
     def start(self, scene: Scene, normal: NormalMotion) -> State:
         """Return a contact without traction."""
         memory = step.start(self.annuli, scene.shape)
-        return State(Scales.of(scene, normal), "elastic_hertz" in normal.offers, memory)
+        return State(Scales.of(scene, normal), "elastic_hertz" in normal.claims, memory)
 
     def advance(
         self,
@@ -127,7 +127,7 @@ class Annulus(PartialSlip):
         radius, load = steps.contact.radius / scales.radius, steps.contact.friction_load
         scaled = ScaledSteps(
             radius=radius,
-            pressure=self._pressure(scales, radius, load, hertz="elastic_hertz" in normal.offers),
+            pressure=self._pressure(scales, radius, load, hertz="elastic_hertz" in normal.claims),
             drift=steps.drift * scales.displacement,
             kick=steps.kick * scales.force / scene.pair.tangential_mass,
         )

@@ -17,7 +17,6 @@ from contactlab.impact.hertz import hertz_scales, hertz_stiffness, linear_stiffn
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import POSITIVE, quantity
 from contactlab.numeric.types import Real
-from contactlab_laws.calibrated import claims_of_loss
 from contactlab_laws.dashpot.motion import DashpotMotion, ScaledMotion
 from contactlab_laws.dashpot.oscillator import damping_of
 from contactlab_laws.hertz.motion import HertzMotion
@@ -61,15 +60,15 @@ class Tsuji(ClosedFormNormalLaw):
     """
 
     api_version: ClassVar[int] = 2
+    offers: ClassVar[frozenset[str]] = frozenset(
+        {"radius", "hertzian_pressure", "elliptic", "viscous"}
+    )
 
     restitution: float = restitution(default=TAKEN_RESTITUTION)
 
-    def _offers(self) -> frozenset[str]:
-        """Return the claims; the law is viscous if there is any loss."""
-        loss = claims_of_loss(None, self.restitution < 1.0)
-        return loss | {"radius", "hertzian_pressure", "elliptic"}
-
-    offers: ClassVar[Any] = property(_offers)
+    def waives(self) -> frozenset[str]:
+        """Return ``viscous`` without a loss."""
+        return frozenset({"viscous"} if self.restitution == 1.0 else ())
 
     def start(self, scene: Scene) -> Parts:
         """Return stiffness and damping of the pair; the law has no memory."""

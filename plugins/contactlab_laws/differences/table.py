@@ -75,7 +75,7 @@ def rows() -> dict[str, tuple[Row, ...]]:
 
 def springs(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
     """Return the caution that separately limited springs are not Coulomb's law, with its size."""
-    if "elastic_hertz" in normal.offers or not scene.rubs:
+    if "elastic_hertz" in normal.claims or not scene.rubs:
         return ()
     own, e, chi = rows().get(key(normal.law)), _restitution(normal), np.asarray(scene.chi)
     if own is None or not np.all(_within(e, own)) or _beyond(chi):
@@ -123,7 +123,7 @@ def choice(scene: Scene, normal: NormalMotion, *, shared: bool = False) -> tuple
     if not scene.rubs:
         return ()
     measured, own = rows(), key(normal.law)
-    if own not in measured or "elastic_hertz" in normal.offers:
+    if own not in measured or "elastic_hertz" in normal.claims:
         return ()
     e, chi = _restitution(normal), np.asarray(scene.chi)
     if np.all(e == 1.0) and own.endswith(".Tsuji"):

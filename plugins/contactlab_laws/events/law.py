@@ -54,16 +54,16 @@ class Events(Integrator):
         """The error aimed at."""
         return self.tolerance
 
-    def errors(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Errors:
+    def errors(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Errors:
         """Return the tolerance, and what the law declares for itself."""
         own: Any = tangential.errors(scene, normal, np.inf).psi2
         return Errors(self.tolerance * psi_magnitude(scene) + own)
 
     def integrate(
         self,
+        scene: Scene,
         normal: NormalMotion,
         tangential: TangentialLaw,
-        scene: Scene,
         observer: Observer | None = None,
     ) -> TangentialMotion:
         """Return the motion, impact by impact."""

@@ -9,7 +9,7 @@ from contactlab.impact.scene import Scene
 
 def gross_slip(scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
     """Return the answers of eq. (45), for impacts of elastic Hertz contacts; else none."""
-    if "elastic_hertz" not in normal.offers:
+    if "elastic_hertz" not in normal.claims:
         return ()
     where = slips_throughout(scene.psi1, scene.chi)
     if where is False:  # a single impact; a batch has a mask

@@ -87,12 +87,12 @@ def hemisphere(normal: NormalMotion) -> tuple[str, ...]:
     """Return the caution of an assumed hemispherical pressure, empty if none is assumed."""
     # Without the claim ``hertzian_pressure`` the friction law makes the assumption. With the claim
     # the normal law makes it, unless the friction load is Hertz's at the contact radius.
-    if "hertzian_pressure" not in normal.offers:
+    if "hertzian_pressure" not in normal.claims:
         return (
             "the friction law assumes a hemispherical pressure over the contact radius, with the "
             "friction load as its sum; the normal law does not declare one (model error)",
         )
-    if "elastic_hertz" in normal.offers or _hertzian(normal):
+    if "elastic_hertz" in normal.claims or _hertzian(normal):
         return ()
     return (
         "the normal law assumes a hemispherical pressure for its damped force; no theory gives "

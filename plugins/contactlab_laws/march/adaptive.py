@@ -85,9 +85,9 @@ class Adaptive(CoupledIntegrator):
 
     def integrate(
         self,
+        scene: Scene,
         normal: NormalMotion,
         tangential: TangentialLaw,
-        scene: Scene,
         observer: Observer | None = None,
     ) -> TangentialMotion:
         """Return the motion; impacts of a batch choose their own steps."""
@@ -113,9 +113,9 @@ class Adaptive(CoupledIntegrator):
 
     def integrate_coupled(
         self,
+        scene: Scene,
         normal: NormalMotion,
         tangential: TangentialLaw,
-        scene: Scene,
         observer: Observer | None = None,
     ) -> TangentialMotion:
         """Return the motion in steps that are doubled until no velocity changes by the tolerance.

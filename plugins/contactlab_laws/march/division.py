@@ -7,7 +7,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from contactlab.contracts import NormalContact, NormalMotion, NormalSample, Steps, TangentialLaw
+from contactlab.contracts import (
+    NormalContact,
+    NormalMotion,
+    NormalSample,
+    Steps,
+    TangentialLaw,
+    claims,
+)
 from contactlab.numeric.types import Array, Real
 
 #: Largest omega dt of the fastest tangential oscillation. From 2 on the leapfrog is unstable
@@ -38,7 +45,7 @@ GRADED, LEAST_RADIUS = 512, 1e-6
 def resolving(radians: Real, law: TangentialLaw) -> Real:
     """Return the least steps that resolve a tangential oscillation through ``radians``."""
     steps = radians / LARGEST_PHASE_STEP
-    if "partial_slip" not in law.offers:
+    if "partial_slip" not in claims(law):
         steps = np.maximum(steps, radians * np.sqrt(radians / (24.0 * LARGEST_LEAD)))
     return np.ceil(steps)
 

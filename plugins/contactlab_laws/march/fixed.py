@@ -20,6 +20,7 @@ from contactlab.contracts import (
     Steps,
     TangentialLaw,
     TangentialMotion,
+    claims,
     faults,
     judges,
     shares_loss,
@@ -58,7 +59,7 @@ def needed_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene | None =
     if not scene.shape and isinstance(stiffness, float):
         single = math.sqrt(stiffness / scene.pair.tangential_mass) * float(normal.duration)
         least = single / LARGEST_PHASE_STEP
-        if "partial_slip" not in law.offers:
+        if "partial_slip" not in claims(law):
             least = max(least, single * math.sqrt(single / (24.0 * LARGEST_LEAD)))
         return float(max(math.ceil(least), LEAST_STEPS)) if math.isfinite(least) else least
     omega = np.sqrt(stiffness / scene.pair.tangential_mass)
@@ -133,12 +134,12 @@ class FixedSteps(CoupledIntegrator):
         """Return how many steps each impact takes: ``steps``, or more if these are too few."""
         return refined(self.steps, needed) if self.refine else float(self.steps)
 
-    def resolution_for(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Real:
+    def resolution_for(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Real:
         """Return how many steps each impact takes."""
         steps: Real = self._taken(needed_steps(normal, tangential, scene))
         return steps
 
-    def errors(self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene) -> Errors:
+    def errors(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Errors:
         """Return the errors that the tangential law declares for as many steps."""
         if scene.inverse_mass is None:
             needed = needed_steps(normal, tangential, scene)
@@ -158,7 +159,7 @@ class FixedSteps(CoupledIntegrator):
         return np.where(needed <= most, np.maximum(self.steps, needed), np.inf)
 
     def cautions(
-        self, normal: NormalMotion, tangential: TangentialLaw, scene: Scene
+        self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw
     ) -> tuple[str, ...]:
         """Return a sentence if the steps are too few: the steps taken instead, or needed."""
         needed = needed_steps(normal, tangential, scene)
@@ -174,9 +175,9 @@ class FixedSteps(CoupledIntegrator):
 
     def integrate(
         self,
+        scene: Scene,
         normal: NormalMotion,
         tangential: TangentialLaw,
-        scene: Scene,
         observer: Observer | None = None,
     ) -> TangentialMotion:
         """Return the motion, in more steps than ``steps`` where these are too few.
@@ -202,9 +203,9 @@ class FixedSteps(CoupledIntegrator):
 
     def integrate_coupled(
         self,
+        scene: Scene,
         normal: NormalMotion,
         tangential: TangentialLaw,
-        scene: Scene,
         observer: Observer | None = None,
     ) -> TangentialMotion:
         """Return the motion, ``steps`` counted on the approach without friction."""

@@ -169,7 +169,7 @@ class _March:
         self.before = [entry(each) for each in (scene.normal_speed, *sides)]
         self.change: list[Any] = [0.0 * each for each in self.before]
         zero = self.change[0]
-        self.elastic = "elastic_hertz" in normal.law.offers
+        self.elastic = "elastic_hertz" in normal.claims
         self.shares = shares_loss(law, normal.law)
         self.work, self.loss, self.duration, self.shear = zero, zero, zero, zero
         self.greatest: list[Any] = [zero, zero, zero]

@@ -29,9 +29,8 @@ from contactlab_laws.differences import table as differences
 from contactlab_laws.jaeger.law import ProfileLaw, State
 from contactlab_laws.springs import doubling, errors, viscous, viscous_steps
 
-#: Claims of springs, without and with a loss in shear.
-OFFERS = ProfileLaw.offers | {"vectors"}
-SHARING = OFFERS | {"shares_loss"}
+#: The word that springs without a loss in shear do not offer.
+NO_LOSS = frozenset({"shares_loss"})
 #: What is said of too few springs beside a loss.
 NOISE = (
     "springs = {} with a loss in shear are noise where the contact grips: a rounding of the speed "
@@ -81,6 +80,7 @@ class Springs(ProfileLaw, CausalTangentialLaw):
     """
 
     api_version: ClassVar[int] = 2
+    offers: ClassVar[frozenset[str]] = ProfileLaw.offers | {"vectors", "shares_loss"}
     resolution: ClassVar[str | None] = "springs"
 
     springs: int = count(default=50, most=100_000)
@@ -93,11 +93,9 @@ class Springs(ProfileLaw, CausalTangentialLaw):
             rule = 'must be even with grid = "doubling", which merges springs in pairs'
             raise refuse("springs", self.springs, rule, f"take {self.springs + 1}")
 
-    def _offers(self) -> frozenset[str]:
-        """Return the claims; springs share the loss of a viscous normal law unless told not to."""
-        return SHARING if self.shear_loss else OFFERS
-
-    offers: ClassVar[Any] = property(_offers)
+    def waives(self) -> frozenset[str]:
+        """Return the loss that springs share with a viscous normal law, if they are told not to."""
+        return super().waives() if self.shear_loss else NO_LOSS
 
     def books_bound(self, scene: Scene) -> Real:
         """Return 0.05 + 0.03/n: the fewest steps leave 0.03, one spring 0.02 whatever the steps.
@@ -116,7 +114,7 @@ class Springs(ProfileLaw, CausalTangentialLaw):
         friction: Any = scene.friction_coefficient * normal.total_load_impulse
         reduced: Any = abs(scene.slip_velocity) - friction / scene.pair.tangential_mass
         least: Any = 0.0
-        if "kelvin_voigt" in normal.offers:
+        if "kelvin_voigt" in normal.claims:
             least = normal.final_rate * scene.friction_coefficient / scene.pair.stiffness_ratio
         where = (abs(scene.psi1) >= 1.0) & (reduced >= least)
         if scene.shape or where:
@@ -126,7 +124,7 @@ class Springs(ProfileLaw, CausalTangentialLaw):
 
     def _tabulated(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
         """Return the answer of ``rebound``, where it is asked for or no step can follow."""
-        if "kelvin_voigt" not in normal.offers:
+        if "kelvin_voigt" not in normal.claims:
             return ()
         law: Any = normal.law
         rate = law.unfollowed_rate(scene)
@@ -145,7 +143,7 @@ class Springs(ProfileLaw, CausalTangentialLaw):
         if shared:
             measured = self.shear_loss == 1.0 and self.springs >= errors.LEAST_MEASURED
         else:
-            measured = "elastic_hertz" in normal.law.offers
+            measured = "elastic_hertz" in normal.claims
         if not measured:
             return Errors()
         if scene.inverse_mass is not None:

@@ -79,7 +79,7 @@ class Viscoelastic(Relaxing, Tabulated):
     """
 
     api_version: ClassVar[int] = 2
-    claims: ClassVar[frozenset[str]] = Relaxing.claims | {"kelvin_voigt"}
+    offers: ClassVar[frozenset[str]] = Relaxing.offers | {"kelvin_voigt"}
 
     speed_loss: float | None = quantity("(s/m)^(1/5)", rule=LOSS, default=None)
     restitutions: tuple[tuple[float, float], ...] | None = attrs.field(

@@ -18,6 +18,7 @@ import numpy as np
 from contactlab.compose.normal_motion import normal_motion
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.simulation import Simulation
+from contactlab.contracts.law import claims
 from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array, Real
@@ -116,7 +117,7 @@ def row(law: NormalLaw) -> list[str]:
     psi1, chi = impacts(e)
     exact = pointwise(law, psi1, chi)
     choice = float(np.abs(tsuji(e) - exact).max())
-    sharing = springs(law, psi1, chi) if "viscous" in law.offers else exact
+    sharing = springs(law, psi1, chi) if "viscous" in claims(law) else exact
     shared = float(np.abs(tsuji_sharing(e) - sharing).max())
     sizes = choice, shared, *by_springs(law, e)
     return [key(law), f"{e:g}", *(f"{size:.1e}" for size in sizes)]

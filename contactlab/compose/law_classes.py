@@ -1,0 +1,58 @@
+"""What a class of laws must have beside its methods: checked once, before the class is used."""
+
+from __future__ import annotations
+
+import inspect
+from functools import lru_cache
+
+from contactlab.contracts.integrator import CoupledIntegrator, Integrator
+from contactlab.contracts.law import API_VERSION, Law
+
+#: Methods of integrators that are called with the impact, its normal motion and the law, and their
+#: first arguments. One in another order would be run with arguments exchanged.
+ORDERED = ("integrate", "integrate_coupled", "resolution_for", "errors", "cautions")
+ARGUMENTS = ("scene", "normal", "tangential")
+
+
+@lru_cache(maxsize=256)
+def unfit(law: type[Law]) -> str | None:
+    """Return why a class cannot be used as a law, with a remedy; None if it can."""
+    version = getattr(law, "api_version", None)
+    if version != API_VERSION:
+        return (
+            f"{law.__name__}.api_version is {version!r}, contactlab has {API_VERSION}; if the law "
+            "keeps to these contracts, write "
+            f"api_version: ClassVar[int] = {API_VERSION} in its class"
+        )
+    for name, words in (("offers", law.offers), ("needs", law.needs)):
+        if not isinstance(words, frozenset):
+            return (
+                f"{law.__name__}.{name} must be a frozenset, a constant of the class; waives() "
+                "returns the words that parameters take away"
+            )
+        if not all(map(_word if name == "offers" else _word_or_law, words)):
+            entries = "words" if name == "offers" else "words, or classes of laws"
+            return f"{law.__name__}.{name} = {words!r}: must be {entries}"
+    return _exchanged(law) if issubclass(law, Integrator) else None
+
+
+def _word(value: object) -> bool:
+    return isinstance(value, str)
+
+
+def _word_or_law(value: object) -> bool:
+    return _word(value) or (isinstance(value, type) and issubclass(value, Law))
+
+
+def _exchanged(law: type[Integrator]) -> str | None:
+    """Return which method of an integrator has other first arguments than those of the contract."""
+    for name in ORDERED:
+        if name == "integrate_coupled" and not issubclass(law, CoupledIntegrator):
+            continue
+        names = [*inspect.signature(getattr(law, name)).parameters][1:]  # without self
+        if tuple(names[: len(ARGUMENTS)]) != ARGUMENTS:
+            return (
+                f"{law.__name__}.{name} has the arguments ({', '.join(names)}); an integrator is "
+                f"called with ({', '.join(ARGUMENTS)}), in this order and by these names"
+            )
+    return None
