@@ -15,8 +15,6 @@ from contactlab.numeric.types import Real
 from contactlab.outcome.plan import PSI2_ERROR, TANGENTIAL_MOTION, Clause, Plan
 
 PARTED = "collision: the bodies separate, they pass through untouched"
-#: Seconds that springs take for impacts with a restitution beyond the table: the first, and each at
-#: chi = 3; they grow as chi^0.75.
 
 
 def collision_plan(plan: Plan, met: Encounter | None, passed: NDArray[np.bool_]) -> Plan:

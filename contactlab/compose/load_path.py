@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from contactlab.compose import composition
 from contactlab.compose.acceptance import accept
+from contactlab.compose.law_words import name_of
 from contactlab.compose.path_steps import Followed, Points, followed
 from contactlab.compose.unfollowed import refusal
 from contactlab.contracts import faults
@@ -95,7 +96,7 @@ class LoadPath(Answer):
         return [
             *self.tangential.path_cautions(),
             *of_taken(self.normal, self.tangential),
-            *(text for law in round_ for text in of_ellipse(self.scene, type(law).__name__)),
+            *(text for law in round_ for text in of_ellipse(self.scene, name_of(law))),
             *path_cautions(self.scene, deepest, plastic="plastic" in claims(self.normal)),
         ]
 

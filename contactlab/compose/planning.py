@@ -12,6 +12,7 @@ from contactlab.compose.answers import Mask
 from contactlab.compose.composition import Laws
 from contactlab.compose.coupled import WHOLE
 from contactlab.compose.error_cautions import of_errors
+from contactlab.compose.law_words import in_words, name_of
 from contactlab.compose.normal_motion import normal_motion, normal_or_failed
 from contactlab.compose.normal_spin_words import with_normal_spin
 from contactlab.compose.solve import ways
@@ -109,7 +110,7 @@ def _words(
     if not some(masks.known):
         return (), (), ()
     used = way.laws
-    law = f"{used.normal!r}, {way.how()}"
+    law = f"{in_words(used.normal)}, {way.how()}"
     computed = [Clause(f"normal motion: {law}", masks.known)]
     elongation = elongation_of(way.scene.pair)
     if some(elliptic := masks.known & (elongation > 1.0)):
@@ -118,7 +119,7 @@ def _words(
     if used is not laws:
         computed.append(Clause(_in_place(laws, used), masks.known))
     if some(masks.marched):
-        text = f"tangential motion: {used.integrator!r} over {used.tangential!r}"
+        text = f"tangential motion: {in_words(used.integrator)} over {in_words(used.tangential)}"
         computed.append(Clause(text, masks.marched, code=TANGENTIAL_MOTION))
     alone = way.one_by_one(masks)
     if scene.shape and some(alone) and (path := used.capability.path) is not None:
@@ -131,7 +132,7 @@ def _words(
         computed += _error_clauses(what, error, masks.ended, advice)
     left_out = _not_marched(columns, masks)
     if _loses_in_pressure_alone(way):
-        name = type(used.tangential).__name__
+        name = name_of(used.tangential)
         left_out.append(Clause(f"loss in shear: {name} has none beside this law", masks.known))
     left_out += way.left_out(masks)
     words, unknown, pressure = yield_unknown(scene)
@@ -158,7 +159,7 @@ def _loses_in_pressure_alone(way: Way) -> bool:
 def _in_place(laws: Laws, used: Laws) -> str:
     """Return which laws stand in for those that nobody named, and why."""
     pairs = [
-        f"{type(new).__name__} for {type(old).__name__}"
+        f"{name_of(new)} for {name_of(old)}"
         for old, new in zip(laws, used, strict=True)
         if type(new) is not type(old)
     ]
@@ -190,7 +191,7 @@ def _cautions(way: Way, scene: Scene, motion: Motion | None, masks: Masks) -> Cl
         of_laws += ask(laws.integrator, remarks, marched, normal, laws.tangential)
     for law in (laws.normal, laws.tangential):
         if "elliptic" not in claims(law):
-            said += of_ellipse(whole, type(law).__name__)
+            said += of_ellipse(whole, name_of(law))
     own = [text for text in dict.fromkeys(of_laws) if text not in said]
     said += [*own, *way.own_cautions(bool(own)), *of_taken(way.laws.normal, way.laws.tangential)]
     said += [
@@ -226,7 +227,7 @@ def _books(laws: Laws, scene: Scene, motion: Motion) -> list[Clause]:
         return []
     text = (
         f"energy books: off by {{:.2g}} of the energy at the start, and "
-        f"{type(laws.tangential).__name__} declares no bound (books_bound); with more steps a "
+        f"{name_of(laws.tangential)} declares no bound (books_bound); with more steps a "
         "numerical error falls, what the law makes by its nature stays"
     )
     return [Clause(text, where, (np.asarray(share),))]

@@ -174,10 +174,14 @@ class Registry:
         except ValueError as error:
             raise ValueError(f"{name}: {error}") from error
 
-    def short_name(self, law: Law) -> str:
-        """Return the name of an installed law, without its kind."""
-        info = self._origin(type(law))
-        return type(law).__name__ if info is None else info.name.partition(".")[2]
+    def short_name(self, law: Law | type[Law]) -> str:
+        """Return the name of an installed law, without its kind; that of its class if it has none.
+
+        A law in a file has the name of the file and of the class.
+        """
+        law_class = law if isinstance(law, type) else type(law)
+        info = self._origin(law_class)
+        return law_class.__name__ if info is None else info.name.partition(".")[2]
 
     def describe(self, law: Law | type[Law]) -> str:
         """Return a law's name, distribution and version; its class if no distribution offers it."""

@@ -16,6 +16,7 @@ import numpy as np
 
 from contactlab.compose.answers import Answered, Mask
 from contactlab.compose.composition import Laws
+from contactlab.compose.law_words import in_words, name_of
 from contactlab.compose.solved_motion import FailedMotion, UnfollowedMotion
 from contactlab.contracts import faults
 from contactlab.contracts.law import Law
@@ -182,7 +183,8 @@ class Way(Entries, ABC):
     def refuse_history(self, history: bool | str) -> None:
         """Refuse the history of a batch whose impacts have instants of their own."""
         if self.scene.shape:
-            rule = f"impacts of a batch have instants of their own under {self.laws.tangential!r}"
+            law = in_words(self.laws.tangential)
+            rule = f"impacts of a batch have instants of their own under {law}"
             raise refuse("history", history, rule, "run them one by one")
 
 
@@ -193,7 +195,7 @@ def ask(law: Law, question: Callable[..., tuple[str, ...]], *about: object) -> l
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # the numbers are sound without; a plug-in ends no process
-        return [f"cautions of {type(law).__name__}: not known, {faults.raised(error)}"]
+        return [f"cautions of {name_of(law)}: not known, {faults.raised(error)}"]
 
 
 def blocks(size: int, block: int) -> list[slice]:

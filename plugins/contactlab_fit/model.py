@@ -8,6 +8,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from contactlab.compose.law_words import in_words
 from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
@@ -166,8 +167,8 @@ class Model:
             return TABULATED
         simulation = simulation or Simulation()
         if self.tabled:
-            return f"{simulation.normal!r}, partial slip (tabulated rebound)"
-        return f"{simulation.normal!r}, {simulation.tangential!r}, {simulation.integrator!r}"
+            return f"{in_words(simulation.normal)}, partial slip (tabulated rebound)"
+        return ", ".join(map(in_words, simulation.laws))
 
 
 def opened(scene: object, given: Mapping[str, Array]) -> Scene | SceneFile:

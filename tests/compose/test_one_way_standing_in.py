@@ -155,7 +155,7 @@ def test_a_run_of_a_scene_in_space_is_what_collide_answers():
     assert np.array_equal(made.result.psi2, result.psi2)
     assert made.result.laws == result.laws
     assert "springs" in result.laws["tangential"]
-    assert "Springs for Fronts" in str(result.plan)
+    assert "springs for fronts" in str(result.plan)
     assert np.array_equal(made.velocity, result.velocity_in_space)
 
 

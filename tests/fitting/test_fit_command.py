@@ -94,8 +94,8 @@ def test_a_parameter_has_a_row_with_its_intervals(run, impacts):
                      ("--normal", "hunt_crossley", "--laws", "coulomb"),
                      "HuntCrossley(restitution=0.9, damping=None), Coulomb(), Events",
                      marks=pytest.mark.slow),
-        ("", ("--set", "normal.restitution=0.8", "--normal", "tsuji"), "Tsuji(restitution=0.8)"),
-        ("", ("--laws", "springs", "--integrator", "paper"), "Hertz(), Springs(springs=50"),
+        ("", ("--set", "normal.restitution=0.8", "--normal", "tsuji"), "tsuji (restitution=0.8)"),
+        ("", ("--laws", "springs", "--integrator", "paper"), "hertz, springs, paper"),
     ],
 )  # fmt: skip
 def test_laws_are_those_of_the_file_and_of_the_options(run, impacts, tmp_path, own, options, laws):

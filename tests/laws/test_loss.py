@@ -1,7 +1,5 @@
 """One loss for pressure and shear (theory §15): against other programs, closed forms and rings."""
 
-import re
-
 import attrs
 import numpy as np
 import pytest
@@ -229,25 +227,6 @@ def test_a_dashpot_that_answers_a_rate_by_more_than_that_rate():
     assert (off <= 0.1 * result.plan.restitution_error)[known].all()
 
 
-def test_the_plan_says_how_long_a_march_of_bodies_takes():
-    """About: seconds of the computer on which it was measured; in proportion in large batches."""
-
-    def seconds(plan):
-        found = [re.search(r"^tangential motion: .*: about (\S+) s$", str(text))
-                 for text in plan.computed]  # fmt: skip
-        return [float(each[1]) for each in found if each]
-
-    (one,), (few,), (many,) = (
-        seconds(springs(viscoelastic(0.7)).plan(random_planar(count, 9)))
-        for count in (1, 4000, 40000)
-    )
-    assert 0.1 <= one <= 1.0
-    assert many / few == pytest.approx(10.0, rel=0.2)
-    (in_space,) = seconds(springs(viscoelastic(0.7)).plan(random_in_space(4000, 9)))
-    assert in_space > 3.0 * few
-    assert seconds(springs("hertz").plan(random_planar(3, 9))) == []
-
-
 @pytest.mark.slow
 def test_a_rod_in_space():
     """The rod of theory §14 with loss, whose slip turns: springs' own limit."""
@@ -331,7 +310,7 @@ def test_the_caution_has_the_size_of_the_evidence():
     sliding = springs(viscoelastic(0.8)).plan(PLANAR(psi1=9.0, chi=CHI))
     assert not any("e_T" in text for text in map(str, sliding.cautions))
     alone = Simulation(normal=viscoelastic(0.8), tangential="annulus").plan(PLANAR(psi1=1.0, chi=1))
-    assert "loss in shear: Annulus has none beside this law" in map(str, alone.left_out)
+    assert "loss in shear: annulus has none beside this law" in map(str, alone.left_out)
     assert not any("loss in shear" in t for t in map(str, springs("hertz").plan(ball).left_out))
 
 
