@@ -46,7 +46,25 @@ if TYPE_CHECKING:
     from contactlab.compose.load_path import load_path
     from contactlab.compose.rebound import rebound
     from contactlab.compose.simulation import Simulation
+    from contactlab.contracts.contact import NormalContact
+    from contactlab.contracts.integrator import CoupledIntegrator, Integrator
+    from contactlab.contracts.motion import ClosedFormMotion
+    from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
+    from contactlab.contracts.path import Cost, PathTangentialLaw, Stretch
     from contactlab.contracts.status import Status
+    from contactlab.contracts.tangential import (
+        AllStepsResponse,
+        AllStepsTangentialLaw,
+        CausalTangentialLaw,
+        CoupledTangentialLaw,
+        Errors,
+        SteppedTangentialLaw,
+        TangentialLaw,
+        TangentialResponse,
+        WholeImpactTangentialLaw,
+    )
+    from contactlab.contracts.tangential_motion import TangentialMotion
+    from contactlab.contracts.whole_impact import WholeImpact
     from contactlab.impact import material as materials
     from contactlab.impact import shapes
     from contactlab.impact.bodies import HalfSpace, Sphere
@@ -66,20 +84,40 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "AllStepsResponse",
+    "AllStepsTangentialLaw",
+    "CausalTangentialLaw",
+    "ClosedFormMotion",
+    "ClosedFormNormalLaw",
     "Collision",
+    "Cost",
+    "CoupledIntegrator",
+    "CoupledTangentialLaw",
     "Encounter",
     "EnergyLedger",
+    "Errors",
     "HalfSpace",
     "ImpactError",
     "ImpactResult",
+    "Integrator",
     "Material",
+    "NormalContact",
+    "NormalLaw",
+    "PathTangentialLaw",
     "PluginError",
     "RigidBody",
     "Scene",
     "Simulation",
     "Sphere",
     "Status",
+    "SteppedTangentialLaw",
+    "Stretch",
     "SweepFolder",
+    "TangentialLaw",
+    "TangentialMotion",
+    "TangentialResponse",
+    "WholeImpact",
+    "WholeImpactTangentialLaw",
     "collide",
     "create",
     "hookimpl",
@@ -142,6 +180,27 @@ MODULES = {
     "rebound": "compose.rebound",
     "register": "registration.manager",
     "shapes": "impact.shapes",
+    # the classes that authors of laws derive from, and what their methods return
+    "NormalLaw": "contracts.normal",
+    "ClosedFormNormalLaw": "contracts.normal",
+    "NormalContact": "contracts.contact",
+    "ClosedFormMotion": "contracts.motion",
+    "TangentialLaw": "contracts.tangential",
+    "SteppedTangentialLaw": "contracts.tangential",
+    "CausalTangentialLaw": "contracts.tangential",
+    "AllStepsTangentialLaw": "contracts.tangential",
+    "WholeImpactTangentialLaw": "contracts.tangential",
+    "CoupledTangentialLaw": "contracts.tangential",
+    "TangentialResponse": "contracts.tangential",
+    "AllStepsResponse": "contracts.tangential",
+    "Errors": "contracts.tangential",
+    "PathTangentialLaw": "contracts.path",
+    "Stretch": "contracts.path",
+    "Cost": "contracts.path",
+    "WholeImpact": "contracts.whole_impact",
+    "TangentialMotion": "contracts.tangential_motion",
+    "Integrator": "contracts.integrator",
+    "CoupledIntegrator": "contracts.integrator",
     # the public submodules
     "contracts": "contracts",
     "figures": "figures",

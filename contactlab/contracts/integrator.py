@@ -18,8 +18,9 @@ class Integrator(Law, kind="integrator"):
     Contract
     --------
     1. ``needs`` are the contracts of the laws that it runs, one of them of tangential laws.
-    2. ``integrate`` is pure and every loop is bounded. It never raises for a numerical failure:
-       it returns a status and the motion so far. An observer changes no result.
+    2. ``integrate`` is pure and every loop is bounded. It never raises, whatever a law does: it
+       returns a status, the motion so far, and a sentence that names the law, as
+       ``faults.sentence(law, what, step)`` makes it. An observer changes no result.
     3. A batch gives the same results as its impacts one by one. Impacts that end with
        the status of a law's fault run again apart, so that it may give a batch up by one.
     4. With a count as ``resolution`` it is of second order in the step, for smooth laws.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC
+from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, ClassVar
 
@@ -27,7 +28,8 @@ class Law(ABC):
        ``Parent.offers | {...}``. Words in use:
 
        ========================  ====================================================
-       ``radius``                the normal contact knows its contact radius
+       ``radius``                the normal contact knows its contact radius b: b² from R z, of
+                                 elastic spheres, to 2 R z, the section of a sphere
        ``hertzian_pressure``     pressure is a hemisphere over that radius, eq. (3)
        ``elastic_hertz``         the normal motion is the elastic impact of eqs (2)-(7)
        ``kelvin_voigt``          in unloading the pressure is Hertz's over b² = R (z + A z')
@@ -62,11 +64,16 @@ class Law(ABC):
     #: An option of a law is one number, for all impacts.
     _plain_options: ClassVar[bool] = True
     _kind: ClassVar[str]
+    #: Version of the contracts that the law was written for.
     api_version: ClassVar[int]
+    #: Words that the law claims.
     offers: ClassVar[frozenset[str]] = frozenset()
+    #: Words of the normal law, and classes of the other laws, that it runs beside.
     needs: ClassVar[frozenset[str | type]] = frozenset()
+    #: Parameter that makes answers finer.
     resolution: ClassVar[str | None] = None
-    expected_failures: ClassVar[Any] = MappingProxyType({})
+    #: Checks that it fails by its nature, with the reasons.
+    expected_failures: ClassVar[Mapping[str, str]] = MappingProxyType({})
 
     def __init_subclass__(cls, *, kind: str | None = None, **options: Any) -> None:
         """Set the kind of the laws of a contract."""

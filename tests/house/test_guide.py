@@ -24,6 +24,7 @@ from contactlab.outcome import energy, history, motion, plan, result
 from contactlab.study.validation import REFERENCE_PSI2
 from contactlab.testing import Verdict, check_law
 from contactlab_halfspace.checks import TORSION
+from tests.house import contract_page
 from tests.present import PACKAGE, ROOT, extra
 
 GUIDE = PACKAGE / "guide"
@@ -85,6 +86,11 @@ def extending():
     """Return the laws of the guide, each from the page that it stands on."""
     pages = [run(page)[0] for page in PARTS["extending"]]
     return {name: law for page in pages for name, law in vars(page).items() if name in LAWS}
+
+
+def test_the_contract_in_the_guide_is_that_of_the_code():
+    """``python -m tests.house.contract_page`` writes it anew."""
+    assert contract_page.FILE.read_text(encoding="utf-8") == contract_page.written()
 
 
 def test_topics_are_the_files():

@@ -11,7 +11,8 @@ from graphlib import TopologicalSorter
 import pytest
 
 import contactlab
-from tests.present import PACKAGE, ROOT
+from contactlab import contracts
+from tests.present import PACKAGE, ROOT, needs_sources
 
 #: The public modules: guide, read-me and examples import from no other.
 PUBLIC_MODULES = (
@@ -72,8 +73,24 @@ def test_the_map_of_the_package_names_every_room():
     assert sorted(ROOMS) == sorted(rooms - {"guide", "kernels"})  # neither has Python
 
 
-def test_the_face_has_at_most_twenty_four_names():
-    assert len(contactlab.__all__) <= 24
+def test_the_face_has_at_most_twenty_four_names_beside_those_of_authors_of_laws():
+    of_authors = set(contactlab.__all__) & set(contracts.__all__) - {"Scene", "Status"}
+    assert len(set(contactlab.__all__) - of_authors) <= 24
+    assert all(getattr(contactlab, name) is getattr(contracts, name) for name in of_authors)
+    derived_from = {name for name in contracts.__all__ if name.endswith(("Law", "Integrator"))}
+    assert derived_from - of_authors == {"Law"}  # which nobody derives from
+
+
+@needs_sources
+def test_laws_import_contracts_impact_and_numbers_only():
+    """Nor anything above, lazily or for types."""
+    laws = ROOT / "plugins" / "contactlab_laws"
+    rooms = {
+        (file.relative_to(laws).as_posix(), room)
+        for file in laws.rglob("*.py")
+        for room in imported_rooms(file.read_text())
+    }
+    assert {room for _, room in rooms} == {"contracts", "impact", "numeric"}, rooms
 
 
 def test_the_example_of_the_first_docstring_runs(capsys):
