@@ -26,8 +26,13 @@ def in_words(law: Law) -> str:
 
     They are those of an attrs class; of another class the name stands alone.
     """
-    told = ", ".join(_options(law))
+    told = own_options(law)
     return f"{name_of(law)} ({told})" if told else name_of(law)
+
+
+def own_options(law: Law) -> str:
+    """Return the options that differ from their defaults, as a user writes them: ``steps=400``."""
+    return ", ".join(_options(law))
 
 
 @lru_cache(maxsize=128)
@@ -36,7 +41,7 @@ def _name(law_class: type[Law]) -> str:
 
 
 def _options(law: Law) -> Iterator[str]:
-    """Yield the options as a user writes them, ``steps=400``."""
+    """Yield the options that differ from their defaults."""
     for field in attrs.fields(type(law)) if attrs.has(type(law)) else ():
         value = getattr(law, field.name)
         if field.init and field.repr and _differs(value, field.default):

@@ -7,7 +7,7 @@ import pytest
 
 import contactlab
 from contactlab import Scene
-from contactlab.contracts import NormalContact, SampledMotion
+from contactlab.contracts import NormalContact, SampledMotion, claims
 from contactlab.contracts.motion import MOST_SHARED
 from contactlab.contracts.sampled_motion import Ends
 
@@ -47,7 +47,7 @@ def test_totals_are_those_of_the_samples():
     # trapezia of 1, 2 and 1 s
     assert motion.total_load_impulse == 0.5 * 5.0 + 2.0 * 3.0 + 0.5 * 1.0
     assert type(motion.duration) is type(motion.total_load_impulse) is float
-    assert motion.offers == LAW.offers
+    assert motion.claims == claims(LAW)
 
 
 @pytest.mark.parametrize(

@@ -251,7 +251,7 @@ def test_options_that_do_not_answer_spin_say_so(options):
     """They give the answer without it, and the caution with its size."""
     still = Scene.nondimensional(psi1=1.0, chi=CHI, poisson_ratio=NU)
     law = simulation(rings=16, **options)
-    assert "normal_spin" not in law.tangential.offers
+    assert "normal_spin" not in law.laws.capability.tangential_claims
     result = law.run(spun(1.0, 0.5)).check()
     assert (result.psi2, result.w2) == (law.run(still).psi2, 0.5)
     assert "its friction, left out, shifts psi2 by about 0.33" in " ".join(result.cautions)
