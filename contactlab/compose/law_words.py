@@ -42,7 +42,8 @@ def _name(law_class: type[Law]) -> str:
 
 def _options(law: Law) -> Iterator[str]:
     """Yield the options that differ from their defaults."""
-    for field in attrs.fields(type(law)) if attrs.has(type(law)) else ():
+    law_class: type = type(law)
+    for field in attrs.fields(law_class) if attrs.has(law_class) else ():
         value = getattr(law, field.name)
         if field.init and field.repr and _differs(value, field.default):
             words = in_words(value) if isinstance(value, Law) else ADDRESS.sub("", shown(value))
