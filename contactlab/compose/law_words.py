@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from functools import lru_cache
 
 import attrs
@@ -32,7 +31,12 @@ def in_words(law: Law) -> str:
 
 def own_options(law: Law) -> str:
     """Return the options that differ from their defaults, as a user writes them: ``steps=400``."""
-    return ", ".join(_options(law))
+    words = [
+        f"{option}={_shown(value)}"
+        for name, option, default in _fields(type(law))
+        if (value := getattr(law, name)) is not default and _differs(value, default)
+    ]
+    return ", ".join(words)
 
 
 @lru_cache(maxsize=128)
@@ -40,14 +44,17 @@ def _name(law_class: type[Law]) -> str:
     return REGISTRY.short_name(law_class)
 
 
-def _options(law: Law) -> Iterator[str]:
-    """Yield the options that differ from their defaults."""
-    law_class: type = type(law)
-    for field in attrs.fields(law_class) if attrs.has(law_class) else ():
-        value = getattr(law, field.name)
-        if field.init and field.repr and _differs(value, field.default):
-            words = in_words(value) if isinstance(value, Law) else ADDRESS.sub("", shown(value))
-            yield f"{field.alias}={words}"
+@lru_cache(maxsize=128)
+def _fields(law_class: type) -> tuple[tuple[str, str, object], ...]:
+    """Return attribute, option and default of each option that is shown."""
+    fields = attrs.fields(law_class) if attrs.has(law_class) else ()
+    shown_fields = (field for field in fields if field.init and field.repr)
+    return tuple((field.name, field.alias or "", field.default) for field in shown_fields)
+
+
+def _shown(value: object) -> str:
+    """Return the value of an option in words, without an address."""
+    return in_words(value) if isinstance(value, Law) else ADDRESS.sub("", shown(value))
 
 
 def _differs(value: object, default: object) -> bool:
