@@ -11,8 +11,7 @@ from typing import Any, NamedTuple
 import attrs
 
 from contactlab.compose.composition import Laws, versions
-from contactlab.compose.pieces import Part, Piece
-from contactlab.compose.solve import solve_chunk
+from contactlab.compose.pieces import Part, Piece, solve_chunk
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.chunk_forms import Chunk

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.compose.rebound import restituted_error
-from contactlab.impact.cautions import contact_vectors
+from contactlab.impact.body_cautions import contact_vectors
 from contactlab.impact.encounter import Encounter
 from contactlab.numeric.arrays import plain, some
 from contactlab.numeric.types import Real

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Self
 
 import attrs
 import numpy as np
 
+from contactlab.compose import stand_ins
 from contactlab.compose.answers import Mask, check_motion, separated
+from contactlab.compose.composition import Laws
+from contactlab.compose.failed_motion import FailedMotion
 from contactlab.compose.normal_motion import normal_or_failed
-from contactlab.compose.solved_motion import FailedMotion
-from contactlab.compose.way import ONE_BY_ONE, Masks, Prepared, Way, ask, halves
+from contactlab.compose.way import ONE_BY_ONE, WHOLE, Masks, Prepared, Way, ask, halves
 from contactlab.contracts import faults, judges
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
@@ -24,7 +26,7 @@ from contactlab.numeric.arrays import chosen, every, spread
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
-from contactlab.outcome.plan import ENDLESS, MARCHED, Clause, PlanColumns, Reason
+from contactlab.outcome.plan import ENDLESS, MARCHED, Clause, PlanColumns
 
 #: Imbalance of the energy books that is no failure: where W is nearly singular the energy is the
 #: small difference of large products. Beyond a law's own bound the declared errors grow instead.
@@ -39,8 +41,6 @@ LITTLE = 1e-3
 GIVEN_UP = (Status.LAW_RAISED, Status.MALFORMED, Status.NON_FINITE)
 #: Statuses of impacts that were not followed to an end, by no fault of a law's answer.
 WITHOUT_END = (Status.NOT_SEPARATED, Status.TOO_FEW_STEPS, Status.UNRESOLVED)
-#: Why impacts are not marched.
-WHOLE = Reason("the law answers normal and tangential motion together")
 #: What a plan says of such impacts.
 TOGETHER = "normal and tangential motion together: friction changes the approach, or slip turns"
 OF_CONTACT = (
@@ -61,6 +61,11 @@ class Coupled(Way):
     both = as_integrator = True
     at_a_time = 1000  # their springs stay in the cache
     cancels = CANCELS
+
+    @classmethod
+    def of(cls, where: Any, scene: Scene, laws: Laws) -> Self:
+        """Return the way of such impacts, by laws that have an answer to them."""
+        return cls(where, scene, stand_ins.coupled(laws, scene))
 
     def prepare(self, history: bool | str) -> Prepared:
         """Return the approach without friction and columns of the plan, or raise LawFaultError."""

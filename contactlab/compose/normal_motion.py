@@ -7,15 +7,7 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from contactlab.compose.motion_solver import Solver
-from contactlab.compose.motion_solver_alone import Alone
-from contactlab.compose.solved_motion import (
-    FailedMotion,
-    MotionTable,
-    SolvedMotion,
-    UnfollowedMotion,
-    Units,
-)
+from contactlab.compose.failed_motion import FailedMotion, UnfollowedMotion
 from contactlab.contracts import faults
 from contactlab.contracts.law import claims
 from contactlab.contracts.motion import NormalMotion
@@ -28,6 +20,7 @@ from contactlab.numeric.checks import shown
 
 if TYPE_CHECKING:
     from contactlab.compose.composition import Laws
+    from contactlab.compose.solved_motion import MotionTable, SolvedMotion
 
 
 def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
@@ -66,6 +59,8 @@ def _open(law: NormalLaw, scene: Scene) -> NormalMotion:
     """Return the motion of a law that returns forces."""
     if (rate := law.unfollowed_rate(scene)) is not None and every(np.isfinite(rate)):
         return UnfollowedMotion(law, scene, rate)
+    from contactlab.compose.solved_motion import SolvedMotion, Units  # not for closed forms
+
     if "similar" in claims(law):
         one = Scene.nondimensional(psi1=0.0, chi=1.0)
         alone = _common(law, one)
@@ -80,7 +75,13 @@ def _open(law: NormalLaw, scene: Scene) -> NormalMotion:
 
 def _solved(law: NormalLaw, scene: Scene) -> SolvedMotion:
     """Return the motion solved in steps: of one impact in plain numbers, many times as fast."""
-    return Solver(law, scene).solve() if scene.shape else Alone(law, scene).solve()
+    if scene.shape:
+        from contactlab.compose.motion_solver import Solver
+
+        return Solver(law, scene).solve()
+    from contactlab.compose.motion_solver_alone import Alone
+
+    return Alone(law, scene).solve()
 
 
 def _common(law: NormalLaw, scene: Scene) -> MotionTable | None:

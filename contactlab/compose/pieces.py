@@ -10,6 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from contactlab.compose.composition import Laws
+from contactlab.compose.solve import outcome, ways
+from contactlab.compose.way import blocks
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.outcome.chunk_forms import Chunk
@@ -51,6 +54,16 @@ class Piece(NamedTuple):
             Motion.joined([piece.motion for piece in pieces], (chunk.size,)),
             next((piece.computer for piece in pieces if piece.computer), ""),
         )
+
+
+def solve_chunk(laws: Laws, scene: Scene, chunk: Chunk, block: int) -> Piece:
+    """Return the piece of a sweep's chunk, a block at a time; ``scene`` is the chunk alone."""
+    scenes = (scene.take(place) for place in blocks(chunk.size, block))
+    pieces = (outcome(ways(laws, each), each, False, None) for each in scenes)
+    columns, motions = zip(*pieces, strict=True)
+    shape = (chunk.size,)
+    joined = PlanColumns.joined(columns, shape), Motion.joined(motions, shape)
+    return Piece(chunk, *joined, computer())
 
 
 def unsolved(chunk: Chunk, axes: tuple[int, ...], status: Status, detail: str = "") -> Piece:

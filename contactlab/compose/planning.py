@@ -10,13 +10,11 @@ import numpy as np
 
 from contactlab.compose.answers import Mask
 from contactlab.compose.composition import Laws
-from contactlab.compose.coupled import WHOLE
 from contactlab.compose.error_cautions import of_errors
 from contactlab.compose.law_words import in_words, name_of
 from contactlab.compose.normal_motion import normal_motion, normal_or_failed
-from contactlab.compose.normal_spin_words import with_normal_spin
 from contactlab.compose.solve import ways
-from contactlab.compose.way import Masks, Way, ask
+from contactlab.compose.way import WHOLE, Masks, Way, ask
 from contactlab.contracts.law import claims
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
@@ -77,6 +75,8 @@ def plan_of(
     asked_for = _Asked(history, estimated)
 
     def words() -> Words:
+        from contactlab.compose.normal_spin_words import with_normal_spin  # only for words
+
         answered = ~columns.marched & (
             "normal_spin" in laws.capability.tangential_claims
         )  # no march takes spin

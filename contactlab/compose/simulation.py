@@ -13,19 +13,14 @@ import numpy as np
 from contactlab.compose import composition, solve
 from contactlab.compose.acceptance import accept
 from contactlab.compose.composition import Laws
-from contactlab.compose.error_estimate import estimated
 from contactlab.compose.normal_motion import normal_or_failed
-from contactlab.compose.pieces import Piece
 from contactlab.compose.planning import plan_of
-from contactlab.compose.sweep import one_axis, swept
 from contactlab.compose.way import Way
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import succeeded
 from contactlab.contracts.tangential import TangentialLaw
-from contactlab.impact.encounter import Encounter
-from contactlab.impact.grid import GridParts
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import taken
 from contactlab.numeric.checks import of_kind, refuse
@@ -39,16 +34,14 @@ from contactlab.outcome.result import ImpactResult
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
+    from contactlab.compose.pieces import Piece
+    from contactlab.impact.grid import GridParts
     from contactlab.outcome.sweep_folder import SweepFolder
 
 
-#: What to do with what users give in place of a scene.
-INSTEAD: dict[type, str] = {
-    **dict.fromkeys(
-        (str, Path), "of a file: case = read_scene(path); case.laws.simulation().run(case.scene)"
-    ),
-    Encounter: "for bodies in space use collide(encounter, simulation), or encounter.scene",
-}
+#: What to do with a file, and with bodies in space, that users give in place of a scene.
+FOR_FILES = "of a file: case = read_scene(path); case.laws.simulation().run(case.scene)"
+FOR_BODIES = "for bodies in space use collide(encounter, simulation), or encounter.scene"
 
 
 @arguments_told
@@ -172,6 +165,8 @@ class Simulation:
         result = _result(ways, scene, plan, motion, started, kept)
         if not estimate_error:
             return result
+        from contactlab.compose.error_estimate import estimated  # needed for an estimate only
+
         psi2, restitution = estimated(laws, result)
         return attrs.evolve(
             result, psi2_error_estimate=psi2, restitution_error_estimate=restitution
@@ -273,6 +268,9 @@ class Simulation:
             If a chunk cannot be written into ``keep`` or ``into``. Those before stay there, and the
             same sweep resumes from them.
         """
+        from contactlab.compose.sweep import one_axis, swept  # a single run needs none of this
+        from contactlab.impact.grid import GridParts
+
         started, laws = time.perf_counter(), self.laws
         if not (progress is None or callable(progress)):
             remedy = "give a function of done and total"
@@ -280,7 +278,7 @@ class Simulation:
         options: dict[str, Any] = {"progress": progress, "chunk": chunk}
         options["executor"] = executor
         if isinstance(scenes, str | Path) or hasattr(scenes, "scene"):
-            remedy = "give its .scene" if hasattr(scenes, "scene") else INSTEAD[str]
+            remedy = "give its .scene" if hasattr(scenes, "scene") else FOR_FILES
             raise refuse("scenes", scenes, "must be a Scene, or a sequence of them", remedy)
         if into is not None:
             return self._into(into, keep, scenes, options)
@@ -354,7 +352,10 @@ def _scene(scene: object) -> Scene:
     """Return ``scene``, or refuse an object of another class."""
     if type(scene) is Scene:
         return scene
-    found: Scene = of_kind("scene", scene, Scene, remedy="make one: Scene(...)", meant=INSTEAD)
+    from contactlab.impact.encounter import Encounter  # needed for the refusal only
+
+    meant: dict[type, str] = {str: FOR_FILES, Path: FOR_FILES, Encounter: FOR_BODIES}
+    found: Scene = of_kind("scene", scene, Scene, remedy="make one: Scene(...)", meant=meant)
     return found
 
 

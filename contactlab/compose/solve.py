@@ -6,16 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from contactlab.compose import stand_ins
 from contactlab.compose.acceptance import accept
 from contactlab.compose.composition import Laws, versions
-from contactlab.compose.coupled import Coupled
 from contactlab.compose.decoupled import Decoupled
-from contactlab.compose.pieces import Piece, computer
 from contactlab.compose.unfollowed import followed_apart, refuse_march
-from contactlab.compose.way import Way, blocks
+from contactlab.compose.way import Way
 from contactlab.impact.scene import Scene
-from contactlab.outcome.chunk_forms import Chunk
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import PlanColumns
@@ -30,7 +26,9 @@ def ways(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
         if part.inverse_mass is None:
             found += [Decoupled(*each, laws) for each in followed_apart(laws.normal, where, part)]
         else:
-            found.append(Coupled(where, part, stand_ins.coupled(laws, part)))
+            from contactlab.compose.coupled import Coupled  # spheres need none of this
+
+            found.append(Coupled.of(where, part, laws))
     found.reverse()
     return found
 
@@ -81,13 +79,3 @@ def plan_columns(found: Sequence[Way], scene: Scene, history: bool | str) -> Pla
     """Return the columns of the plan, without a march."""
     parts = [(way.where, way.prepare(history).columns) for way in found]
     return parts[0][1] if len(parts) == 1 else PlanColumns.merged(parts, scene.shape)
-
-
-def solve_chunk(laws: Laws, scene: Scene, chunk: Chunk, block: int) -> Piece:
-    """Return the piece of a sweep's chunk, a block at a time; ``scene`` is the chunk alone."""
-    scenes = (scene.take(place) for place in blocks(chunk.size, block))
-    pieces = (outcome(ways(laws, each), each, False, None) for each in scenes)
-    columns, motions = zip(*pieces, strict=True)
-    shape = (chunk.size,)
-    joined = PlanColumns.joined(columns, shape), Motion.joined(motions, shape)
-    return Piece(chunk, *joined, computer())

@@ -1,4 +1,4 @@
-"""Normal motions kept as tables, and motions without a course: failed, or not followed."""
+"""Normal motions kept as tables."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion, NormalSample
-from contactlab.contracts.status import Status
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
@@ -238,58 +237,3 @@ class SolvedMotion(NormalMotion):
 def _radius(squared: Array) -> Array:
     """Return the contact radius; interpolation may make its square negative."""
     return np.sqrt(np.maximum(squared, 0.0))
-
-
-class _UnknownMotion(NormalMotion):
-    """A normal motion without numbers: every one is NaN."""
-
-    def __init__(self, law: Law, scene: Scene) -> None:
-        self.law, self.scene = law, scene
-        unknown = batch.spread(math.nan, scene.shape)
-        self.duration = self.maximum_radius = self.maximum_approach = unknown
-        self.maximum_force = self.final_rate = self.total_load_impulse = unknown
-
-    def at(self, phase: Real) -> NormalSample:
-        """Return a sample whose values are all NaN."""
-        nothing = math.nan * (np.asarray(phase) + self.duration)
-        contact = NormalContact(nothing, nothing, nothing, nothing)
-        return NormalSample(nothing, nothing, nothing, contact, nothing)
-
-    def phase(self, fraction: Real) -> Real:
-        """Return pi times the fraction."""
-        return math.pi * np.asarray(fraction)
-
-
-class FailedMotion(_UnknownMotion):
-    """The normal motion of impacts whose normal law failed."""
-
-    accuracy = math.nan
-
-    def __init__(self, law: Law, scene: Scene, status: Status, detail: str) -> None:
-        super().__init__(law, scene)
-        shape = scene.shape
-        self.status, self.detail = batch.filled(status, shape), batch.filled(detail, shape)
-
-    def take(self, part: Index) -> FailedMotion:
-        """Return the motion of some impacts."""
-        status, detail = (
-            np.ravel(np.asarray(entry, dtype=object))[0] for entry in (self.status, self.detail)
-        )
-        return FailedMotion(self.law, self.scene.take(part), status, detail)
-
-
-class UnfollowedMotion(_UnknownMotion):
-    """A normal motion of which the rate at separation and the load impulse alone are known."""
-
-    accuracy = 0.0
-
-    def __init__(self, law: Law, scene: Scene, rate: Real) -> None:
-        super().__init__(law, scene)
-        self.final_rate = batch.spread(rate, scene.shape)
-        lost: Any = scene.normal_speed - self.final_rate
-        self.total_load_impulse = batch.spread(scene.pair.normal_mass * lost, scene.shape)
-
-    def take(self, part: Index) -> UnfollowedMotion:
-        """Return the motion of some impacts."""
-        rate = batch.taken(self.final_rate, self.scene.shape, part)
-        return UnfollowedMotion(self.law, self.scene.take(part), rate)

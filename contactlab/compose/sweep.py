@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from contactlab.compose.composition import Laws
-from contactlab.compose.pieces import Part, Piece, unsolved
-from contactlab.compose.solve import solve_chunk
+from contactlab.compose.pieces import Part, Piece, solve_chunk, unsolved
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse, whole

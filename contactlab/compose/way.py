@@ -16,8 +16,8 @@ import numpy as np
 
 from contactlab.compose.answers import Answered, Mask
 from contactlab.compose.composition import Laws
+from contactlab.compose.failed_motion import FailedMotion, UnfollowedMotion
 from contactlab.compose.law_words import in_words, name_of
-from contactlab.compose.solved_motion import FailedMotion, UnfollowedMotion
 from contactlab.contracts import faults
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
@@ -28,12 +28,14 @@ from contactlab.numeric.types import Array, Real
 from contactlab.outcome.energy import balanced, contradicted, powered
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion, sound
-from contactlab.outcome.plan import ENDLESS, MARCHED, UNKNOWN, Clause, PlanColumns
+from contactlab.outcome.plan import ENDLESS, MARCHED, UNKNOWN, Clause, PlanColumns, Reason
 
 #: Friction work over the energy at the start is this many times less accurate than psi2.
 WORK_ACCURACY = 10.0
 #: A failed batch of at most so many impacts is solved one by one; a larger batch is halved first.
 ONE_BY_ONE = 8
+#: Why impacts are not marched in which friction changes the approach.
+WHOLE = Reason("the law answers normal and tangential motion together")
 
 
 class Prepared(NamedTuple):

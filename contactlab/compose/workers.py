@@ -17,8 +17,7 @@ from typing import Any
 from contactlab.compose.calls import Calls
 from contactlab.compose.composition import Laws
 from contactlab.compose.lost import Lost, Rescue, stop
-from contactlab.compose.pieces import Part, Piece
-from contactlab.compose.solve import solve_chunk
+from contactlab.compose.pieces import Part, Piece, solve_chunk
 from contactlab.numeric.checks import refuse, whole
 
 #: Most processes: more than any machine has processors.

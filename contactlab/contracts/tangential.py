@@ -12,7 +12,6 @@ from contactlab.contracts.law import Law, claims
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.tangential_motion import Observer, TangentialMotion
 from contactlab.contracts.whole_impact import WholeImpact, no_force
-from contactlab.impact.coupling import coupling
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import AnyArray, Array, Mask, Real
 
@@ -189,6 +188,8 @@ class TangentialLaw(Law, kind="tangential"):
 
         Asked when a plan is read; after a run ``normal`` has the ends and maxima of the run.
         """
+        from contactlab.impact.coupling import coupling  # only for words
+
         return coupling(scene)
 
 

@@ -10,7 +10,6 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.impact.grid import product
 from contactlab.impact.motions import Motions
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import check_place, refuse
@@ -65,7 +64,11 @@ class Batches(Motions):
     @property
     def varied(self) -> Mapping[str, Array]:
         """The values of each entry that varies, of each impact, by name; empty if not known."""
-        return MappingProxyType(product(dict(self._axes)) if self._axes else dict(self._varied))
+        if not self._axes:
+            return MappingProxyType(dict(self._varied))
+        from contactlab.impact.grid import product  # needed for grids only
+
+        return MappingProxyType(product(dict(self._axes)))
 
     @property
     def axes(self) -> Mapping[str, Array]:

@@ -1,4 +1,4 @@
-"""Cautions about shells, and about numbers of rigid bodies that are probably in another unit."""
+"""Cautions about shells, and about numbers of rigid bodies that are probably mistaken."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from contactlab.impact.encounter import Encounter
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.rigid_body import FLAT, RigidBody
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import for_share
 from contactlab.numeric.types import Array, Real
 
 #: Mass over that of a solid sphere, or ellipsoid, below which it is a shell, with a wall below a
@@ -23,6 +24,9 @@ SHELL, HEAVY = 0.5, 20.0
 HOLLOW = 0.72
 #: Distance in m of a contact from the centre of mass above which the unit is suspect.
 LONG = 10.0
+#: Distance of a contact from the centre of mass, over the radius of gyration, above which a unit is
+#: suspect; the end of a slender rod has 2.1.
+LONG_ARM = 20.0
 #: Radius of curvature in m, and over the size (mass/density)^(1/3), above which it is suspect.
 CURVED, OVER_SIZE = 1.0, 20.0
 #: Radius of gyration over (mass/density)^(1/3), and over the distance of the contact, above which
@@ -151,6 +155,33 @@ def units_of_bodies(encounter: Encounter) -> list[str]:
             told += f"{rim / _most(speed):.3g} times as fast as its centre"
             said.append(f"unit: {told}; is it in turns a minute?")
     return said
+
+
+def contact_vectors(encounter: Encounter) -> tuple[str, ...]:
+    """Return the cautions of contacts of rigid bodies on the wrong side, or very far off."""
+    normal = encounter.normal / np.linalg.norm(encounter.normal, axis=-1)[..., None]
+    said = []
+    sides = (("contact", encounter.body, 1.0), ("target_contact", encounter.target, -1.0))
+    for name, body, sense in sides:
+        if not isinstance(body, RigidBody):
+            continue
+        arm = getattr(encounter, name)
+        behind = np.asarray(sense * np.sum(arm * normal, axis=-1) < 0.0)
+        if behind.any():
+            said.append(
+                f"{name} lies behind the centre of mass{for_share(behind)}: a convex body touches "
+                "on the other side; it leads from the centre of mass to the contact"
+            )
+        gyration = np.sqrt(
+            np.trace(body.inertia, axis1=-2, axis2=-1) / (3.0 * np.asarray(body.mass))
+        )
+        ratio = _most(np.linalg.norm(arm, axis=-1) / gyration)
+        if ratio > LONG_ARM:
+            said.append(
+                f"unit: {name} is {ratio:.3g} radii of gyration long: are lengths in m, and is the "
+                "inertia in kg m²?"
+            )
+    return tuple(said)
 
 
 def _curvature(body: RigidBody) -> float:

@@ -8,11 +8,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.impact.bodies import HalfSpace, Sphere
-from contactlab.impact.body_cautions import shells, units_of_bodies
-from contactlab.impact.body_contact import gap_of
-from contactlab.impact.encounter import Encounter
 from contactlab.impact.hertz import elongation_of, hertz_scales, peak_pressure, semi_axes
-from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import for_share
 from contactlab.numeric.types import Real
@@ -47,9 +43,6 @@ LEAST_SPIN, MOST_RIM = 50.0, 8.0
 #: Friction coefficient above which it is doubtful; speed over that of sound, sqrt(E/rho), above
 #: which waves carry off energy and Hertz's law is doubtful.
 MOST_FRICTION, SOUND_PART = 2.0, 0.1
-#: Distance of a contact from the centre of mass, over the radius of gyration, above which a unit is
-#: suspect; the end of a slender rod has 2.1.
-LONG_ARM = 20.0
 #: An angle that is a multiple of STEP_DEG degrees, to NEAR_DEG, when read in radians is suspect.
 STEP_DEG, NEAR_DEG = 5.0, 0.003
 
@@ -80,6 +73,9 @@ def size_of_contact(scene: Scene, radius: Real) -> float:
     encounter = scene.encounter
     if encounter is None or encounter.of_spheres:
         return float(np.max(largest))
+    from contactlab.impact.body_contact import gap_of  # spheres need none of this
+    from contactlab.impact.rigid_body import RigidBody
+
     one, other = semi_axes(scene.pair)
     minor, major = radius * np.minimum(one, other), radius * np.maximum(one, other)
     if np.all(np.equal(one, other)):
@@ -112,38 +108,15 @@ def path_cautions(scene: Scene, deepest: float, *, plastic: bool) -> tuple[str, 
 
 def rigid_bodies(scene: Scene) -> tuple[str, ...]:
     """Return the cautions of bodies that are no spheres: they ring."""
+    if scene.encounter is None:
+        return ()
+    from contactlab.impact.rigid_body import RigidBody  # spheres need none of this
+
     bodies = [body for body in named(scene).values() if isinstance(body, RigidBody)]
     if not bodies:
         return ()
     shortest = _least(hertz_scales(scene).duration)
     return tuple(text for body in bodies for text in body.cautions(shortest))
-
-
-def contact_vectors(encounter: Encounter) -> tuple[str, ...]:
-    """Return the cautions of contacts of rigid bodies on the wrong side, or very far off."""
-    normal = encounter.normal / np.linalg.norm(encounter.normal, axis=-1)[..., None]
-    said = []
-    sides = (("contact", encounter.body, 1.0), ("target_contact", encounter.target, -1.0))
-    for name, body, sense in sides:
-        if not isinstance(body, RigidBody):
-            continue
-        arm = getattr(encounter, name)
-        behind = np.asarray(sense * np.sum(arm * normal, axis=-1) < 0.0)
-        if behind.any():
-            said.append(
-                f"{name} lies behind the centre of mass{for_share(behind)}: a convex body touches "
-                "on the other side; it leads from the centre of mass to the contact"
-            )
-        gyration = np.sqrt(
-            np.trace(body.inertia, axis1=-2, axis2=-1) / (3.0 * np.asarray(body.mass))
-        )
-        ratio = _most(np.linalg.norm(arm, axis=-1) / gyration)
-        if ratio > LONG_ARM:
-            said.append(
-                f"unit: {name} is {ratio:.3g} radii of gyration long: are lengths in m, and is the "
-                "inertia in kg m²?"
-            )
-    return tuple(said)
 
 
 def of_ellipse(scene: Scene, name: str) -> tuple[str, ...]:
@@ -273,7 +246,11 @@ def unit_slips(scene: Scene) -> list[str]:
             slips.append(f"unit: {_modulus(name, body)}: is it in MPa?")
     if scene.sphere is None:
         met = scene.encounter
-        return slips if met is None or met.of_spheres else [*slips, *units_of_bodies(met)]
+        if met is None or met.of_spheres:
+            return slips
+        from contactlab.impact.body_cautions import units_of_bodies  # spheres need none of this
+
+        return [*slips, *units_of_bodies(met)]
     speed = math.hypot(_most(scene.normal_speed), _most(abs(scene.tangential_velocity)))
     spin = _most(abs(scene.spin))
     rim = _most(scene.sphere.radius) * spin
@@ -316,6 +293,8 @@ def unlikely(scene: Scene) -> list[str]:
     bodies = named(scene)
     if not bodies:
         return []
+    from contactlab.impact.body_cautions import shells  # numbers without bodies need none of this
+
     slips, speed = shells(scene, bodies), _most(scene.normal_speed)
     if (friction := _most(scene.friction_coefficient)) > MOST_FRICTION:
         slips.append(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from operator import attrgetter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -13,7 +13,6 @@ import numpy as np
 from contactlab.impact import groups, inverse_mass
 from contactlab.impact.batches import Batches
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
-from contactlab.impact.grid import GridParts, axes_of, product
 from contactlab.impact.material import Material
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import (
@@ -30,6 +29,9 @@ from contactlab.numeric.checks import (
 from contactlab.numeric.names import arguments_stated
 from contactlab.numeric.types import Array, Numbers, Real
 from contactlab.numeric.vectors import entry, over
+
+if TYPE_CHECKING:
+    from contactlab.impact.grid import GridParts
 
 #: Least kinetic energy of the normal motion, in J, and least tangential velocity, in m/s. Numbers
 #: computed from smaller values would have fewer than sixteen digits.
@@ -456,6 +458,8 @@ class Scene(Batches):
         ValueError
             If no entry varies, a list has more than one dimension, or the scene is refused.
         """
+        from contactlab.impact.grid import axes_of, product  # needed for grids only
+
         axes = axes_of(entries)
         return cls._maker(bodies, entries)(*bodies, **(entries | product(axes))).over(axes)
 
@@ -484,6 +488,8 @@ class Scene(Batches):
 
         def part(values: Mapping[str, Array]) -> Scene:
             return make(*bodies, **(entries | dict(values))).varying(values)
+
+        from contactlab.impact.grid import GridParts, axes_of  # needed for grids only
 
         return GridParts(axes_of(entries), size, part)
 

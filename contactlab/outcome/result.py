@@ -10,7 +10,6 @@ import attrs
 import numpy as np
 
 from contactlab.impact.bodies import Sphere
-from contactlab.impact.body_contact import pushed, seen
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import equal, of_each, plain, taken
 from contactlab.numeric.names import attributes_told
@@ -170,7 +169,9 @@ class ImpactResult(Answer, Generic[Each]):
         """
         speed, pair = self.scene.normal_speed, self.scene.pair
         if self.scene.frame is not None:
-            return None if self.scene.along is None else seen(self.scene, self.velocity_in_space)[0]
+            return (
+                None if self.scene.along is None else _seen(self.scene, self.velocity_in_space)[0]
+            )
         share = 1.0 if self.scene.sphere is None else pair.normal_mass / self.scene.sphere.mass
         return speed - share * (speed - self.motion.normal_velocity)
 
@@ -179,7 +180,9 @@ class ImpactResult(Answer, Generic[Each]):
         """Tangential velocity of the sphere's centre in m/s; None for a non-dimensional scene."""
         sphere = self.scene.sphere
         if sphere is None:
-            return None if self.scene.along is None else seen(self.scene, self.velocity_in_space)[1]
+            return (
+                None if self.scene.along is None else _seen(self.scene, self.velocity_in_space)[1]
+            )
         share = self.scene.pair.tangential_mass / sphere.mass
         return self.scene.tangential_velocity + share * self.motion.slip_velocity_change
 
@@ -209,6 +212,8 @@ class ImpactResult(Answer, Generic[Each]):
         encounter, axes = self.scene.encounter, self.scene.frame
         if axes is None:
             return None
+        from contactlab.impact.body_contact import pushed  # spheres need none of this
+
         return pushed(encounter, axes, self.impulse, self.couple)[name]
 
     @property
@@ -285,7 +290,7 @@ class ImpactResult(Answer, Generic[Each]):
         """e_t = centre's tangential velocity after over before; NaN where zero before."""
         after, before = self.rebound_tangential_velocity, self.scene.tangential_velocity
         if self.scene.along is not None:
-            before = seen(self.scene, self.scene.encounter.velocity)[1]
+            before = _seen(self.scene, self.scene.encounter.velocity)[1]
         return None if after is None else _ratio(after, before)
 
     @property
@@ -300,7 +305,7 @@ class ImpactResult(Answer, Generic[Each]):
         """Angle of the centre's path from the normal before the impact, in rad."""
         scene = self.scene
         if scene.along is not None:
-            normal, along = seen(scene, scene.encounter.velocity)
+            normal, along = _seen(scene, scene.encounter.velocity)
             return _angle(along, normal)
         angle = _angle(scene.along_slip(scene.tangential_velocity), scene.normal_speed)
         return of_each(angle, scene.shape)
@@ -443,6 +448,13 @@ def _numbers_told(value: Real) -> str:
     return (
         f"{value:.6g}" if np.ndim(value) == 0 else np.array2string(np.asarray(value), precision=6)
     )
+
+
+def _seen(scene: Scene, velocity: Any) -> tuple[Any, Any]:
+    """Return a velocity in space as ``body_contact.seen`` does, of an encounter alone."""
+    from contactlab.impact.body_contact import seen  # spheres need none of this
+
+    return seen(scene, velocity)
 
 
 def _ratio(after: Real, before: Real) -> Any:

@@ -92,6 +92,27 @@ def test_running_a_law_imports_no_other_law():
     assert {name.split(".")[1] for name in laws if "." in name} == needed
 
 
+#: What one elastic impact of spheres loads beside laws, contracts and numbers: nothing of bodies of
+#: other shapes, of spin about the normal, of sweeps and files, of normal laws without closed form.
+OF_A_RUN = """
+answer answers batches bodies cautions columns composition decoupled energy error_model
+failed_motion groups hertz history hooks installed inverse_mass loading material motion motions
+names normal_motion numerical_error plan planning registry result scene simulation solve way
+"""
+
+
+def test_a_central_elastic_run_loads_no_module_for_other_scenes():
+    lines = (
+        "import json, sys",
+        "from contactlab import Scene, Simulation",
+        "Simulation().run(Scene.nondimensional(psi1=1.2, chi=1.44))",
+        "names = [name.split('.') for name in sys.modules if name.startswith('contactlab.')]",
+        "common = ('contracts', 'numeric')",
+        "print(json.dumps([name[2] for name in names if name[2:] and name[1] not in common]))",
+    )
+    assert sorted(loaded("\n".join(lines))) == sorted(OF_A_RUN.split())
+
+
 def test_only_the_named_law_is_imported(stages):
     _, laws = stages[2]
     assert {name.split(".")[1] for name in laws if "." in name} == {"coulomb"}
