@@ -2,35 +2,56 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from matplotlib.axes import Axes
 
+from contactlab.figures.histories import on_axes
 from contactlab.figures.style import (
     Width,
     curve_colour,
     error_band,
-    figure_size,
     force_axes,
     friction_limit,
     label,
-    styled,
     zero_line,
 )
 from contactlab.impact.scene import entry_unit
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.types import Array, Places
+from contactlab.numeric.types import Array, Places, Real
 from contactlab.outcome.columns import quantity_named, unit_in
-from contactlab.outcome.history import History, scaled_forces
-from contactlab.outcome.result import ImpactResult
+from contactlab.outcome.history import WithHistory, scaled_forces
+from contactlab.outcome.plan import Plan
+
+
+class Drawn(WithHistory, Protocol):
+    """What is drawn of a result."""
+
+    @property
+    def plan(self) -> Plan:
+        """Its plan, with the declared error of psi2."""
+
+    @property
+    def psi1(self) -> Real:
+        """The local angle of incidence."""
+
+    @property
+    def rebound_slip_velocity(self) -> Real:
+        """The slip velocity at separation, in m/s."""
+
+    @property
+    def normal_velocity(self) -> Real:
+        """The rate of approach at separation, in m/s."""
+
+    @property
+    def psi2_error_estimate(self) -> Real | None:
+        """The estimated error of psi2."""
 
 
 def draw_result(
     axes: Axes | None,
-    result: ImpactResult,
+    result: Drawn,
     x: str | None,
     y: str | None,
     *,
@@ -74,7 +95,7 @@ def draw_result(
         return _quantities(drawn, result, x or _abscissa(result), y or "psi2")
 
 
-def _abscissa(result: ImpactResult) -> str:
+def _abscissa(result: Drawn) -> str:
     """Return psi1, or the first entry that varies where psi1 does not tell the impacts apart."""
     psi1: Any = result.psi1
     if np.shape(psi1) == result.scene.shape and np.ptp(psi1) > 0.0:
@@ -82,36 +103,7 @@ def _abscissa(result: ImpactResult) -> str:
     return next(iter(result.scene.varied), "psi1")
 
 
-def draw_history(axes: Axes | None, history: History, *, width: Width | None = None) -> Axes:
-    """Draw normal and tangential force over time, in the units of the history."""
-    force, time = history.unit("normal_force"), history.unit("time")
-    with on_axes(axes, width) as drawn:
-        zero_line(drawn)
-        for number, name in enumerate(("normal_force", "tangential_force")):
-            curves = drawn.plot(history.time, getattr(history, name), color=curve_colour(number))
-            curves[0].set_label(name.replace("_", " "))
-        drawn.set_xlabel(f"time ({time})")
-        drawn.set_ylabel(f"force ({force})")
-        drawn.legend()
-    return drawn
-
-
-@contextmanager
-def on_axes(axes: Axes | None, width: Width | None) -> Iterator[Axes]:
-    """Yield the Axes, or Axes of a new figure inside the style of the package."""
-    if axes is not None and width is not None:
-        raise refuse("width", width, "is that of a new figure", "leave it out where axes are given")
-    if axes is not None:
-        yield axes
-        return
-    from matplotlib import pyplot  # chooses a backend for the process
-
-    size = None if width is None else figure_size(width)
-    with styled(width=width):
-        yield pyplot.subplots(figsize=size)[1]
-
-
-def _forces(axes: Axes, result: ImpactResult) -> Axes:
+def _forces(axes: Axes, result: Drawn) -> Axes:
     """Draw the tangential force of a single impact with the friction limit."""
     time, tangential, normal = scaled_forces(result)
     zero_line(axes)
@@ -121,11 +113,12 @@ def _forces(axes: Axes, result: ImpactResult) -> Axes:
     return axes
 
 
-def _path(axes: Axes, result: ImpactResult) -> Axes:
+def _path(axes: Axes, result: Drawn) -> Axes:
     """Draw slip over approach in the plane, and the slip vector in space."""
     scene, history = result.scene, result.history
     outer = scene.slip_velocity, result.rebound_slip_velocity
-    slip = np.concatenate(([outer[0]], history.slip_velocity, [outer[1]]))
+    before, after = (np.asarray(each)[None] for each in outer)
+    slip = np.concatenate((before, history.slip_velocity, after))
     unit = unit_in("m/s", scene)
     zero_line(axes)
     if slip.ndim == 1:
@@ -147,7 +140,7 @@ def _path(axes: Axes, result: ImpactResult) -> Axes:
     return axes
 
 
-def _quantities(axes: Axes, result: ImpactResult, x: str, y: str) -> Axes:
+def _quantities(axes: Axes, result: Drawn, x: str, y: str) -> Axes:
     """Draw one quantity of a batch over another: a curve, or points if abscissas repeat."""
     scene = result.scene
     up = quantity_named(y, where="y")
@@ -171,7 +164,7 @@ def _quantities(axes: Axes, result: ImpactResult, x: str, y: str) -> Axes:
     return axes
 
 
-def _band(axes: Axes, result: ImpactResult, x: Array, y: Array, order: Places) -> None:
+def _band(axes: Axes, result: Drawn, x: Array, y: Array, order: Places) -> None:
     """Draw the visible numerical error of psi2, estimated or else declared."""
     error: Any = result.psi2_error_estimate
     if error is None:

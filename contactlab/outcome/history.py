@@ -75,7 +75,7 @@ class History:
 
         A new figure fills ``width`` columns of a page, ``"one"`` or ``"two"``.
         """
-        from contactlab.figures.results import draw_history  # matplotlib only when drawing
+        from contactlab.figures.histories import draw_history  # matplotlib only when drawing
 
         return draw_history(axes, self, width=width)
 

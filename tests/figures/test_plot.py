@@ -7,7 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from contactlab import Scene, Simulation
-from contactlab.figures.results import draw_history
+from contactlab.figures.histories import draw_history
 
 
 @pytest.fixture

@@ -7,7 +7,8 @@ import pytest
 from matplotlib.figure import Figure
 
 from contactlab import Scene, Simulation
-from contactlab.figures.results import draw_history, draw_result
+from contactlab.figures.histories import draw_history
+from contactlab.figures.results import draw_result
 from contactlab.figures.stick_slip import draw_stick_slip
 from contactlab.figures.style import LAW_COLOURS
 
