@@ -16,6 +16,26 @@ from hypothesis import HealthCheck, settings
 LONG = int(os.environ.get("CONTACTLAB_EXAMPLES", "5000"))
 QUICK = 60
 
+#: A law of a stranger.
+LAW = """
+from typing import ClassVar
+import attrs
+import contactlab
+from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
+
+@attrs.frozen(kw_only=True)
+class Mine(SteppedTangentialLaw):
+    api_version: ClassVar[int] = 2
+    def start(self, scene, normal):
+        return 0.0
+    def advance(self, state, increment, before, after):
+        return TangentialResponse(0.0, 0.0), state
+
+@contactlab.hookimpl
+def contactlab_law(name):
+    return Mine
+"""
+
 settings.register_profile(
     "quick", max_examples=QUICK, deadline=None, derandomize=True, database=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
@@ -78,3 +98,29 @@ def pytest_terminal_summary(terminalreporter):
         counts = ", ".join(f"{name} {count}" for name, count in sorted(tried.items()))
         total = sum(tried.values())
         terminalreporter.write_line(f"inputs tried: {total} ({counts})")
+
+
+@pytest.fixture
+def law_source():
+    return LAW
+
+
+@pytest.fixture
+def registry():
+    from contactlab.compose.registry import Registry
+
+    return Registry()
+
+
+@pytest.fixture
+def jax():
+    found = pytest.importorskip("jax", reason="JAX is not installed: pip install '.[recipes]'")
+    before = found.config.jax_enable_x64
+    found.config.update("jax_enable_x64", True)
+    yield found
+    found.config.update("jax_enable_x64", before)
+
+
+@pytest.fixture
+def torch():
+    return pytest.importorskip("torch", reason="PyTorch is not installed: pip install '.[recipes]'")
