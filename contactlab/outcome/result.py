@@ -297,7 +297,8 @@ class ImpactResult(Answer, Generic[Each]):
     def slip_restitution(self) -> Each:
         """Slip velocity after over before (psi2/psi1), along the slip; NaN where zero before."""
         scene = self.scene
-        after, before = map(scene.along_slip, (self.rebound_slip_velocity, scene.slip_velocity))
+        slips = self.rebound_slip_velocity, scene.slip_velocity
+        after, before = (scene.along_slip(slip) for slip in slips)
         return _ratio(after, before)
 
     @property
