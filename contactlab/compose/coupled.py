@@ -23,7 +23,7 @@ from contactlab.contracts.tangential_motion import Observer
 from contactlab.impact.cautions import OUTSIDE
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import chosen, every, spread
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Array, Index, Real
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import ENDLESS, MARCHED, Clause, PlanColumns
@@ -63,7 +63,7 @@ class Coupled(Way):
     cancels = CANCELS
 
     @classmethod
-    def of(cls, where: Any, scene: Scene, laws: Laws) -> Self:
+    def of(cls, where: Index, scene: Scene, laws: Laws) -> Self:
         """Return the way of such impacts, by laws that have an answer to them."""
         return cls(where, scene, stand_ins.coupled(laws, scene))
 

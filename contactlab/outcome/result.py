@@ -451,7 +451,7 @@ def _numbers_told(value: Real) -> str:
     )
 
 
-def _seen(scene: Scene, velocity: Any) -> tuple[Any, Any]:
+def _seen(scene: Scene, velocity: Array) -> tuple[Any, Any]:
     """Return a velocity in space as ``body_contact.seen`` does, of an encounter alone."""
     from contactlab.impact.body_contact import seen  # spheres need none of this
 
