@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from contactlab.contracts.contact import NormalContact
     from contactlab.contracts.integrator import CoupledIntegrator, Integrator
     from contactlab.contracts.motion import ClosedFormMotion
-    from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
+    from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw, UnfollowedNormalLaw
     from contactlab.contracts.path import Cost, PathTangentialLaw, Stretch
     from contactlab.contracts.status import Status
     from contactlab.contracts.tangential import (
@@ -116,6 +116,7 @@ __all__ = [
     "TangentialLaw",
     "TangentialMotion",
     "TangentialResponse",
+    "UnfollowedNormalLaw",
     "WholeImpact",
     "WholeImpactTangentialLaw",
     "collide",
@@ -183,6 +184,7 @@ MODULES = {
     # the classes that authors of laws derive from, and what their methods return
     "NormalLaw": "contracts.normal",
     "ClosedFormNormalLaw": "contracts.normal",
+    "UnfollowedNormalLaw": "contracts.normal",
     "NormalContact": "contracts.contact",
     "ClosedFormMotion": "contracts.motion",
     "TangentialLaw": "contracts.tangential",

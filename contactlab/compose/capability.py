@@ -7,7 +7,7 @@ from typing import NamedTuple
 from contactlab.compose.acceptance import may_refuse
 from contactlab.contracts.integrator import CoupledIntegrator, Integrator
 from contactlab.contracts.law import Law, claims
-from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
+from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw, UnfollowedNormalLaw
 from contactlab.contracts.path import PathTangentialLaw
 from contactlab.contracts.tangential import (
     CausalTangentialLaw,
@@ -23,7 +23,7 @@ class Capability(NamedTuple):
 
     Attributes
     ----------
-    closed, whole, path, causal, coupled, marcher : law or None
+    closed, unfollowed, whole, path, causal, coupled, marcher : law or None
         The law, if it is derived from that class.
     normal_claims, tangential_claims : frozenset of str
         Words that the laws offer, with their parameters.
@@ -34,6 +34,7 @@ class Capability(NamedTuple):
     """
 
     closed: ClosedFormNormalLaw | None
+    unfollowed: UnfollowedNormalLaw | None
     whole: WholeImpactTangentialLaw | None
     path: PathTangentialLaw | None
     causal: CausalTangentialLaw | None
@@ -50,6 +51,7 @@ class Capability(NamedTuple):
         laws: tuple[Law, ...] = normal, tangential, integrator
         return cls(
             closed=normal if isinstance(normal, ClosedFormNormalLaw) else None,
+            unfollowed=normal if isinstance(normal, UnfollowedNormalLaw) else None,
             whole=tangential if isinstance(tangential, WholeImpactTangentialLaw) else None,
             path=tangential if isinstance(tangential, PathTangentialLaw) else None,
             causal=tangential if isinstance(tangential, CausalTangentialLaw) else None,

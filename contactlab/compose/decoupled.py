@@ -52,7 +52,8 @@ class Decoupled(Way):
         """Return words on how the normal motion is found."""
         if self.laws.capability.closed is not None:
             return "in closed form"
-        if self.laws.normal.unfollowed_rate(self.scene) is not None:
+        law = self.laws.capability.unfollowed
+        if law is not None and law.unfollowed_rate(self.scene) is not None:
             return "by its rebound alone, as no step can follow it"
         return "integrated from first touch to separation"
 

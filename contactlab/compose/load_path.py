@@ -17,7 +17,7 @@ from contactlab.compose.path_steps import Followed, Points, followed
 from contactlab.compose.unfollowed import refusal
 from contactlab.contracts import faults
 from contactlab.contracts.law import claims
-from contactlab.contracts.normal import NormalLaw
+from contactlab.contracts.normal import NormalLaw, unfollowed_rate
 from contactlab.contracts.restitution import LEAST_RESTITUTION
 from contactlab.contracts.tangential import SteppedTangentialLaw, TangentialLaw
 from contactlab.impact.cautions import of_ellipse, path_cautions
@@ -213,7 +213,7 @@ def _laws(scene: Scene, normal: object, tangential: object) -> tuple[Any, Any]:
         raise ValueError(complaint)
     for law in (first, second):
         accept(law, scene)
-    if (rate := first.unfollowed_rate(scene)) is not None:
+    if (rate := unfollowed_rate(first, scene)) is not None:
         raise refusal(rate, scene, "along a path", f"take at least {LEAST_RESTITUTION}")
     return first, second
 

@@ -11,7 +11,7 @@ from contactlab.compose.failed_motion import FailedMotion, UnfollowedMotion
 from contactlab.contracts import faults
 from contactlab.contracts.law import claims
 from contactlab.contracts.motion import NormalMotion
-from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
+from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw, unfollowed_rate
 from contactlab.contracts.status import Status
 from contactlab.impact.batches import NoIndexError
 from contactlab.impact.scene import Scene
@@ -57,7 +57,7 @@ def _closed(law: ClosedFormNormalLaw, scene: Scene) -> NormalMotion:
 
 def _open(law: NormalLaw, scene: Scene) -> NormalMotion:
     """Return the motion of a law that returns forces."""
-    if (rate := law.unfollowed_rate(scene)) is not None and every(np.isfinite(rate)):
+    if (rate := unfollowed_rate(law, scene)) is not None and every(np.isfinite(rate)):
         return UnfollowedMotion(law, scene, rate)
     from contactlab.compose.solved_motion import SolvedMotion, Units  # not for closed forms
 

@@ -24,7 +24,7 @@ def ways(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
     # Where slip turns laws are asked first: their refusal and its remedy hold for the batch.
     for where, part in reversed(scene.parts(as_one=as_one)):
         if part.inverse_mass is None:
-            found += [Decoupled(*each, laws) for each in followed_apart(laws.normal, where, part)]
+            found += [Decoupled(*each, laws) for each in followed_apart(laws, where, part)]
         else:
             from contactlab.compose.coupled import Coupled  # spheres need none of this
 

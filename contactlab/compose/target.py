@@ -14,6 +14,7 @@ from typing import IO
 from contactlab.compose.composition import Laws
 from contactlab.compose.fingerprints import fingerprint
 from contactlab.compose.law_files import code_of
+from contactlab.compose.law_words import own_options
 from contactlab.compose.registry import REGISTRY
 from contactlab.numeric.checks import of_kind, refuse
 from contactlab.outcome.chunk_files import chunks_in, name_of
@@ -47,14 +48,14 @@ def held(
     here, and one that is in use.
     """
     path, by_kind = checked_folder(argument, folder), laws.by_kind()
+    origins = {kind: REGISTRY.describe(law) for kind, law in by_kind.items()}
     about = {
         **{f"code of {name}": checksum for name, checksum in code_of(by_kind).items()},
-        **{kind: f"{REGISTRY.describe(law)}: {law!r}" for kind, law in by_kind.items()},
+        **{kind: f"{origins[kind]} {own_options(law)}".rstrip() for kind, law in by_kind.items()},
         **more,
         "options": fingerprint(by_kind),
         **{name: metadata.version(name) for name in NUMBERS_FROM},
     }
-    origins = {kind: REGISTRY.describe(law) for kind, law in by_kind.items()}
     _make(argument, path, form)
     try:
         with alone_with(path / form.about) as (stream, locked):

@@ -9,11 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.compose.composition import RESTITUTION
+from contactlab.compose.composition import RESTITUTION, Laws
 from contactlab.compose.registry import REGISTRY
 from contactlab.compose.way import Way
 from contactlab.contracts import faults
-from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.restitution import LEAST_RESTITUTION
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, some
@@ -22,13 +21,15 @@ from contactlab.numeric.types import Mask, Real
 from contactlab.registration.names import short_name
 
 
-def followed_apart(normal: NormalLaw, where: Any, part: Scene) -> list[tuple[Any, Scene]]:
+def followed_apart(laws: Laws, where: Any, part: Scene) -> list[tuple[Any, Scene]]:
     """Return places and scenes of the impacts that no step follows, and of the others.
 
     Numbers that the former do not have are then nowhere beside those of the latter. ``where`` is
     the place of ``part`` in the whole scene.
     """
-    rate = normal.unfollowed_rate(part)
+    if (law := laws.capability.unfollowed) is None:
+        return [(where, part)]
+    rate = law.unfollowed_rate(part)
     if rate is None or not part.shape or every(known := np.isfinite(rate)) or not some(known):
         return [(where, part)]
     places = []
@@ -44,7 +45,8 @@ def followed_apart(normal: NormalLaw, where: Any, part: Scene) -> list[tuple[Any
 def refuse_march(way: Way, *, history: bool) -> None:
     """Refuse impacts to march, or with a history, whose normal motion no step can follow."""
     _, scene, laws = way
-    if (rate := laws.normal.unfollowed_rate(scene)) is None:
+    law = laws.capability.unfollowed
+    if law is None or (rate := law.unfollowed_rate(scene)) is None:
         return
     remedy = f"take at least {LEAST_RESTITUTION}"
     if way.both:

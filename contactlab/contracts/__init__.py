@@ -14,7 +14,12 @@ from contactlab.contracts.motion import (
     NormalSample,
     ScaledContact,
 )
-from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
+from contactlab.contracts.normal import (
+    ClosedFormNormalLaw,
+    NormalLaw,
+    UnfollowedNormalLaw,
+    unfollowed_rate,
+)
 from contactlab.contracts.path import Cost, LostPathError, PathTangentialLaw, Stretch
 from contactlab.contracts.restitution import restitution
 from contactlab.contracts.sampled_motion import Ends, SampledMotion
@@ -90,6 +95,7 @@ __all__ = [
     "TangentialLaw",
     "TangentialMotion",
     "TangentialResponse",
+    "UnfollowedNormalLaw",
     "WholeImpact",
     "WholeImpactTangentialLaw",
     "choice",
@@ -104,5 +110,6 @@ __all__ = [
     "restitution",
     "shares_loss",
     "sliding",
+    "unfollowed_rate",
     "without_tension",
 ]

@@ -57,15 +57,6 @@ class NormalLaw(Law, kind="normal"):
         """
         return math.nan
 
-    def unfollowed_rate(self, scene: Scene) -> Real | None:
-        """Return the rate of approach at separation, in m/s, of motions that no step can follow.
-
-        It is NaN for impacts whose motion can be followed; None, the default, if each can. The
-        friction load of an unfollowed motion does not pull. Tangential laws may answer it as a
-        whole; impacts that would be marched are refused.
-        """
-        return None
-
     def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
         """Return one sentence for each doubt about the model; asked when a plan is read."""
         if not named(scene):
@@ -80,3 +71,30 @@ class ClosedFormNormalLaw(NormalLaw):
     @abstractmethod
     def motion(self, scene: Scene) -> ClosedFormMotion:
         """Return the motion from first touch to separation, of this very ``scene``."""
+
+
+class UnfollowedNormalLaw(NormalLaw):
+    """Base of normal laws some of whose motions no step can follow, as of clay.
+
+    The friction load of such a motion does not pull. Tangential laws may answer it as a whole;
+    impacts that would be marched are refused.
+    """
+
+    @abstractmethod
+    def unfollowed_rate(self, scene: Scene) -> Real | None:
+        """Return the rate of approach at separation, in m/s, of motions that no step can follow.
+
+        It is NaN for impacts whose motion can be followed; None if each can.
+        """
+
+
+def unfollowed_rate(law: Law, scene: Scene) -> Real | None:
+    """Return the rate at separation of motions that no step can follow; None if each can.
+
+    Parameters
+    ----------
+    law : Law
+    scene : Scene
+        One impact or a batch.
+    """
+    return law.unfollowed_rate(scene) if isinstance(law, UnfollowedNormalLaw) else None

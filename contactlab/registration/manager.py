@@ -359,8 +359,9 @@ def register(plugin: Any, name: str | None = None) -> str | None:
     ValueError
         If the name is taken.
     """
-    if isinstance(plugin, type) and getattr(plugin, "kind", None) in KINDS:
-        full = name or f"{plugin.kind}.{plugin.__name__.lower()}"  # type: ignore[attr-defined]
+    kind = getattr(plugin, "_kind", None)  # of a law, which this room does not know
+    if isinstance(plugin, type) and kind in KINDS:
+        full = name or f"{kind}.{plugin.__name__.lower()}"
         return MANAGER.register_law(plugin, full)
     return MANAGER.register(plugin, name)
 

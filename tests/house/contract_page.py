@@ -17,7 +17,8 @@ it is derived from. `contactlab.contracts` has all names; those of classes that 
 returns stand in `contactlab` too.
 """
 CLASSES = (
-    "Law", "NormalLaw", "ClosedFormNormalLaw", "TangentialLaw", "WholeImpactTangentialLaw",
+    "Law", "NormalLaw", "ClosedFormNormalLaw", "UnfollowedNormalLaw", "TangentialLaw",
+    "WholeImpactTangentialLaw",
     "SteppedTangentialLaw", "CausalTangentialLaw", "AllStepsTangentialLaw", "PathTangentialLaw",
     "CoupledTangentialLaw", "Integrator", "CoupledIntegrator",
 )  # fmt: skip

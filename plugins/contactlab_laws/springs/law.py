@@ -21,6 +21,7 @@ from contactlab.contracts import (
     WholeImpact,
     shares_loss,
     sliding,
+    unfollowed_rate,
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Rule, choice, count, flag, quantity, refuse
@@ -126,9 +127,8 @@ class Springs(ProfileLaw, CausalTangentialLaw):
         """Return the answer of ``rebound``, where it is asked for or no step can follow."""
         if "kelvin_voigt" not in normal.claims:
             return ()
-        law: Any = normal.law
-        rate = law.unfollowed_rate(scene)
-        e = getattr(law, "restitution", None) if rate is None else -rate / scene.normal_speed
+        rate = unfollowed_rate(normal.law, scene)
+        e = getattr(normal.law, "restitution", None) if rate is None else -rate / scene.normal_speed
         if e is None or (rate is None and not self.table):
             return ()
         from contactlab_laws.viscoelastic import whole_impacts  # springs need no table

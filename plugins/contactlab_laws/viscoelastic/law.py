@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 
-from contactlab.contracts import NormalContact, Tabulated, without_tension
+from contactlab.contracts import NormalContact, Tabulated, UnfollowedNormalLaw, without_tension
 from contactlab.contracts.restitution import LEAST_RESTITUTION, restitution
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import plain
@@ -47,7 +47,7 @@ def measured(table: object) -> tuple[tuple[float, float], ...]:
 
 
 @attrs.frozen(kw_only=True)
-class Viscoelastic(Relaxing, Tabulated):
+class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
     """A contact of Kelvin-Voigt bodies, whose loss in shear springs share.
 
     In loading P = k z^0.5 (z + 1.5 A z') over b² = R z, k = (4/3) E* sqrt(R), P in N, positive in
