@@ -20,8 +20,12 @@ The package has these parts. Each imports only from the parts above it:
 ``registration`` names, hooks, the one plug-in manager of the process
 ``impact``       materials, bodies, scenes, encounters, Hertz's closed forms, cautions
 ``contracts``    base classes of normal laws, tangential laws and integrators; statuses
-``outcome``      results: motion, plan, energy books, history, tables and files
-``compose``      laws by name, simulations, sweeps, rebounds, collisions
+``outcome``      results: motion, plan, energy books, history, tables, files, figure
+``registry``     laws found by name, fitted together, made from options
+``solve``        impacts in the decoupled and the coupled way, plans, errors
+``runs``         simulations, sweeps here and by workers, into memory and folders
+``collisions``   encounters in space, rebounds, velocities of bodies
+``paths``        laws along given paths
 ``scene_file``   scenes and sweeps in TOML
 ``testing``      the conformance kit, which checks laws against their contracts
 ``study``        comparison, cost against error, stability, validation, the paper's figures
@@ -41,11 +45,9 @@ from typing import TYPE_CHECKING, Any
 from contactlab.numeric.names import imported_on_use
 
 if TYPE_CHECKING:
-    from contactlab.compose.collide import collide
-    from contactlab.compose.collision import Collision
-    from contactlab.compose.load_path import load_path
-    from contactlab.compose.rebound import rebound
-    from contactlab.compose.simulation import Simulation
+    from contactlab.collisions.collide import collide
+    from contactlab.collisions.collision import Collision
+    from contactlab.collisions.rebound import rebound
     from contactlab.contracts.contact import NormalContact
     from contactlab.contracts.integrator import CoupledIntegrator, Integrator
     from contactlab.contracts.motion import ClosedFormMotion
@@ -76,8 +78,10 @@ if TYPE_CHECKING:
     from contactlab.outcome.energy import EnergyLedger
     from contactlab.outcome.result import ImpactResult
     from contactlab.outcome.sweep_folder import SweepFolder
+    from contactlab.paths.load_path import load_path
     from contactlab.registration.hooks import PluginError, hookimpl
     from contactlab.registration.manager import plugin_manager, register
+    from contactlab.runs.simulation import Simulation
     from contactlab.scene_file import read_scene
     from contactlab_fit.estimation import fit as fit  # not in __all__: the folder can be taken out
 
@@ -150,14 +154,14 @@ def create(name: str, **options: object) -> Any:
     PluginError
         If the plug-in fails to load; the message has its traceback.
     """
-    from contactlab.compose.registry import REGISTRY
+    from contactlab.registry.registry import REGISTRY
 
     return REGISTRY.create(name, **options)
 
 
 #: Where the public names are: ``import contactlab`` imports none of them.
 MODULES = {
-    "Collision": "compose.collision",
+    "Collision": "collisions.collision",
     "Encounter": "impact.encounter",
     "EnergyLedger": "outcome.energy",
     "HalfSpace": "impact.bodies",
@@ -167,18 +171,18 @@ MODULES = {
     "PluginError": "registration.hooks",
     "RigidBody": "impact.rigid_body",
     "Scene": "impact.scene",
-    "Simulation": "compose.simulation",
+    "Simulation": "runs.simulation",
     "Sphere": "impact.bodies",
     "Status": "contracts.status",
     "SweepFolder": "outcome.sweep_folder",
-    "collide": "compose.collide",
+    "collide": "collisions.collide",
     "fit": "contactlab_fit",
     "hookimpl": "registration.hooks",
-    "load_path": "compose.load_path",
+    "load_path": "paths.load_path",
     "materials": "impact.material",
     "plugin_manager": "registration.manager",
     "read_scene": "scene_file",
-    "rebound": "compose.rebound",
+    "rebound": "collisions.rebound",
     "register": "registration.manager",
     "shapes": "impact.shapes",
     # the classes that authors of laws derive from, and what their methods return

@@ -107,7 +107,7 @@ def law_source():
 
 @pytest.fixture
 def registry():
-    from contactlab.compose.registry import Registry
+    from contactlab.registry.registry import Registry
 
     return Registry()
 

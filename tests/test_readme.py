@@ -13,8 +13,8 @@ import pytest
 from contactlab import Simulation, create, read_scene
 from contactlab.cli import guide
 from contactlab.cli.main import main
-from contactlab.compose.registry import REGISTRY
 from contactlab.impact.hertz import peak_pressure
+from contactlab.registry.registry import REGISTRY
 from contactlab.testing import CHECKS, Verdict, check_law
 from tests.present import ROOT, needs_sources
 

@@ -15,11 +15,11 @@ from typing import Any
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import add_scene, inputs
-from contactlab.compose.collision import Collision
-from contactlab.compose.simulation import Simulation
+from contactlab.collisions.collision import Collision
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.registration.hooks import Execute, hookimpl
+from contactlab.runs.simulation import Simulation
 
 #: Words in the picture for laws with a name of their own.
 GHOST_NAMES = {"coulomb": "rigid", "mindlin_cap": "capped spring"}

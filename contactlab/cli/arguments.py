@@ -26,9 +26,9 @@ from contactlab.registration.manager import MANAGER
 from contactlab.registration.names import KINDS
 
 if TYPE_CHECKING:
-    from contactlab.compose.simulation import Simulation
-    from contactlab.figures.style import Look, Width
     from contactlab.impact.scene import Scene
+    from contactlab.outcome.style import Look, Width
+    from contactlab.runs.simulation import Simulation
     from contactlab.scene_file import SceneFile
     from contactlab.study.benchmark import Benchmark
     from contactlab.study.stability import Stability
@@ -252,7 +252,7 @@ def tell_normal_spin(scene: Scene, *simulations: Simulation | None) -> None:
 
     Nothing is said if all ``simulations`` answer it; None stands for ``contactlab.rebound``.
     """
-    from contactlab.compose.normal_spin_words import with_normal_spin  # only for vectors
+    from contactlab.outcome.normal_spin_words import with_normal_spin  # only for vectors
 
     answered = all(
         each is not None and "normal_spin" in each.laws.capability.tangential_claims

@@ -51,7 +51,7 @@ def items(info: PluginInfo) -> list[Told]:
 
         arguments = {"method": methods(None)[0], "quick": True}
     if info.kind == "cautions":
-        from contactlab.compose.simulation import Simulation
+        from contactlab.runs.simulation import Simulation
 
         arguments = {"scene": reference(), "laws": Simulation().laws}
     if info.kind == "options":
@@ -109,8 +109,8 @@ def _material(item: Any) -> str:
 
 
 def _column(item: Any) -> str:
-    from contactlab.compose.simulation import Simulation
     from contactlab.outcome.columns import Column
+    from contactlab.runs.simulation import Simulation
 
     if not isinstance(item, Column):
         return f"is {type(item).__name__}, no Column"

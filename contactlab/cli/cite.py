@@ -13,9 +13,9 @@ import argparse
 from contactlab.cli import arguments as shared
 from contactlab.cli.compare import own_laws, simulations
 from contactlab.cli.scene import add_file, read
-from contactlab.compose.citations import bibtex, references, software
 from contactlab.impact.material import works
 from contactlab.registration.hooks import Execute, hookimpl
+from contactlab.registry.citations import bibtex, references, software
 from contactlab.scene_file import LawChoice
 
 

@@ -28,17 +28,17 @@ import numpy as np
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import add_file, add_ranges, check_alone, read
-from contactlab.compose.composition import ON_A_PATH
-from contactlab.compose.registry import REGISTRY
-from contactlab.compose.simulation import Simulation
-from contactlab.compose.solve import accept_scene
 from contactlab.impact.scene import Scene
 from contactlab.numeric.names import nearest
 from contactlab.outcome.columns import json_value, quantity_named
 from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.registration.names import KINDS, full_name, kind_of
+from contactlab.registry.composition import ON_A_PATH
+from contactlab.registry.registry import REGISTRY
+from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab.scene_file.laws import same_law
+from contactlab.solve.solve import accept_scene
 from contactlab.study import side_by_side
 from contactlab.study.comparison import Comparison, compare
 from contactlab.study.loops import loops

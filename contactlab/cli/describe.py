@@ -13,7 +13,7 @@ from contactlab.outcome.tables import answer, closing, largest_imbalance, sectio
 from contactlab.outcome.text_table import table
 
 if TYPE_CHECKING:
-    from contactlab.compose.collision import Collision
+    from contactlab.collisions.collision import Collision
 
 
 def describe(
@@ -40,7 +40,7 @@ def describe(
 
 def in_space(collision: Collision) -> str:
     """Return a table with the vectors of both bodies and the impulse."""
-    from contactlab.compose.collision import VECTORS_AFTER  # only for vectors
+    from contactlab.collisions.collision import VECTORS_AFTER  # only for vectors
 
     rows = []
     for name, unit in VECTORS_AFTER:

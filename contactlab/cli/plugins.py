@@ -18,8 +18,6 @@ from collections import Counter
 from typing import Any
 
 from contactlab.cli.arguments import FAILED, OK, add_progress, finite, print_json, progress
-from contactlab.compose.options import Option, options
-from contactlab.compose.registry import REGISTRY, PluginInfo
 from contactlab.contracts import Integrator, Law, PathTangentialLaw, Scene, TangentialLaw
 from contactlab.numeric.checks import POSITIVE, real, refuse
 from contactlab.numeric.names import nearest
@@ -37,6 +35,8 @@ from contactlab.registration.names import (
     parted,
     same_distribution,
 )
+from contactlab.registry.options import Option, options
+from contactlab.registry.registry import REGISTRY, PluginInfo
 
 
 @hookimpl
@@ -166,8 +166,8 @@ def _show(arguments: argparse.Namespace) -> int:
     """Print origin, contract and options of a law; only this action imports the law."""
     if (other := _no_law(arguments.name)) is not None:
         return _show_other(other, as_json=arguments.json)
-    from contactlab.compose.citations import references
-    from contactlab.compose.composition import WAYS
+    from contactlab.registry.citations import references
+    from contactlab.registry.composition import WAYS
 
     entry: dict[str, Any] = _entry(REGISTRY.info(arguments.name))
     law = REGISTRY.law_class(arguments.name)

@@ -33,7 +33,7 @@ from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.study.interrupts import was_interrupted
 
 if TYPE_CHECKING:
-    from contactlab.compose.collision import Collision
+    from contactlab.collisions.collision import Collision
 
 
 @hookimpl
@@ -80,7 +80,7 @@ def execute(arguments: argparse.Namespace) -> int:
     encounter = file.encounter if file else None
     collision = None
     if encounter is not None:
-        from contactlab.compose.collision import Collision  # only for vectors
+        from contactlab.collisions.collision import Collision  # only for vectors
 
         collision = Collision.of(encounter, result)
     if collision is not None:  # it knows more than the scene: contact vectors

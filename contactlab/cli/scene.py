@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlab.cli import arguments as shared
-from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
+from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab.scene_file.laws import beside
 

@@ -207,7 +207,7 @@ def _executor(count: int | None) -> AbstractContextManager[Executor | None]:
     """Return a context with worker processes, or with None for no ``count``."""
     if count is None:
         return contextlib.nullcontext()
-    from contactlab.compose.workers import processes  # only for --workers
+    from contactlab.runs.workers import processes  # only for --workers
 
     return processes(count)
 
@@ -221,14 +221,14 @@ def _folder(out: Path | None) -> Path:
 
 def _done(folder: Path) -> int:
     """Return the number of impacts that an earlier run finished."""
-    from contactlab.compose.target import count
+    from contactlab.runs.target import count
 
     return count("--resume", folder)
 
 
 def _clear(folder: Path) -> None:
     """Delete the impacts that were kept."""
-    from contactlab.compose.kept import remove
+    from contactlab.runs.kept import remove
 
     remove(folder)
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from contactlab.figures.names import name_curves
     from contactlab.figures.paper import draw_paper
     from contactlab.figures.stick_slip import draw_stick_slip
-    from contactlab.figures.style import law_style, ordered_colours, styled
+    from contactlab.outcome.style import law_style, ordered_colours, styled
     from contactlab_fit.figures import draw_fits as draw_fits  # its folder can be taken out
 
 __all__ = [
@@ -36,12 +36,12 @@ __getattr__, __dir__ = imported_on_use(
         "draw_fits": "contactlab_fit.figures",
         "draw_paper": "figures.paper",
         "draw_stick_slip": "figures.stick_slip",
-        "law_style": "figures.style",
+        "law_style": "outcome.style",
         "laws_over_sweep": "figures.comparison",
         "name_curves": "figures.names",
-        "ordered_colours": "figures.style",
+        "ordered_colours": "outcome.style",
         "save": "figures.files",
         "save_figure": "figures.files",
-        "styled": "figures.style",
+        "styled": "outcome.style",
     },
 )

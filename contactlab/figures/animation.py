@@ -12,11 +12,11 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from contactlab.figures.animation_panels import FLIGHT, Ball, Disc, Forces, Frame
-from contactlab.figures.style import styled
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Real
 from contactlab.outcome.files import written
 from contactlab.outcome.result import ImpactResult
+from contactlab.outcome.style import styled
 
 #: Frames before, during and after contact, and the duration of a frame, in ms.
 ARRIVING, IN_CONTACT, LEAVING = 14, 72, 22

@@ -12,7 +12,10 @@ from matplotlib.patches import Circle, Ellipse, Patch
 from numpy.typing import NDArray
 
 from contactlab.figures.stick_slip import NO_CONTACT, STATES
-from contactlab.figures.style import (
+from contactlab.impact.hertz import semi_axes
+from contactlab.outcome.history import scaled_forces
+from contactlab.outcome.result import ImpactResult
+from contactlab.outcome.style import (
     LAW_DASHES,
     QUIET,
     TIME_LABEL,
@@ -20,9 +23,6 @@ from contactlab.figures.style import (
     friction_limit,
     zero_line,
 )
-from contactlab.impact.hertz import semi_axes
-from contactlab.outcome.history import scaled_forces
-from contactlab.outcome.result import ImpactResult
 
 #: Length of the flight before and after contact, in radii of the sphere.
 FLIGHT = 2.2

@@ -13,13 +13,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
-from contactlab.compose.collision import Collision
+from contactlab.collisions.collision import Collision
 from contactlab.figures.animation import ARRIVING, DOTS, IN_CONTACT, LEAVING, SIZE, write_gif
-from contactlab.figures.style import LAW_DASHES, QUIET, curve_colour, styled, zero_line
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.types import Array
 from contactlab.outcome.columns import unit_in
 from contactlab.outcome.result import ImpactResult
+from contactlab.outcome.style import LAW_DASHES, QUIET, curve_colour, styled, zero_line
 
 #: Flight before and after contact: the body moves as far as this times its largest half-axis.
 FLIGHT = 1.6

@@ -11,7 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from contactlab.figures.names import name_curves
-from contactlab.figures.style import (
+from contactlab.impact.scene import entry_unit
+from contactlab.numeric.types import Array
+from contactlab.outcome.columns import quantity_named
+from contactlab.outcome.history import scaled_forces
+from contactlab.outcome.style import (
     BELOW,
     MEASURED_COLOUR,
     NARROW,
@@ -25,10 +29,6 @@ from contactlab.figures.style import (
     verbatim,
     zero_line,
 )
-from contactlab.impact.scene import entry_unit
-from contactlab.numeric.types import Array
-from contactlab.outcome.columns import quantity_named
-from contactlab.outcome.history import scaled_forces
 from contactlab.study.agreement import Agreement
 from contactlab.study.comparison import Comparison
 

@@ -15,7 +15,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from contactlab.figures.style import (
+from contactlab.numeric.checks import refuse
+from contactlab.outcome.files import written
+from contactlab.outcome.style import (
     NARROW,
     RESOLUTION,
     SLIDE,
@@ -26,8 +28,6 @@ from contactlab.figures.style import (
     figure_size,
     styled,
 )
-from contactlab.numeric.checks import refuse
-from contactlab.outcome.files import written
 
 #: Format of a picture by the suffix of its file.
 FORMATS = {".png": "png", ".pdf": "pdf", ".svg": "svg"}
@@ -95,7 +95,7 @@ def save(
     wide : bool
         True for a long legend.
     look : {"print", "slides"}
-        Look of a page, or of a screen: see ``contactlab.figures.style``.
+        Look of a page, or of a screen: see ``contactlab.outcome.style``.
     width : {"one", "two"}, optional
         Columns of a page that the picture fills, at the size of print.
     """

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from matplotlib.axes import Axes
 
-from contactlab.figures.style import law_style, verbatim, zero_line
 from contactlab.numeric.types import Array
+from contactlab.outcome.style import law_style, verbatim, zero_line
 
 
 def draw_loops(axes: Axes, curves: Mapping[str, tuple[Array, Array]], *, title: str = "") -> Axes:

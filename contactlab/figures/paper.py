@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from contactlab.figures.names import name_curves
-from contactlab.figures.style import (
+from contactlab.outcome.style import (
     ASIDE,
     QUIET,
     curve_colour,

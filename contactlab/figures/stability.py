@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from contactlab.figures.files import save
 from contactlab.figures.names import name_curves
-from contactlab.figures.style import ASIDE, Look, Width, label, law_style, verbatim
+from contactlab.outcome.style import ASIDE, Look, Width, label, law_style, verbatim
 from contactlab.study.error_map import ErrorMap
 
 #: Error of psi2 that is asked for, from the law's own limit.

@@ -8,9 +8,9 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from contactlab.figures.style import LAW_COLOURS, TIME_LABEL
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.result import ImpactResult
+from contactlab.outcome.style import LAW_COLOURS, TIME_LABEL
 
 #: Colours of the states of an annulus, in the order of their numbers in the map.
 STATES = {"slip, backward": LAW_COLOURS[1], "stick": "#C4C4C4", "slip, forward": LAW_COLOURS[0]}

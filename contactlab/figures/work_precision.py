@@ -11,8 +11,8 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from contactlab.figures.files import Panels
-from contactlab.figures.style import LAW_COLOURS, QUIET
 from contactlab.numeric.types import Array
+from contactlab.outcome.style import LAW_COLOURS, QUIET
 from contactlab.study.benchmark import Benchmark, Row
 
 #: Integrator that a law is drawn under: the first that ran it.

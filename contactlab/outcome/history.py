@@ -19,7 +19,7 @@ from contactlab.outcome.motion import Motion
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from contactlab.figures.style import Width
+    from contactlab.outcome.style import Width
 
 
 def _column(unit: str) -> Any:
@@ -75,7 +75,7 @@ class History:
 
         A new figure fills ``width`` columns of a page, ``"one"`` or ``"two"``.
         """
-        from contactlab.figures.histories import draw_history  # matplotlib only when drawing
+        from contactlab.outcome.history_figure import draw_history  # matplotlib only when drawing
 
         return draw_history(axes, self, width=width)
 

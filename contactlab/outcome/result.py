@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from contactlab.figures.style import Width
+    from contactlab.outcome.style import Width
 
     class OwnAxes(Axes):
         """Axes of a new figure, and not of a part of one."""
@@ -367,7 +367,7 @@ class ImpactResult(Answer, Generic[Each]):
         ValueError
             If a quantity is unknown, or a single impact has no history.
         """
-        from contactlab.figures.results import draw_result  # matplotlib only when drawing
+        from contactlab.outcome.result_figure import draw_result  # matplotlib only when drawing
 
         return draw_result(axes, self, x, y, width=width)
 

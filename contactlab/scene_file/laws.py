@@ -11,12 +11,6 @@ from typing import Any
 
 import attrs
 
-from contactlab.compose import composition
-from contactlab.compose.owners import options as options_of_laws
-from contactlab.compose.owners import takes_restitution
-from contactlab.compose.registry import REGISTRY, PluginError
-from contactlab.compose.simulation import Simulation
-from contactlab.compose.solve import ways
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
@@ -29,7 +23,13 @@ from contactlab.registration.names import (
     seen_from,
     short_name,
 )
+from contactlab.registry import composition
+from contactlab.registry.registry import REGISTRY, PluginError
+from contactlab.runs.owners import options as options_of_laws
+from contactlab.runs.owners import takes_restitution
+from contactlab.runs.simulation import Simulation
 from contactlab.scene_file.table import Table, flattened, nearest_of
+from contactlab.solve.solve import ways
 
 #: e = 1 - c v^(1/5) in words without blanks.
 FIFTH_ROOT = re.compile(r"1-(\d*\.?\d+(?:e[+-]?\d+)?)v\^\(?(?:1/5|0?\.2)\)?")

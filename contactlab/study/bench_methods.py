@@ -8,15 +8,15 @@ from typing import Any, TypeAlias
 
 import attrs
 
-from contactlab.compose.composition import DEFAULT_NORMAL
-from contactlab.compose.registry import REGISTRY, PluginError
-from contactlab.compose.simulation import Simulation
 from contactlab.contracts import WholeImpactTangentialLaw
 from contactlab.contracts.law import law_kind
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.registration.names import KINDS, full_name, is_place, kind_of, short_name
+from contactlab.registry.composition import DEFAULT_NORMAL
+from contactlab.registry.registry import REGISTRY, PluginError
+from contactlab.runs.simulation import Simulation
 from contactlab.study.posed import posed
 from contactlab.testing.load_paths import scene as ball
 

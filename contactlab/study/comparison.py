@@ -8,14 +8,14 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.compose.error_estimate import estimated
-from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import attributes_told
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.result import ImpactResult
+from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import SceneFile
+from contactlab.solve.error_estimate import estimated
 from contactlab.study.agreement import Agreement, LawRun, values_of
 from contactlab.study.interrupts import uninterrupted
 from contactlab.study.side_by_side import default_quantities, describe

@@ -7,14 +7,14 @@ from collections.abc import Sequence
 import attrs
 import numpy as np
 
-from contactlab.compose.composition import DEFAULT_NORMAL, STEPPED, exact, fixed_steps
-from contactlab.compose.registry import REGISTRY
-from contactlab.compose.simulation import Simulation
 from contactlab.contracts import TangentialLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array
 from contactlab.registration.names import full_name
+from contactlab.registry.composition import DEFAULT_NORMAL, STEPPED, exact, fixed_steps
+from contactlab.registry.registry import REGISTRY
+from contactlab.runs.simulation import Simulation
 from contactlab.study.bench_methods import Method
 from contactlab.study.posed import posed
 from contactlab.study.stability_cases import INCIDENCES

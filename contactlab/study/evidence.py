@@ -9,12 +9,12 @@ from pathlib import Path
 import attrs
 import numpy as np
 
-from contactlab.compose.composition import DEFAULT_NORMAL
-from contactlab.compose.registry import REGISTRY, PluginError
-from contactlab.compose.simulation import Simulation
 from contactlab.registration.bring import by_name
 from contactlab.registration.hooks import hookimpl
 from contactlab.registration.names import full_name, short_name
+from contactlab.registry.composition import DEFAULT_NORMAL
+from contactlab.registry.registry import REGISTRY, PluginError
+from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import SceneFile, read_scene
 from contactlab.study.agreement import Agreement, LawRun
 from contactlab.study.comparison import Comparison

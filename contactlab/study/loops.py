@@ -7,13 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactlab.compose.load_path import LoadPath, load_path
-from contactlab.compose.simulation import Simulation
 from contactlab.contracts import SteppedTangentialLaw
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array
+from contactlab.paths.load_path import LoadPath, load_path
+from contactlab.runs.simulation import Simulation
 
 #: Points of a quarter of a cycle: forces of smooth laws are then exact to 1e-3.
 QUARTER = 60

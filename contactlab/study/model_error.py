@@ -11,13 +11,13 @@ from collections.abc import Sequence
 import attrs
 import numpy as np
 
-from contactlab.compose.registry import REGISTRY
-from contactlab.compose.simulation import Simulation
 from contactlab.contracts import TangentialLaw, WholeImpactTangentialLaw
 from contactlab.impact.error_model import range_of
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array
 from contactlab.registration.names import full_name
+from contactlab.registry.registry import REGISTRY
+from contactlab.runs.simulation import Simulation
 from contactlab.study.posed import posed
 from contactlab.study.stability_references import continuum, converges, reference_for
 

@@ -13,12 +13,12 @@ from typing import NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.compose.rebound import rebound
-from contactlab.compose.simulation import Simulation
+from contactlab.collisions.rebound import rebound
 from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.history import scaled_forces
+from contactlab.runs.simulation import Simulation
 
 #: chi of a solid homogeneous sphere of Poisson's ratio 0.3, eq. (38): the paper's 1.4412.
 SOLID_CHI = 0.7 / 1.7 * 3.5

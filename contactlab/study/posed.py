@@ -6,9 +6,9 @@ from collections.abc import Iterable
 
 import attrs
 
-from contactlab.compose.acceptance import in_units
 from contactlab.contracts import Law
 from contactlab.impact.scene import Scene
+from contactlab.registry.acceptance import in_units
 from contactlab.testing.load_paths import scene as ball
 
 

@@ -11,9 +11,6 @@ import attrs
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contactlab.compose import composition
-from contactlab.compose.registry import REGISTRY, PluginError
-from contactlab.compose.simulation import Simulation
 from contactlab.contracts import SteppedTangentialLaw, TangentialLaw, WholeImpactTangentialLaw
 from contactlab.impact.scene import entry_unit
 from contactlab.numeric.types import Real
@@ -21,6 +18,9 @@ from contactlab.outcome.columns import QUANTITIES, csv_heading, json_value
 from contactlab.outcome.tables import number, time
 from contactlab.outcome.text_table import table
 from contactlab.registration.names import full_name, short_name
+from contactlab.registry import composition
+from contactlab.registry.registry import REGISTRY, PluginError
+from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import LawChoice, Measured, SceneFile
 from contactlab.study.comparison import Comparison
 from contactlab.study.side_by_side import wrapped

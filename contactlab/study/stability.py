@@ -13,8 +13,8 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.compose.composition import DEFAULT_NORMAL
 from contactlab.impact.error_model import COARSE
+from contactlab.registry.composition import DEFAULT_NORMAL
 from contactlab.study.bench_methods import Method
 from contactlab.study.model_error import ModelError, model_error
 from contactlab.study.stability_cases import INCIDENCES, MAP, Cell, all_cases, map_chis

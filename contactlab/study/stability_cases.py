@@ -10,8 +10,6 @@ from typing import Any, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.compose.composition import DEFAULT_NORMAL, misfit
-from contactlab.compose.registry import REGISTRY, PluginError
 from contactlab.contracts import Law
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.material import Material
@@ -20,6 +18,8 @@ from contactlab.numeric.types import Number
 from contactlab.registration.hooks import hookimpl
 from contactlab.registration.manager import MANAGER
 from contactlab.registration.names import full_name, short_name
+from contactlab.registry.composition import DEFAULT_NORMAL, misfit
+from contactlab.registry.registry import REGISTRY, PluginError
 from contactlab.study.bench_methods import Method, Options
 from contactlab.study.stability_coupled import coupled_scenes, tried_coupled
 

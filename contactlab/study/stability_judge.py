@@ -8,11 +8,6 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.compose import composition
-from contactlab.compose.error_estimate import estimated
-from contactlab.compose.registry import PluginError
-from contactlab.compose.simulation import Simulation
-from contactlab.compose.solved_motion import ACCURACY
 from contactlab.contracts import ClosedFormNormalLaw, claims
 from contactlab.contracts.status import Status
 from contactlab.impact.error_model import LARGEST_SHARE, range_of
@@ -20,6 +15,11 @@ from contactlab.impact.scene import Scene
 from contactlab.outcome.motion import Motion, sound
 from contactlab.outcome.plan import MARCHED, Plan, PlanColumns
 from contactlab.outcome.result import ImpactResult
+from contactlab.registry import composition
+from contactlab.registry.registry import PluginError
+from contactlab.runs.simulation import Simulation
+from contactlab.solve.error_estimate import estimated
+from contactlab.solve.solved_motion import ACCURACY
 from contactlab.study.posed import posed
 from contactlab.study.stability_cases import Cell
 from contactlab.study.stability_coupled import RIGID_DISTANCE, STIFF, distance

@@ -12,10 +12,6 @@ from functools import lru_cache, partial
 
 import numpy as np
 
-from contactlab.compose.composition import PREFERRED, exact, fixed_steps, misfit
-from contactlab.compose.normal_motion import normal_motion
-from contactlab.compose.registry import REGISTRY, PluginError
-from contactlab.compose.simulation import Simulation
 from contactlab.contracts import (
     Law,
     NormalLaw,
@@ -29,6 +25,10 @@ from contactlab.impact.error_model import range_of
 from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.impact.scene import Scene
 from contactlab.registration.names import PROJECT, full_name, kind_of
+from contactlab.registry.composition import PREFERRED, exact, fixed_steps, misfit
+from contactlab.registry.registry import REGISTRY, PluginError
+from contactlab.runs.simulation import Simulation
+from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing.units import with_parameters
 
 #: Tolerances of the exact solution, the finer first; both finer than the default, which they judge.

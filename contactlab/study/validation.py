@@ -10,8 +10,6 @@ import attrs
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contactlab.compose.registry import REGISTRY
-from contactlab.compose.simulation import Simulation
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.elliptic import ellipse
 from contactlab.impact.hertz import hertz_scales, rigid_body_rebound
@@ -19,6 +17,8 @@ from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.registration.hooks import hookimpl
 from contactlab.registration.manager import MANAGER
+from contactlab.registry.registry import REGISTRY
+from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import read_scene
 from contactlab.study.interrupts import uninterrupted
 from contactlab.study.scores import DEFAULT_SCENE

@@ -15,12 +15,12 @@ from typing import Any, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.compose import composition
-from contactlab.compose.rebound import rebound
-from contactlab.compose.simulation import Simulation
+from contactlab.collisions.rebound import rebound
 from contactlab.contracts.law import claims
 from contactlab.impact.scene import Scene
 from contactlab.outcome.result import ImpactResult
+from contactlab.registry import composition
+from contactlab.runs.simulation import Simulation
 from contactlab.study.bench_methods import Method, Options, scenes
 from contactlab.study.benchmark import ALIKE, ROUNDING, Benchmark, Row
 from contactlab.study.interrupts import uninterrupted

@@ -7,9 +7,9 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.compose.normal_motion import normal_motion
-from contactlab.compose.simulation import Simulation
 from contactlab.contracts import ClosedFormNormalLaw, Integrator
+from contactlab.runs.simulation import Simulation
+from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing.check import apply_if, check, hold, within
 from contactlab.testing.integrators import CHI, marched, marched_impact
 from contactlab.testing.laws import DampedHertz, PressedSpring, Slider, SlidingForEver, Yielding

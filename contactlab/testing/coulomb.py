@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import SteppedTangentialLaw, TangentialLaw
+from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing.check import NotApplicableError, apply_if, check, within
 from contactlab.testing.impacts import CHI
 from contactlab.testing.laws import PullingHertz

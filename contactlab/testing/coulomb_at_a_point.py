@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import NormalLaw, SteppedTangentialLaw
 from contactlab.numeric.types import Array
 from contactlab.outcome.history import Recorder
+from contactlab.registry.registry import REGISTRY
 from contactlab.testing.check import NotApplicableError, apply_if, check, hold
 from contactlab.testing.laws import StronglyDampedHertz
 from contactlab.testing.load_paths import FRICTION, scene

@@ -5,8 +5,6 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from contactlab.compose.normal_motion import normal_motion
-from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import (
     Increment,
     Integrator,
@@ -18,6 +16,8 @@ from contactlab.contracts import (
     TangentialResponse,
 )
 from contactlab.impact.scene import Scene
+from contactlab.registry.registry import REGISTRY
+from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing.check import apply_if, check, hold, within
 from contactlab.testing.integrators import CHI
 from contactlab.testing.laws import Yield, Yielding

@@ -9,11 +9,11 @@ from typing import Any, TypeVar
 import attrs
 import numpy as np
 
-from contactlab.compose.normal_motion import normal_motion
-from contactlab.compose.simulation import Simulation
 from contactlab.contracts import ClosedFormNormalLaw, Integrator, Law, TangentialLaw, claims
 from contactlab.impact.error_model import psi_magnitude
 from contactlab.impact.scene import Scene
+from contactlab.runs.simulation import Simulation
+from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing.check import NotApplicableError, apply_if, check, hold, within
 from contactlab.testing.impacts import CHI
 from contactlab.testing.integrators import CHI as SOLID

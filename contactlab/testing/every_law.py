@@ -9,8 +9,6 @@ import pickle
 from collections.abc import Iterator
 from typing import Any
 
-from contactlab.compose.composition import WAYS
-from contactlab.compose.law_classes import unfit
 from contactlab.contracts import (
     API_VERSION,
     CausalTangentialLaw,
@@ -22,6 +20,8 @@ from contactlab.contracts import (
     claims,
 )
 from contactlab.contracts.law import law_kind
+from contactlab.registry.composition import WAYS
+from contactlab.registry.law_classes import unfit
 from contactlab.testing.check import CHECKS, check, hold
 from contactlab.testing.compare import same
 from contactlab.testing.units import with_parameters

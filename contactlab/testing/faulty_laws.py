@@ -11,7 +11,6 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import (
     ClosedFormMotion,
     ClosedFormNormalLaw,
@@ -27,6 +26,7 @@ from contactlab.contracts import (
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array, Real
+from contactlab.registry.registry import REGISTRY
 
 #: Calls of a law after which it raises ``TooManyCallsError``.
 MOST_CALLS = 3_000_000

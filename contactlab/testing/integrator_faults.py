@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from contactlab.compose.simulation import Simulation
 from contactlab.contracts import Integrator
+from contactlab.runs.simulation import Simulation
 from contactlab.testing.check import CheckFailedError, apply_if, check, hold
 from contactlab.testing.faulty_laws import (
     Endless,

@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
-from contactlab.compose.normal_motion import normal_motion
-from contactlab.compose.simulation import Simulation
 from contactlab.contracts import Integrator, Observer, TangentialMotion
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
 from contactlab.outcome.history import Recorder
+from contactlab.runs.simulation import Simulation
+from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing import limits
 from contactlab.testing.check import check, hold, hold_success
 from contactlab.testing.compare import same

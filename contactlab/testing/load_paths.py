@@ -14,15 +14,15 @@ from typing import Any, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.compose.normal_motion import normal_motion
-from contactlab.compose.path_steps import advanced
-from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import Increment, NormalContact, NormalMotion, SteppedTangentialLaw
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.types import Array, Real
+from contactlab.paths.path_steps import advanced
+from contactlab.registry.registry import REGISTRY
+from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing import limits
 from contactlab.testing.check import hold
 from contactlab.testing.units import Units

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import NormalLaw
 from contactlab.impact.hertz import hertz_scales
+from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing.check import check, hold, within
 from contactlab.testing.normal import ROUNDING, STEPS, respond, strokes
 

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import NormalContact, NormalLaw, NormalMotion
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
+from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing import limits
 from contactlab.testing.check import apply_if, check, hold, within
 from contactlab.testing.load_paths import bodies, scene

@@ -5,10 +5,10 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from contactlab.compose.simulation import Simulation
 from contactlab.contracts import TangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.outcome.result import ImpactResult
+from contactlab.runs.simulation import Simulation
 from contactlab.testing import limits
 from contactlab.testing.check import check, hold, hold_success, within, worst
 from contactlab.testing.load_paths import scene, slack

@@ -8,8 +8,8 @@ from enum import Enum
 
 import attrs
 
-from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import Law, claims
+from contactlab.registry.registry import REGISTRY
 from contactlab.testing.check import (
     CHECKS,
     Check,

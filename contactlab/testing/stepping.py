@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.compose.normal_motion import normal_motion
-from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import SteppedTangentialLaw
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.types import Array, Real
+from contactlab.registry.registry import REGISTRY
+from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing.check import check, hold, within, worst
 from contactlab.testing.compare import hold_read_only, same, well_formed
 from contactlab.testing.load_paths import (

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
-from contactlab.compose.composition import misfit
-from contactlab.compose.normal_motion import normal_motion
-from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import NormalContact, SteppedTangentialLaw
 from contactlab.numeric.types import Array
+from contactlab.registry.composition import misfit
+from contactlab.registry.registry import REGISTRY
+from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing.check import check, hold, within, worst
 from contactlab.testing.laws import SoftHertz
 from contactlab.testing.load_paths import (

@@ -5,11 +5,11 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from contactlab.compose.normal_motion import normal_motion
-from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import CausalTangentialLaw, SteppedTangentialLaw, claims
 from contactlab.numeric.arrays import locked
 from contactlab.numeric.types import Array
+from contactlab.registry.registry import REGISTRY
+from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing import limits
 from contactlab.testing.check import check, hold, within, worst
 from contactlab.testing.load_paths import (

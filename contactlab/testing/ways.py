@@ -7,11 +7,6 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from contactlab.compose import composition
-from contactlab.compose.answers import answers
-from contactlab.compose.normal_motion import normal_motion
-from contactlab.compose.registry import REGISTRY
-from contactlab.compose.simulation import Simulation
 from contactlab.contracts import (
     CausalTangentialLaw,
     CoupledIntegrator,
@@ -31,6 +26,11 @@ from contactlab.contracts import (
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
 from contactlab.outcome.history import History, Recorder
+from contactlab.registry import composition
+from contactlab.registry.registry import REGISTRY
+from contactlab.runs.simulation import Simulation
+from contactlab.solve.answers import answers
+from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing import limits
 from contactlab.testing.check import apply_if, hold, hold_success
 from contactlab.testing.laws import PressedSpring, Slider, SlidingForEver, Yielding

@@ -8,12 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactlab.compose.normal_motion import normal_motion
-from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import NormalMotion, TangentialLaw, WholeImpact
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import spread
 from contactlab.numeric.types import Real
+from contactlab.registry.registry import REGISTRY
+from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing.check import NotApplicableError, apply_if, check, hold, within
 from contactlab.testing.compare import well_formed
 from contactlab.testing.impacts import CHI, PSI1

@@ -120,7 +120,7 @@ def draw(found: dict[float, dict[str, Array]], path: Path) -> None:
     import matplotlib.pyplot as plt
     from matplotlib.ticker import LogLocator
 
-    from contactlab.figures.style import law_style, styled
+    from contactlab.outcome.style import law_style, styled
 
     names = ("shear stress over pressure", r"pressure over $\rho\,(d\,\dot\gamma)^2$")
     with styled("print", "two"):

@@ -155,7 +155,7 @@ def draw(found: dict[float, dict[str, tuple[float, float]]], path: Path) -> None
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    from contactlab.figures.style import QUIET, law_style, styled
+    from contactlab.outcome.style import QUIET, law_style, styled
 
     with styled("print", "two"):
         figure, panels = plt.subplots(1, len(found), figsize=(7.0, 2.2), squeeze=False)

@@ -20,11 +20,11 @@ from typing import Any, Unpack
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import add_allow_code
-from contactlab.compose.composition import DEFAULT_NORMAL
-from contactlab.compose.simulation import Simulation
 from contactlab.numeric.checks import whole
 from contactlab.outcome.files import distinct
 from contactlab.registration.hooks import Execute, hookimpl
+from contactlab.registry.composition import DEFAULT_NORMAL
+from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab_fit import Fit, Ranked, fit, in_order, rank, read_flight
 from contactlab_fit.beside import as_met

@@ -10,13 +10,13 @@ from pathlib import Path
 import attrs
 import numpy as np
 
-from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import common_shape
 from contactlab.numeric.checks import real, refuse, whole
 from contactlab.numeric.types import Array, Numbers, Real
 from contactlab.outcome.answer import ImpactError
 from contactlab.outcome.result import ImpactResult
+from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import SceneFile
 from contactlab_fit import determined, nearby, tabulated
 from contactlab_fit.beside import as_met

@@ -8,13 +8,13 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.compose.law_words import in_words
-from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array
 from contactlab.outcome.columns import QUANTITIES
 from contactlab.outcome.result import ImpactResult
+from contactlab.registry.law_words import in_words
+from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import SceneFile, read_scene
 from contactlab.scene_file.entries import CARTESIAN, POLAR
 from contactlab.study.interrupts import uninterrupted

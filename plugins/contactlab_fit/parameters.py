@@ -12,8 +12,6 @@ from typing import Any, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.compose.registry import KINDS, REGISTRY, PluginError
-from contactlab.compose.simulation import Simulation
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
@@ -21,6 +19,8 @@ from contactlab.numeric.checks import Rule
 from contactlab.numeric.names import nearest
 from contactlab.numeric.types import Array, Real
 from contactlab.registration.names import full_name
+from contactlab.registry.registry import KINDS, REGISTRY, PluginError
+from contactlab.runs.simulation import Simulation
 from contactlab_fit import tabulated
 
 #: Range of the friction coefficient, and starts of the searches.

@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.compose.registry import REGISTRY
 from contactlab.numeric.types import Array, Real
 from contactlab.registration.names import short_name
+from contactlab.registry.registry import REGISTRY
 from contactlab_fit import tabulated
 from contactlab_fit.csv_columns import MEASURABLE
 from contactlab_fit.f_test import SPARE, chance_of

@@ -8,9 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.compose import composition
-from contactlab.compose.rebound import rebound
-from contactlab.compose.simulation import Simulation
+from contactlab.collisions.rebound import rebound
 from contactlab.contracts.status import Status
 from contactlab.impact.cautions import unit_slips
 from contactlab.impact.coupling import coupling
@@ -20,6 +18,8 @@ from contactlab.numeric.types import Real
 from contactlab.outcome.motion import ENDS, Motion
 from contactlab.outcome.plan import Clause, Plan, PlanColumns, Words
 from contactlab.outcome.result import ImpactResult
+from contactlab.registry import composition
+from contactlab.runs.simulation import Simulation
 
 #: The normal law behind ``rebound(restitution=)``.
 LOSSY = composition.RESTITUTION["normal"]

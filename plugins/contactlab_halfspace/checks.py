@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from contactlab.compose.simulation import Simulation
 from contactlab.impact.scene import Scene
 from contactlab.registration.hooks import hookimpl
+from contactlab.runs.simulation import Simulation
 from contactlab.study.interrupts import uninterrupted
 from contactlab.study.validation import Finding, finding
 

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 import contactlab
-from contactlab.compose.collide import collide
-from contactlab.compose.simulation import Simulation
+from contactlab.collisions.collide import collide
 from contactlab.impact import shapes
 from contactlab.impact.bodies import HalfSpace
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.material import Material, entry, names
 from contactlab.numeric.checks import refuse
+from contactlab.runs.simulation import Simulation
 
 #: Springs and steps of the contact that the page draws; how the ball leaves is from the table.
 SPRINGS, STEPS = 100, 500

@@ -12,8 +12,6 @@ import numpy as np
 from matplotlib.axes import Axes
 
 import contactlab
-from contactlab.compose.citations import references
-from contactlab.compose.simulation import Simulation
 from contactlab.figures.comparison import differences, forces_over_contact, laws_over_sweep
 from contactlab.figures.files import Panels, as_svg
 from contactlab.impact.scene import Scene, entry_unit
@@ -27,6 +25,8 @@ from contactlab.outcome.tables import (
     sweep_section,
     time,
 )
+from contactlab.registry.citations import references
+from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import SceneFile
 from contactlab.study.agreement import Agreement
 from contactlab.study.comparison import Comparison

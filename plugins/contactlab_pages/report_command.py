@@ -14,11 +14,11 @@ from pathlib import Path
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import add_file
-from contactlab.compose.solve import accept_scene
 from contactlab.outcome.files import written
 from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.registration.names import full_name, short_name
 from contactlab.scene_file import read_scene
+from contactlab.solve.solve import accept_scene
 from contactlab.study.comparison import compare
 
 #: Default laws to compare with the file's own.

@@ -10,8 +10,8 @@ import contactlab
 from contactlab.cli import main as module
 from contactlab.cli import run as run_command
 from contactlab.cli import statuses
-from contactlab.compose.registry import PluginWarning
 from contactlab.contracts.status import Status
+from contactlab.registry.registry import PluginWarning
 
 
 class Another(Warning):

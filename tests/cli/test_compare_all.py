@@ -9,8 +9,8 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation, read_scene
-from contactlab.compose.registry import REGISTRY
 from contactlab.impact.hertz import rigid_body_rebound
+from contactlab.registry.registry import REGISTRY
 from contactlab.scene_file import LawChoice
 from contactlab.study.comparison import compare
 from contactlab.study.scores import DEFAULT_SCENE, candidates, pressed_force
@@ -76,7 +76,7 @@ def test_a_normal_law_leaves_out_what_does_not_fit():
     assert next(iter(found.simulations)) == "fronts"
     assert found.left_out == {}
     law = Damped()
-    assert contactlab.compose.composition.preferred("tangential", law) == "annulus"
+    assert contactlab.registry.composition.preferred("tangential", law) == "annulus"
 
 
 def test_without_a_scene_it_is_that_of_the_codes(run):

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from contactlab.cli.guide import text
-from contactlab.compose.registry import REGISTRY
 from contactlab.registration.manager import commands
 from contactlab.registration.names import KINDS, full_name, kind_of
+from contactlab.registry.registry import REGISTRY
 
 COMMANDS = commands("contactlab")
 EXAMPLES = Path(__file__).parents[2] / "examples"

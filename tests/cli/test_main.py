@@ -13,8 +13,8 @@ import pytest
 import contactlab
 from contactlab.cli import main as module
 from contactlab.cli import run as run_command
-from contactlab.compose.sweep import MARCHED as CHUNK
 from contactlab.registration.manager import commands
+from contactlab.runs.sweep import MARCHED as CHUNK
 
 COMMANDS = commands("contactlab")
 COMMAND = [sys.executable, "-m", "contactlab"]

@@ -8,8 +8,8 @@ import re
 import pytest
 
 import contactlab
-from contactlab.compose.registry import REGISTRY, PluginInfo
 from contactlab.registration.manager import MANAGER
+from contactlab.registry.registry import REGISTRY, PluginInfo
 
 
 def test_list_as_json(run):

@@ -9,7 +9,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from contactlab.cli import stability
-from contactlab.compose.registry import REGISTRY
+from contactlab.registry.registry import REGISTRY
 from contactlab.study.bench_methods import Method
 from contactlab.study.stability import Stability
 from contactlab.study.stability_judge import RAISED, WRONG, Outcome

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from contactlab.compose import solve
+from contactlab.solve import solve
 
 SWEEP = ("sweep", "--psi1", "0:9:3000", "--chi", "1.4412", "--tangential", "linear_spring")
 

@@ -10,9 +10,9 @@ from scipy.integrate import quad
 
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
-from contactlab.compose.normal_motion import normal_motion
-from contactlab.compose.solved_motion import ACCURACY
 from contactlab.contracts import NormalContact, NormalLaw, TangentialResponse
+from contactlab.solve.normal_motion import normal_motion
+from contactlab.solve.solved_motion import ACCURACY
 from tests.laws.outside_laws import Adhesive, Heun, RescaledSpring
 from tests.longer import longer
 

@@ -15,7 +15,7 @@ from contactlab.figures.comparison import (
     forces_over_contact,
     laws_over_sweep,
 )
-from contactlab.figures.style import LAW_COLOURS, LAW_DASHES
+from contactlab.outcome.style import LAW_COLOURS, LAW_DASHES
 from contactlab.study.comparison import compare
 
 X = np.linspace(0.0, 4.0, 9)

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 import contactlab
 from contactlab import Scene, Simulation
 from contactlab.figures.comparison import all_laws, laws_over_sweep
-from contactlab.figures.style import error_band
+from contactlab.outcome.style import error_band
 from contactlab.scene_file import read_scene
 from contactlab.study.comparison import compare
 

@@ -19,9 +19,10 @@ from matplotlib.text import Text
 
 import contactlab.figures
 from contactlab import Scene, Simulation, create
-from contactlab.figures import paper, style
+from contactlab.figures import paper
 from contactlab.figures.comparison import all_laws
 from contactlab.figures.files import save, save_figure
+from contactlab.outcome import style
 from contactlab.scene_file import read_scene
 from contactlab.study import paper_figures
 from contactlab.study.comparison import compare

@@ -6,7 +6,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from contactlab.figures.paper import draw_paper
-from contactlab.figures.style import LAW_COLOURS
+from contactlab.outcome.style import LAW_COLOURS
 from contactlab.study.paper_figures import Curve, FigureData
 
 

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from contactlab import Scene, Simulation
-from contactlab.figures.histories import draw_history
+from contactlab.outcome.history_figure import draw_history
 
 
 @pytest.fixture

@@ -7,10 +7,10 @@ import pytest
 from matplotlib.figure import Figure
 
 from contactlab import Scene, Simulation
-from contactlab.figures.histories import draw_history
-from contactlab.figures.results import draw_result
 from contactlab.figures.stick_slip import draw_stick_slip
-from contactlab.figures.style import LAW_COLOURS
+from contactlab.outcome.history_figure import draw_history
+from contactlab.outcome.result_figure import draw_result
+from contactlab.outcome.style import LAW_COLOURS
 
 BLUE, GREY, RED, WHITE = "#0072B2", "#C4C4C4", "#D55E00", "#FFFFFF"
 

@@ -9,8 +9,8 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from PIL import Image
 
-from contactlab.figures import style
 from contactlab.figures.files import as_svg, save, save_figure
+from contactlab.outcome import style
 
 
 @pytest.fixture

@@ -3,7 +3,7 @@
 import pytest
 
 import contactlab
-from tests.compose.test_collision import meeting
+from tests.collisions.test_collision import meeting
 
 VECTORS = """
 [sphere]

@@ -5,7 +5,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from contactlab import Simulation
-from contactlab.figures.style import label
+from contactlab.outcome.style import label
 from contactlab_fit import fit
 from contactlab_fit.figures import measured_and_laws
 from tests.fitting.impacts import ANGLES, BODIES, restitution, table

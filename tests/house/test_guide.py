@@ -18,9 +18,9 @@ from contactlab import Scene, Status, contracts
 from contactlab.cli.guide import PARTS, SECTION, added, sections, summary, text, whole
 from contactlab.cli.guide import pages as guide_pages
 from contactlab.cli.guide import topics as guide_topics
-from contactlab.compose import normal_motion
 from contactlab.impact import bodies, coupling, error_model, hertz, normal_spin
 from contactlab.outcome import energy, history, motion, plan, result
+from contactlab.solve import normal_motion
 from contactlab.study.validation import REFERENCE_PSI2
 from contactlab.testing import Verdict, check_law
 from contactlab_halfspace.checks import TORSION

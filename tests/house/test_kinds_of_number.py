@@ -44,7 +44,7 @@ MANY = {
 }
 MANY["read-only"] = _PLAIN.copy()
 MANY["read-only"].flags.writeable = False
-#: Made by pandas, which is an extra; other indices: ``tests/compose/test_labelled.py``.
+#: Made by pandas, which is an extra; other indices: ``tests/collisions/test_labelled.py``.
 OF_PANDAS = {
     "series": lambda pandas: pandas.Series(VALUES),
     "column": lambda pandas: pandas.DataFrame({"a": VALUES})["a"],

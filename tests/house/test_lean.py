@@ -29,7 +29,7 @@ def loaded(code):
 #: What is imported at first, what lists the laws, and what makes one.
 STAGES = (
     "from contactlab import Encounter, Scene, Simulation, collide, load_path, rebound\n",
-    "from contactlab.compose.registry import REGISTRY\nassert REGISTRY.names()\n",
+    "from contactlab.registry.registry import REGISTRY\nassert REGISTRY.names()\n",
     "contactlab.create('tangential.coulomb')\n",
 )
 
@@ -52,10 +52,10 @@ def test_a_public_name_is_imported_on_its_first_use():
     """``import contactlab`` takes as long as Python's own start, without NumPy."""
     lines = (
         "import sys, contactlab",
-        "rooms = {'contactlab.compose', 'contactlab.impact'}",
+        "rooms = {'contactlab.registry', 'contactlab.impact'}",
         "assert not rooms & set(sys.modules) and 'numpy' not in sys.modules",
         "contactlab.Sphere",
-        "assert 'contactlab.impact' in sys.modules and 'contactlab.compose' not in sys.modules",
+        "assert 'contactlab.impact' in sys.modules and 'contactlab.registry' not in sys.modules",
         "assert set(contactlab.__all__) <= set(dir(contactlab))",
         "assert all(getattr(contactlab, name) is not None for name in contactlab.__all__)",
         "assert contactlab.contracts.__name__ == 'contactlab.contracts'",
@@ -70,7 +70,7 @@ def test_the_command_line_starts_without_numpy(word):
         "import sys",
         "from contactlab.cli.main import main",
         f"main(['{word}'])",
-        "heavy = {'numpy', 'contactlab.compose.registry', 'contactlab.cli.run'}",
+        "heavy = {'numpy', 'contactlab.registry.registry', 'contactlab.cli.run'}",
         "assert not heavy & set(sys.modules)",
     )
     subprocess.run([sys.executable, "-c", "\n".join(lines)], check=True, capture_output=True)

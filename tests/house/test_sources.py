@@ -6,16 +6,16 @@ import tomllib
 
 import pytest
 
-from contactlab.compose import citations
-from contactlab.compose.citations import DOI, YEAR, bibtex, references
-from contactlab.compose.registry import REGISTRY
 from contactlab.impact import material as materials
+from contactlab.registry import citations
+from contactlab.registry.citations import DOI, YEAR, bibtex, references
+from contactlab.registry.registry import REGISTRY
 from tests.present import INSTALLED, PACKAGE, ROOT
 
 if not (ROOT / "contactlab").is_dir():
     pytest.skip(INSTALLED, allow_module_level=True)
 
-BIB = (PACKAGE / "compose" / "references.bib").read_text(encoding="utf-8")
+BIB = (PACKAGE / "registry" / "references.bib").read_text(encoding="utf-8")
 #: A DOI that no work has, in a test of what is done with unknown ones; nothing else is exempt.
 INVENTED = {"10.9999/odd"}
 #: What a data file may name besides works: codes that were run, by name and version.

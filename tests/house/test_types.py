@@ -10,7 +10,7 @@ import pytest
 import contactlab
 from contactlab.cli.guide import pages as guide_pages
 from contactlab.cli.guide import text
-from contactlab.compose.registry import REGISTRY
+from contactlab.registry.registry import REGISTRY
 from tests.present import ROOT, needs_sources
 
 BLOCKS = re.compile(r"```python\n(.*?)```", re.DOTALL)

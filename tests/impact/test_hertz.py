@@ -8,9 +8,9 @@ from scipy.integrate import quad
 
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
-from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import NormalLaw
 from contactlab.impact.hertz import hertz_scales
+from contactlab.solve.normal_motion import normal_motion
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 RIGID = Material(shear_modulus=1e30, poisson_ratio=0.3)

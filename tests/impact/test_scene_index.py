@@ -8,8 +8,8 @@ import pytest
 
 import contactlab
 from contactlab import Encounter, HalfSpace, Material, Scene, Simulation, Sphere, collide
-from contactlab.compose import sweep as sweeping
-from contactlab.compose.workers import processes
+from contactlab.runs import sweep as sweeping
+from contactlab.runs.workers import processes
 from tests.laws.random_laws import RandomNormal, RandomStepped, RandomWhole, draws
 from tests.longer import longer
 

@@ -9,7 +9,7 @@ import numpy as np
 
 import contactlab
 from contactlab import Scene, Simulation
-from contactlab.compose.composition import misfit
+from contactlab.registry.composition import misfit
 from tests.laws.normal_laws import in_si
 
 #: psi1 and chi of the scenes: every pair.

@@ -4,7 +4,7 @@ import numpy as np
 
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
-from contactlab.compose.normal_motion import normal_motion
+from contactlab.solve.normal_motion import normal_motion
 from tests.laws.normal_laws import in_si
 from tests.longer import longer
 

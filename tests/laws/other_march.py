@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from contactlab import Scene, create
-from contactlab.compose.normal_motion import normal_motion
+from contactlab.solve.normal_motion import normal_motion
 from contactlab_halfspace.rings import rings, settle
 
 HALVINGS = 60

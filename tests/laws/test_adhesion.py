@@ -7,7 +7,7 @@ from scipy.optimize import brentq
 
 import contactlab
 from contactlab import Encounter, HalfSpace, Material, Scene, Simulation, shapes
-from contactlab.compose.normal_motion import normal_motion
+from contactlab.solve.normal_motion import normal_motion
 from tests.laws.normal_impacts import restitution, scene
 from tests.laws.normal_laws import in_si
 

@@ -6,8 +6,8 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation, Status
-from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import AllStepsResponse, AllStepsTangentialLaw, TangentialResponse
+from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing.impacts import all_steps
 from contactlab_laws.march.division import midpoints
 from tests.testing.broken_impacts import AllAtOnce

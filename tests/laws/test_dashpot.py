@@ -5,7 +5,7 @@ import pytest
 
 import contactlab
 from contactlab import Simulation
-from contactlab.compose.normal_motion import normal_motion
+from contactlab.solve.normal_motion import normal_motion
 from contactlab_laws.dashpot.oscillator import damping_of
 from tests.laws.by_hand import rebound
 from tests.laws.normal_impacts import psi2, scene

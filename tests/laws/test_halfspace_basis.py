@@ -8,7 +8,7 @@ from scipy.special import ellipk, jv
 
 import contactlab
 from contactlab import Scene
-from contactlab.compose.normal_motion import normal_motion
+from contactlab.solve.normal_motion import normal_motion
 from contactlab_halfspace.basis import basis
 from contactlab_halfspace.hemispheres import displacement
 from contactlab_halfspace.instants import instants

@@ -9,10 +9,10 @@ import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
 from contactlab_laws.dashpot.oscillator import restitution as of_damping
 from contactlab_laws.viscoelastic.relaxation import restitution_of
-from tests.compose.test_eccentric import random_in_space, random_planar, rod
 from tests.laws.exact_laws import order
 from tests.laws.normal_laws import in_si
 from tests.longer import longer
+from tests.solve.test_eccentric import random_in_space, random_planar, rod
 
 PLANAR = Scene.nondimensional
 CHI = 49 / 34
@@ -275,7 +275,7 @@ def test_the_loss_in_shear_of_slip_throughout():
     scene = PLANAR(psi1=psi1, chi=CHI, friction_coefficient=friction)
     law = attrs.evolve(springs(viscoelastic(e), 200, 2000).tangential)
     march = contactlab.create("integrator.symplectic", steps=2000)
-    from contactlab.compose.normal_motion import normal_motion
+    from contactlab.solve.normal_motion import normal_motion
 
     normal = normal_motion(viscoelastic(e), scene)
     motion = march.integrate(scene, normal, law, None)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab.compose.normal_motion import normal_motion
 from contactlab.impact.hertz import hertz_scales
+from contactlab.solve.normal_motion import normal_motion
 from tests.laws.normal_impacts import CALIBRATED, psi2, restitution, scene
 from tests.longer import longer
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
-from contactlab.compose.registry import REGISTRY
+from contactlab.registry.registry import REGISTRY
 from contactlab.study.bench_methods import methods
 
 COARSE = {"annuli": 8, "springs": 8, "steps": 40, "tolerance": 1e-3}

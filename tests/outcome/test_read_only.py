@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
-from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import (
     Errors,
     NormalContact,
@@ -16,6 +15,7 @@ from contactlab.contracts import (
     SteppedTangentialLaw,
     TangentialResponse,
 )
+from contactlab.solve.normal_motion import normal_motion
 from tests.laws.outside_laws import Tsuji
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)

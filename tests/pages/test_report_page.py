@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from contactlab import create
-from contactlab.compose.citations import DOI, YEAR, bibtex, references
-from contactlab.compose.registry import REGISTRY
+from contactlab.registry.citations import DOI, YEAR, bibtex, references
+from contactlab.registry.registry import REGISTRY
 from tests.cli.conftest import EXAMPLES
 from tests.longer import longer
 

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 import contactlab
 from contactlab import Scene, Simulation
 from contactlab.figures.load_paths import draw_loops
-from contactlab.figures.style import LAW_COLOURS, QUIET
+from contactlab.outcome.style import LAW_COLOURS, QUIET
 from contactlab.study.loops import CYCLES, QUARTER, REACH, loops
 
 SCENE = Scene.nondimensional(psi1=1.0, chi=1.4412)

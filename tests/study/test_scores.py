@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from contactlab import Scene, Simulation, create
-from contactlab.compose.registry import REGISTRY
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.result import ImpactResult
+from contactlab.registry.registry import REGISTRY
 from contactlab.scene_file import LawChoice, read_scene
 from contactlab.study.comparison import compare
 from contactlab.study.scores import (

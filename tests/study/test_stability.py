@@ -9,9 +9,9 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation
-from contactlab.compose.registry import REGISTRY
 from contactlab.contracts import NormalContact, NormalLaw, SteppedTangentialLaw, TangentialResponse
 from contactlab.impact.error_model import range_of
+from contactlab.registry.registry import REGISTRY
 from contactlab.study import stability_judge
 from contactlab.study.bench_methods import Method, methods
 from contactlab.study.stability import Stability, stability, work

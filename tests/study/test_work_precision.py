@@ -13,8 +13,8 @@ from contactlab import Simulation
 from contactlab.cli import bench as cli_bench
 from contactlab.cli.bench import markdown
 from contactlab.cli.main import main
-from contactlab.compose import composition
 from contactlab.figures.work_precision import work_precision as draw
+from contactlab.registry import composition
 from contactlab.study import work_precision
 from contactlab.study.bench_methods import Method, methods, scenes
 from contactlab.study.benchmark import Benchmark, Row

@@ -9,8 +9,8 @@ import numpy as np
 
 import contactlab
 from contactlab import Status
-from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import TangentialMotion, faults, quantity
+from contactlab.solve.normal_motion import normal_motion
 from tests.testing.broken_impacts import AllAtOnce, Knowing, OtherwiseAtOnce, Whole, by_course
 from tests.testing.broken_integrators import AsksTillItGives
 from tests.testing.broken_laws import Answering, Misstating, Sound
@@ -191,7 +191,7 @@ class ReportsItsEndlessness(AsksTillItGives):
             return TangentialMotion.nothing(scene.shape, Status.LAW_RAISED, detail)
 
 
-EVENTS = contactlab.compose.registry.REGISTRY.law_class("integrator.events")
+EVENTS = contactlab.registry.registry.REGISTRY.law_class("integrator.events")
 
 
 class EndsTheEndless(EVENTS):

@@ -12,8 +12,8 @@ import numpy as np
 
 import contactlab
 from contactlab import Status
-from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import Errors, TangentialResponse
+from contactlab.solve.normal_motion import normal_motion
 from tests.testing.fresh_sound import (
     Brush,
     HardSphere,
@@ -26,9 +26,9 @@ from tests.testing.fresh_sound import (
 )
 from tests.testing.made import altered, broken
 
-HERTZ = contactlab.compose.registry.REGISTRY.law_class("normal.hertz")
+HERTZ = contactlab.registry.registry.REGISTRY.law_class("normal.hertz")
 MOTION = type(HERTZ().motion(contactlab.Scene.nondimensional(psi1=0.0, chi=1.0)))
-STEPS = contactlab.compose.registry.REGISTRY.law_class("integrator.symplectic")
+STEPS = contactlab.registry.registry.REGISTRY.law_class("integrator.symplectic")
 
 
 # Bodies: what counts is the pair of them, and the slip velocity of the contact.

@@ -2,7 +2,7 @@
 
 import pytest
 
-from contactlab.compose.registry import REGISTRY
+from contactlab.registry.registry import REGISTRY
 from contactlab.testing import parametrize_with_checks
 
 #: Smaller than the defaults, for speed; as fine as the checks' tolerances need.

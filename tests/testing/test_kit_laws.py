@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import contactlab
-from contactlab.compose.normal_motion import normal_motion
 from contactlab.contracts import Increment, NormalContact
+from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing import laws
 from contactlab.testing.load_paths import scene
 

@@ -162,7 +162,7 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
         observer: Observer | None = None,
     ) -> TangentialMotion:
         """Return the motion of planar impacts, each followed from event to event."""
-        from contactlab_laws.fronts.together import motion
+        from contactlab_laws.fronts.coupled import motion
 
         return motion(scene, normal, accuracy or FOLLOWED, observer)
 

@@ -25,7 +25,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Rule, quantity
 from contactlab.numeric.types import Array
-from contactlab_laws.march import together
+from contactlab_laws.march import coupled
 from contactlab_laws.march.division import midpoints
 from contactlab_laws.march.fixed import (
     MOST_STEPS,
@@ -123,10 +123,10 @@ class Adaptive(CoupledIntegrator):
         The tolerance is that of the velocities over the greatest of them at first touch.
         """
         assert isinstance(tangential, CausalTangentialLaw)
-        needed = together.needed_steps(scene, normal, tangential)
+        needed = coupled.needed_steps(scene, normal, tangential)
         count = np.where(needed <= MOST_STEPS, np.maximum(needed, FIRST), np.inf)
         refused = Status.TOO_FEW_STEPS, refusals(FIRST, needed)
-        before = together.march_together(
+        before = coupled.march_together(
             scene, normal, tangential, count, None, refused, usual=USUAL
         )
         succeeded = np.asarray(before.status == Status.SUCCESS)
@@ -141,7 +141,7 @@ class Adaptive(CoupledIntegrator):
             steps = motion.counters
             motion = attrs.evolve(TangentialMotion.merged(parts, scene.shape), counters=steps)
         if observer is not None:
-            together.march_together(scene, normal, tangential, count, observer)
+            coupled.march_together(scene, normal, tangential, count, observer)
         return motion
 
     def _doubled_together(
@@ -156,7 +156,7 @@ class Adaptive(CoupledIntegrator):
         finer = np.where(2.0 * count <= MOST_STEPS, 2.0 * count, np.inf)
         sentence = "A velocity still changes by more than the tolerance at the most steps."
         refused = Status.UNRESOLVED, sentence
-        last = together.march_together(scene, normal, law, finer, None, refused)
+        last = coupled.march_together(scene, normal, law, finer, None, refused)
         moved = np.maximum(
             *(np.abs(a - b) for a, b in zip(*map(_rates, (last, before)), strict=True))
         )

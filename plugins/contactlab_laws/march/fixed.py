@@ -30,7 +30,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import chosen, every, for_share
 from contactlab.numeric.checks import count, flag
 from contactlab.numeric.types import Real
-from contactlab_laws.march import together
+from contactlab_laws.march import coupled
 from contactlab_laws.march.division import LARGEST_LEAD, LARGEST_PHASE_STEP, resolving
 from contactlab_laws.march.march import march
 
@@ -53,7 +53,7 @@ def needed_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene | None =
     assert isinstance(law, SteppedTangentialLaw)
     if scene is not None and scene.inverse_mass is not None:
         assert isinstance(law, CausalTangentialLaw)
-        return np.maximum(together.needed_steps(scene, normal, law), float(LEAST_STEPS))
+        return np.maximum(coupled.needed_steps(scene, normal, law), float(LEAST_STEPS))
     scene = normal.scene
     stiffness: Any = judges.stiffness_of(law, scene, normal)
     if not scene.shape and isinstance(stiffness, float):
@@ -146,7 +146,7 @@ class FixedSteps(CoupledIntegrator):
             taken = self._taken(needed)
         else:
             assert isinstance(tangential, CausalTangentialLaw)
-            needed = together.needed_steps(scene, normal, tangential)
+            needed = coupled.needed_steps(scene, normal, tangential)
             taken = self._taken_together(needed)
         declared = tangential.errors(scene, normal, taken)
         if every(followed := np.less_equal(needed, taken) & np.isfinite(taken)):
@@ -210,9 +210,9 @@ class FixedSteps(CoupledIntegrator):
     ) -> TangentialMotion:
         """Return the motion, ``steps`` counted on the approach without friction."""
         assert isinstance(tangential, CausalTangentialLaw)
-        needed = together.needed_steps(scene, normal, tangential)
+        needed = coupled.needed_steps(scene, normal, tangential)
         taken = self._taken_together(needed)
         refused = Status.TOO_FEW_STEPS, refusals(self.steps, needed)
-        return together.march_together(
+        return coupled.march_together(
             scene, normal, tangential, taken, observer, refused, usual=self.steps
         )

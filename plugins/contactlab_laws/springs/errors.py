@@ -15,7 +15,7 @@ import numpy as np
 from contactlab.contracts import Errors
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
-from contactlab_laws.march.together import deepest
+from contactlab_laws.march.coupled import deepest
 
 #: Error of psi2 by springs, over x/n².
 BY_SPRINGS = 0.46

@@ -15,13 +15,13 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.compose.normal_motion import normal_motion
-from contactlab.compose.registry import REGISTRY
-from contactlab.compose.simulation import Simulation
 from contactlab.contracts.law import claims
 from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array, Real
+from contactlab.registry.registry import REGISTRY
+from contactlab.runs.simulation import Simulation
+from contactlab.solve.normal_motion import normal_motion
 from contactlab_laws.differences.table import FILE, NODES, key
 
 #: The impacts of the choice of a law: least and number of psi1, up to slip throughout and 1 more,

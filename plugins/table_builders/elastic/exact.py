@@ -6,9 +6,9 @@ import numpy as np
 
 from contactlab.numeric.types import Array
 from contactlab_laws.fronts.compiled import LOST, MOST_STEPS
+from contactlab_laws.fronts.coupled import solved
 from contactlab_laws.fronts.phases import LOCKED
 from contactlab_laws.fronts.steps import Steps, kept
-from contactlab_laws.fronts.together import solved
 
 #: Error of a step. Answers then come to 3e-15 (to 4e-14 at 1e-8 from psi1 = 1, chi = 1/2): what is
 #: left of 5e-13, some 3e-14, is seen in second derivatives of a patch.

@@ -1,0 +1,1 @@
+"""Collisions of bodies in space, rebounds from a table, velocities after them."""

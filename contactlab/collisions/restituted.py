@@ -1,0 +1,85 @@
+"""Impacts with a restitution in place of laws: their results, and their plans."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.collisions.collision_plan import by_rebound
+from contactlab.collisions.rebound import laws_of
+from contactlab.impact.scene import Scene
+from contactlab.numeric.types import Array, Real
+from contactlab.outcome.motion import Motion
+from contactlab.outcome.normal_spin_words import with_normal_spin
+from contactlab.outcome.plan import Plan
+from contactlab.outcome.result import ImpactResult
+from contactlab.runs.simulation import Simulation
+
+#: Different restitutions beyond which a plan has one statement, and the cautions of the least, for
+#: all impacts with loss.
+MOST_STATEMENTS = 20
+
+
+def run_in_blocks(simulation: Simulation, scene: Scene) -> ImpactResult:
+    """Return the result of a scene, by blocks if the scene has one axis."""
+    return simulation.sweep(scene) if len(scene.shape) == 1 else simulation.run(scene)
+
+
+def run_by_restitution(scene: Scene, restitution: Real) -> ImpactResult:
+    """Return the result of impacts under a restitution, one number or one for each."""
+    if isinstance(restitution, float):
+        return _run(scene, restitution)
+    groups = _alike(restitution)
+    if len(groups) == 1:
+        return _run(scene, groups[0][1])
+    parts = [(mask, _run(scene.take(mask), e)) for mask, e in groups]
+    return ImpactResult(
+        scene=scene,
+        plan=Plan.merged([(mask, part.plan) for mask, part in parts], scene.shape),
+        motion=Motion.merged([(mask, part.motion) for mask, part in parts], scene.shape),
+        laws=parts[0][1].laws,
+        run_time=sum(part.run_time for _, part in parts),
+    )
+
+
+def _run(scene: Scene, restitution: float) -> ImpactResult:
+    """Return the result of impacts of one restitution."""
+    return run_in_blocks(_simulation(restitution), scene)
+
+
+def planned(scene: Scene, restitution: Real) -> Plan:
+    """Return the plan of impacts that ``contactlab.rebound`` answers."""
+    plan = _of_groups(attrs.evolve(scene, encounter=None, normal_spin=0.0), restitution)
+    return Plan(plan.columns, lambda: with_normal_spin(plan.words, scene))
+
+
+def _of_groups(scene: Scene, restitution: Real) -> Plan:
+    """Return the plan of impacts, with the words of each restitution."""
+    if isinstance(restitution, float):
+        return _planned(scene, restitution, restitution)
+    groups = _alike(restitution)
+    if len(groups) > MOST_STATEMENTS:
+        masks = [mask for mask in (restitution == 1.0, restitution < 1.0) if mask.any()]
+        groups = [(mask, float(restitution[mask].min())) for mask in masks]
+    plans = [(mask, _planned(scene.take(mask), value, restitution[mask])) for mask, value in groups]
+    return Plan.merged(plans, scene.shape)
+
+
+def _planned(scene: Scene, restitution: float, each: Real) -> Plan:
+    """Return the plan of impacts, with the cautions of one restitution and the errors of each."""
+    plan = _simulation(restitution).plan(scene)
+    return plan if restitution == 1.0 else by_rebound(plan, scene.chi, each)
+
+
+@lru_cache(maxsize=16)  # to compose laws takes as long as to solve an impact
+def _simulation(restitution: float) -> Simulation:
+    """Return laws with the answers of ``contactlab.rebound``."""
+    return Simulation() if restitution == 1.0 else laws_of(restitution)
+
+
+def _alike(restitution: Array) -> list[tuple[Any, float]]:
+    """Return masks of equal restitutions, and the restitution of each mask."""
+    return [(restitution == value, value) for value in np.unique(restitution).tolist()]

@@ -1,0 +1,76 @@
+"""``rebound`` of arrays of JAX and PyTorch, which may be traced: under jit, vmap, grad, hessian."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any
+
+from contactlab.collisions.namespaces import known, library_named
+from contactlab.contracts.whole_impact import Tabulated
+from contactlab.numeric.checks import Rule, refuse
+
+#: Where a known number is out of a table.
+ENDS = "the table ends there: give such impacts to rebound as NumPy arrays"
+#: Tables as arrays of a library, by law, library, type and place.
+_TABLES: dict[Any, Any] = {}
+
+
+def by_standard(
+    library: str,
+    law: Tabulated,
+    arguments: Mapping[str, object],
+    rules: Mapping[str, Rule],
+    *,
+    joined: bool,
+) -> Any:
+    """Return psi2 as an array of a library, of the broadcast shape.
+
+    Parameters
+    ----------
+    library : str
+        The package of the arrays, ``"jax"`` or ``"torch"``.
+    law : Tabulated
+    arguments : mapping of str to float or array
+        psi1, chi and maybe restitution, at least one of them an array of that library.
+    rules : mapping of str to Rule
+        What numbers must obey; of traced ones, whose values are not known, psi2 is NaN instead.
+    joined : bool
+        Whether a restitution may be near 1.
+
+    Raises
+    ------
+    ValueError
+        If a number that is known is out of range, or shapes do not fit.
+    """
+    for name, value in arguments.items():
+        known(library, name, value, rules[name], ENDS)
+    arrays = library_named(library).arrays(arguments.values())
+    xp = library_named(library).xp
+    try:
+        shape = xp.broadcast_shapes(*(array.shape for array in arrays))
+    except (ValueError, RuntimeError):  # of JAX, of PyTorch
+        shapes = {name: (*each.shape,) for name, each in zip(arguments, arrays, strict=True)}
+        raise refuse("shapes", shapes, "must fit", "give one value of each for each") from None
+    impact = [xp.broadcast_to(array, shape) for array in arrays]
+    return _function(library, law, joined)(_tables(library, law, impact[0]), *impact)
+
+
+def _tables(library: str, law: Tabulated, like: Any) -> Any:
+    """Return the numbers of a law's table as arrays of the type and place of ``like``."""
+    place = like.device if library == "torch" else None
+    key = law, library, like.dtype, place
+    if key not in _TABLES:
+        _TABLES[key] = library_named(library).constants(law.table_of_arrays(), like)
+    return _TABLES[key]
+
+
+@cache
+def _function(library: str, law: Tabulated, joined: bool) -> Callable[..., Any]:
+    """Return psi2 of tables and impacts, compiled when it is called if the library compiles."""
+    xp = library_named(library).xp
+
+    def psi2(tables: Any, *impact: Any) -> Any:
+        return law.rebound_of_arrays(xp, tables, *impact, joined=joined)
+
+    return library_named(library).compiled(psi2)

@@ -1,1 +1,0 @@
-"""Laws found, fitted together and run."""

@@ -1,0 +1,1 @@
+"""Laws along given paths."""

@@ -1,0 +1,1 @@
+"""Laws: found by name, fitted together, made from options."""

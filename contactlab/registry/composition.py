@@ -1,0 +1,303 @@
+"""Which laws fit together, and how a name becomes a law."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+from typing import Any
+
+import attrs
+
+from contactlab.contracts.integrator import Integrator
+from contactlab.contracts.law import Law, claims, law_kind, requirements
+from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
+from contactlab.contracts.path import PathTangentialLaw
+from contactlab.contracts.tangential import (
+    SteppedTangentialLaw,
+    TangentialLaw,
+    WholeImpactTangentialLaw,
+)
+from contactlab.numeric.checks import refuse
+from contactlab.registration.names import KINDS, full_name
+from contactlab.registry.capability import Capability
+from contactlab.registry.law_classes import unfit
+from contactlab.registry.registry import REGISTRY, PluginError
+
+#: Defaults are plug-in names: of a list the first that is installed and fits. Coulomb's law at
+#: every point comes first, for any normal law with a radius, then laws that need less.
+DEFAULT_NORMAL = "hertz"
+PREFERRED = {
+    "tangential": ("annulus", "springs", "coulomb"),
+    "elastic": ("fronts", "springs", "coulomb"),  # under elastic Hertz contact: fronts is exact
+    "viscous": ("springs", "annulus", "coulomb"),  # springs share the loss of the normal law
+    "integrator": ("events", "symplectic"),
+    "steps": ("symplectic", "events"),  # integrators of laws that are stepped and nothing else
+}
+#: Laws that the core and the studies request by purpose: exact answers between elastic spheres,
+#: fixed steps, prescribed paths, and a restitution.
+EXACT = {"tangential": "fronts", "integrator": "events"}
+#: Option of the exact law that follows every impact, none from a table.
+FOLLOWED = {"table": False}
+FIXED_STEPS = "symplectic"
+#: Integrators of fixed steps under which laws are mapped, the usual one first.
+STEPPED = (FIXED_STEPS, "paper")
+ON_A_PATH = "springs"
+#: Rigid bodies, which stiff contacts tend to.
+RIGID = {"tangential": "coulomb"}
+#: Laws of impacts in which friction changes the approach: exact in the plane under elastic Hertz
+#: contact, springs otherwise.
+TOGETHER = (EXACT, {"tangential": ON_A_PATH, "integrator": FIXED_STEPS})
+RESTITUTION = {"normal": "viscoelastic", "tangential": "springs"}
+#: Contracts of tangential laws that can be run; every law must be derived from one of them.
+WAYS = (SteppedTangentialLaw, PathTangentialLaw, WholeImpactTangentialLaw)
+#: The contract of laws that answer to steps, and in no other way.
+STEPS = {SteppedTangentialLaw}
+
+
+@attrs.frozen
+class Laws:
+    """Three laws that fit together, the kinds of those that the user ``named``, what they can do.
+
+    Iterating yields the laws in the order of their kinds.
+    """
+
+    normal: NormalLaw
+    tangential: TangentialLaw
+    integrator: Integrator
+    named: frozenset[str] = frozenset(KINDS)
+    capability: Capability = attrs.field(init=False, eq=False, repr=False)
+
+    @capability.default
+    def _capability(self) -> Capability:
+        return Capability.of(self.normal, self.tangential, self.integrator)
+
+    def __iter__(self) -> Iterator[Law]:
+        return iter((self.normal, self.tangential, self.integrator))
+
+    def by_kind(self) -> dict[str, Any]:
+        """Return the laws by kind."""
+        return dict(zip(KINDS, self, strict=True))
+
+    def taking(self, names: Mapping[str, str]) -> Laws:
+        """Return the laws with others of some kinds, by name."""
+        return self.changed(**{kind: law(kind, name) for kind, name in names.items()})
+
+    def changed(self, **laws: Any) -> Laws:
+        """Return the laws with others of some kinds."""
+        return attrs.evolve(self, **laws)
+
+
+def law(kind: str, value: object, **options: object) -> Any:
+    """Return the law of ``kind`` that ``value`` names, made with ``options``; or a law as it is."""
+    if isinstance(value, str):
+        name = full_name(kind, value)
+        law_class = REGISTRY.law_class(name)
+        if (own := law_kind(law_class)) != kind:
+            raise refuse(kind, value, f"is a law of kind {own!r}", f"pass it as {own}")
+        return REGISTRY.create(name, **options) if options else _with_defaults(name, law_class)
+    if isinstance(value, Law) and law_kind(value) == kind:
+        if (complaint := unfit(type(value))) is not None:
+            raise ValueError(f"{kind} = {complaint}")
+        return value
+    remedy = f"installed: {', '.join(REGISTRY.names(kind))}"
+    if isinstance(value, type) and issubclass(value, Law):
+        remedy = f"this is the class; make one: {value.__name__}()"
+    raise refuse(kind, value, f"must be a name or a {kind} law", remedy)
+
+
+@lru_cache(maxsize=128)
+def _with_defaults(name: str, _: type[Law]) -> Any:
+    """Return the law of a name with its defaults; laws are immutable, so that one serves all."""
+    # The class is part of the key: another plug-in may take the name over.
+    return REGISTRY.create(name)
+
+
+def exact(tolerance: float) -> dict[str, Any]:
+    """Return laws for ``Simulation`` that follow elastic spheres exactly, psi2 to ``tolerance``."""
+    return {
+        "tangential": law("tangential", EXACT["tangential"], **FOLLOWED),
+        "integrator": law("integrator", EXACT["integrator"], tolerance=tolerance),
+    }
+
+
+def fixed_steps(steps: int) -> Integrator:
+    """Return an integrator with fixed steps."""
+    integrator: Integrator = law("integrator", FIXED_STEPS, steps=steps)
+    return integrator
+
+
+def compose(normal: object, tangential: object, integrator: object) -> Laws:
+    """Return three laws that fit, from names or laws; None stands for the preferred law."""
+    given = {"normal": normal, "tangential": tangential, "integrator": integrator}
+    named = {kind: law(kind, value) for kind, value in given.items() if value is not None}
+    laws = _completed(named)
+    check(laws)
+    return laws
+
+
+def _completed(given: Mapping[str, Law]) -> Laws:
+    """Return laws with the preferred ones of the kinds that are not named."""
+    named: dict[str, Any] = {**given}
+    first = named.get("normal") or law("normal", DEFAULT_NORMAL)
+    third = named.get("integrator")
+    second = named.get("tangential")
+    if second is None:
+        _, second = _preferred("tangential", first, after=() if third is None else (third,))
+    if third is None:
+        _, third = _preferred("integrator", first, second)
+    return Laws(first, second, third, frozenset(named))
+
+
+def check(laws: Laws) -> None:
+    """Refuse three laws that do not fit, naming what would fit beside those that are named."""
+    if (complaint := misfit(*laws)) is not None:
+        raise ValueError(complaint + _would_fit(laws))
+
+
+def preferred(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> str:
+    """Return the name of the first law in ``PREFERRED`` that fits, or of the first installed."""
+    # ``before`` are the laws in front of this kind, ``after`` is a named integrator.
+    return _preferred(kind, *before, after=after)[0]
+
+
+def _preferred(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> tuple[str, Any]:
+    """Return the preferred law with its name; arguments as in ``preferred``."""
+    installed: list[tuple[str, Any]] = []
+    which = kind
+    if kind == "tangential" and "elastic_hertz" in claims(before[0]):
+        which = "elastic"
+    elif kind == "tangential" and "viscous" in claims(before[0]):
+        which = "viscous"
+    elif kind == "integrator" and {way for way in WAYS if isinstance(before[-1], way)} == STEPS:
+        which = "steps"  # no other integrator is imported
+    for name in PREFERRED[which]:
+        try:
+            candidate = law(kind, name)
+        except ValueError:  # blocked, or not installed
+            continue
+        if _fits(*before, candidate, *after):
+            if installed and after and "rigid" in claims(candidate):
+                _refuse_rigid(name, installed, before[0], after[0])
+            return name, candidate
+        installed.append((name, candidate))
+    if not installed:
+        names = ", ".join(REGISTRY.names(kind))
+        why = "must be given: none of the defaults is installed"
+        raise refuse(kind, None, why, f"installed: {names}")
+    return installed[0]
+
+
+def _refuse_rigid(
+    rigid: str, elastic: Sequence[tuple[str, TangentialLaw]], normal: Law, integrator: Law
+) -> None:
+    """Refuse an integrator beside which no friction law is left but one of rigid bodies."""
+    for name, tangential in elastic:
+        if _fits(normal, tangential):
+            runs, _ = _preferred("integrator", normal, tangential)
+            rule = f"beside {_name(normal)} it runs rigid friction only, which is not taken unnamed"
+            remedy = f"take integrator={runs!r} (with {name}), or name tangential={rigid!r}"
+            raise refuse("integrator", _named(integrator), rule, remedy)
+
+
+def _named(law: Law) -> str:
+    """Return the name of a law as a user writes it."""
+    return REGISTRY.short_name(law)
+
+
+def _fits(*parts: Law) -> bool:
+    return misfit(*parts) is None
+
+
+def misfit(normal: Law, tangential: Any, integrator: Any = None) -> str | None:
+    """Return why laws do not fit, with the names of both; None if they fit."""
+    if "elastic_hertz" in claims(normal) and not isinstance(normal, ClosedFormNormalLaw):
+        return (
+            f"normal = {_name(normal)}: offers 'elastic_hertz', and is no ClosedFormNormalLaw; "
+            "derive it from that class, or do not offer the word"
+        )
+    if not isinstance(tangential, WAYS):
+        ways = ", ".join(way.__name__ for way in WAYS)
+        return f"tangential = {_name(tangential)}: must be derived from one of {ways}"
+    if (complaint := _lacking(tangential, normal)) is not None or integrator is None:
+        return complaint
+    if isinstance(tangential, WholeImpactTangentialLaw):
+        return None
+    return _lacking(integrator, tangential) or _lacking(integrator, normal)
+
+
+def _lacking(law: Law, other: Law) -> str | None:
+    """Return what a law needs and another has not, with the names of both; or None."""
+    kind, others = law_kind(law), law_kind(other)
+    for need in sorted(requirements(law), key=str):
+        if isinstance(need, str):
+            if others == "normal" and need not in claims(other):
+                return (
+                    f"{kind} = {_name(law)}: needs {need!r} of the normal law, which "
+                    f"{_name(other)} does not offer"
+                )
+        elif law_kind(need) == others and not isinstance(other, need):
+            return (
+                f"{kind} = {_name(law)}: runs a {need.__name__}, and {others} = "
+                f"{_name(other)} is not one"
+            )
+    return None
+
+
+def _would_fit(laws: Laws) -> str:
+    """Return a phrase that names the laws that would fit in place of one of those that are named.
+
+    Laws that nobody named are chosen anew beside each; the preferred law of a kind comes first.
+    """
+    names = []
+    for kind in (kind for kind in KINDS if kind in (laws.named or KINDS)):
+        others = {each: law for each, law in laws.by_kind().items() if each in laws.named - {kind}}
+        found = [name for name, law in _candidates(kind) if _completes({**others, kind: law})]
+        with contextlib.suppress(ValueError):  # nothing that is preferred is installed
+            usual = REGISTRY.info(full_name(kind, _usual(kind, others))).known_as
+            found.sort(key=usual.__ne__)
+        names += found
+    return f"; these would fit: {', '.join(names)}" if names else "; no law at hand fits"
+
+
+def _completes(named: Mapping[str, Law]) -> bool:
+    """Return whether laws fit that are completed by preferred ones."""
+    try:
+        return _fits(*_completed(named))
+    except ValueError:
+        return False
+
+
+def _usual(kind: str, others: Mapping[str, Law]) -> str:
+    """Return the name of the preferred law of a kind beside others."""
+    if kind == "normal":
+        return DEFAULT_NORMAL
+    made = _completed(others)
+    after = (others["integrator"],) if "integrator" in others and kind == "tangential" else ()
+    before = (made.normal,) if kind == "tangential" else (made.normal, made.tangential)
+    return _preferred(kind, *before, after=after)[0]
+
+
+def _candidates(kind: str) -> Iterator[tuple[str, Any]]:
+    """Yield names and laws, made with their defaults, that need no import of a foreign plug-in."""
+    for info in REGISTRY.installed():
+        if info.kind != kind or info.blocked or not REGISTRY.at_hand(info):
+            continue
+        try:
+            yield info.known_as, REGISTRY.create(info.known_as)
+        except (PluginError, ValueError):
+            continue
+
+
+def _name(law: Law) -> str:
+    return type(law).__name__
+
+
+def versions(*laws: Law) -> dict[str, str]:
+    """Return each law's name and version, by kind."""
+    return dict(_versions(*map(type, laws)))
+
+
+@lru_cache(maxsize=128)
+def _versions(*classes: type[Law]) -> dict[str, str]:
+    return {law_kind(law_class): REGISTRY.describe(law_class) for law_class in classes}

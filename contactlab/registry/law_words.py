@@ -1,0 +1,65 @@
+"""Laws in the words of plans: names, and the options that differ from their defaults."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+
+import attrs
+
+from contactlab.contracts.law import Law
+from contactlab.numeric.checks import shown
+from contactlab.registry.registry import REGISTRY
+
+#: The address of an object without words of its own, which differs from run to run.
+ADDRESS = re.compile(r" at 0x[0-9A-Fa-f]+")
+
+
+def name_of(law: Law) -> str:
+    """Return the name by which a law is made, without its kind; its class if it has no name."""
+    return _name(type(law))
+
+
+def in_words(law: Law) -> str:
+    """Return the name of a law with the options that differ from their defaults.
+
+    They are those of an attrs class; of another class the name stands alone.
+    """
+    told = own_options(law)
+    return f"{name_of(law)} ({told})" if told else name_of(law)
+
+
+def own_options(law: Law) -> str:
+    """Return the options that differ from their defaults, as a user writes them: ``steps=400``."""
+    words = [
+        f"{option}={_shown(value)}"
+        for name, option, default in _fields(type(law))
+        if (value := getattr(law, name)) is not default and _differs(value, default)
+    ]
+    return ", ".join(words)
+
+
+@lru_cache(maxsize=128)
+def _name(law_class: type[Law]) -> str:
+    return REGISTRY.short_name(law_class)
+
+
+@lru_cache(maxsize=128)
+def _fields(law_class: type) -> tuple[tuple[str, str, object], ...]:
+    """Return attribute, option and default of each option that is shown."""
+    fields = attrs.fields(law_class) if attrs.has(law_class) else ()
+    shown_fields = (field for field in fields if field.init and field.repr)
+    return tuple((field.name, field.alias or "", field.default) for field in shown_fields)
+
+
+def _shown(value: object) -> str:
+    """Return the value of an option in words, without an address."""
+    return in_words(value) if isinstance(value, Law) else ADDRESS.sub("", shown(value))
+
+
+def _differs(value: object, default: object) -> bool:
+    """Return whether an option has another value than its default."""
+    try:
+        return bool(value != default)
+    except ValueError:  # arrays
+        return True

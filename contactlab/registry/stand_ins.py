@@ -1,0 +1,85 @@
+"""Laws that stand in where friction changes the approach and those at hand have no answer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from contactlab.contracts.law import Law
+from contactlab.impact.scene import Scene
+from contactlab.registration.names import KINDS
+from contactlab.registry.composition import RIGID, TOGETHER, Laws, misfit
+
+
+def coupled(laws: Laws, part: Scene) -> Laws:
+    """Return the laws of impacts in which friction changes the approach.
+
+    Where a law that nobody named has no answer, another stands in for it.
+
+    Raises
+    ------
+    ValueError
+        If a law that the user named has no answer; the message names laws that have one.
+    """
+    refused = _no_answer(laws, part)
+    if refused is None and not _rigid_in_silence(laws):
+        return laws
+    for _, other in _fitting(laws, [kind for kind in KINDS if kind not in laws.named]):
+        if _no_answer(other, part) is None:
+            return other
+    remedy = _remedy(laws, part)
+    if refused is None:
+        name = RIGID["tangential"]
+        refused = f"{_name(laws.tangential)}: rigid theory is not taken unless it is named"
+        remedy += f"; or name it: tangential={name!r}"
+    raise ValueError(f"{refused}; {remedy}")
+
+
+def _no_answer(laws: Laws, part: Scene) -> str | None:
+    """Return why laws have no answer where friction changes the approach; None if they have one."""
+    able, turns = laws.capability, not part.planar
+    name, reason = _name(laws.tangential), None
+    if turns and "vectors" not in able.tangential_claims:
+        reason = "it follows slip along one line"
+    elif able.coupled is not None:
+        return None
+    elif able.causal is None:
+        reason = "it needs the normal motion before the march"
+    elif able.marcher is None:
+        name, reason = _name(laws.integrator), "it follows a normal motion that is known before"
+    if reason is None:
+        return None
+    where = "and slip turns" if turns else "and slip keeps to a line"
+    return f"{name}: has no answer where friction changes the approach {where}: {reason}"
+
+
+def _fitting(laws: Laws, kinds: Iterable[str]) -> Iterator[tuple[dict[str, str], Laws]]:
+    """Yield what ``TOGETHER`` names of ``kinds``, and the laws with it, where they fit."""
+    free = set(kinds)
+    for names in TOGETHER:
+        taken = {kind: name for kind, name in names.items() if kind in free}
+        try:
+            other = laws.taking(taken)
+        except ValueError:  # blocked, or not installed
+            continue
+        if misfit(*other) is None:
+            yield taken, other
+
+
+def _rigid_in_silence(laws: Laws) -> bool:
+    """Return whether nobody named rigid theory, and an elastic law runs beside the normal law."""
+    if "tangential" in laws.named or "rigid" not in laws.capability.tangential_claims:
+        return False
+    return next(_fitting(laws, KINDS), None) is not None
+
+
+def _remedy(laws: Laws, part: Scene) -> str:
+    """Return which laws to take in place of those that have no answer."""
+    for names, other in _fitting(laws, KINDS):
+        if _no_answer(other, part) is None:
+            words = ", ".join(f"{kind}={name!r}" for kind, name in names.items())
+            return f"take {words}, or leave both out"
+    return f"no law at hand has one beside normal = {_name(laws.normal)}; take another normal law"
+
+
+def _name(law: Law) -> str:
+    return type(law).__name__

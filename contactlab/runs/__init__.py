@@ -1,0 +1,1 @@
+"""Simulations: runs, and sweeps here or by workers, into memory or folders."""

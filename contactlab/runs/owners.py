@@ -1,0 +1,89 @@
+"""Where an argument belongs that a simulation does not have: to a law, or to the scene."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable
+from inspect import signature
+
+from contactlab.contracts.law import Law, law_kind
+from contactlab.impact.bodies import Sphere
+from contactlab.impact.material import Material
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import shown
+from contactlab.numeric.names import REMARKS, SYMBOLS, nearest
+from contactlab.registration.names import full_name, kind_of
+from contactlab.registry.composition import EXACT, PREFERRED, RESTITUTION
+from contactlab.registry.registry import REGISTRY, PluginError
+
+#: Laws that are asked first for an option: those of a restitution, and the defaults.
+FIRST = tuple(
+    full_name(kind, name)
+    for kind, names in (
+        ("normal", (RESTITUTION["normal"],)),
+        ("tangential", (EXACT["tangential"], RESTITUTION["tangential"], *PREFERRED["tangential"])),
+        ("integrator", (*PREFERRED["steps"], *PREFERRED["integrator"])),
+    )
+    for name in names
+)
+
+#: What makes a scene and its bodies.
+OF_SCENES: dict[str, Callable[..., object]] = {
+    "Scene": Scene,
+    "Scene.at_angle": Scene.at_angle,
+    "Scene.nondimensional": Scene.nondimensional,
+    "Sphere": Sphere,
+    "Material": Material,
+}
+
+
+def options(*, at_hand: bool) -> dict[str, list[str]]:
+    """Return the names of laws by each option that they have, the defaults first.
+
+    With ``at_hand`` no plug-in of others is imported.
+    """
+    rank = {name: place for place, name in enumerate(reversed(FIRST), start=1)}
+    infos = sorted(REGISTRY.installed(), key=lambda info: -rank.get(info.known_as, 0))
+    found: dict[str, list[str]] = {}
+    for info in infos:
+        if at_hand and not REGISTRY.at_hand(info):
+            continue
+        with contextlib.suppress(PluginError, ValueError):
+            for option in signature(REGISTRY.law_class(info.known_as)).parameters:
+                found.setdefault(option, []).append(info.known_as)
+    return found
+
+
+def remedy_of(name: str, value: object) -> str:
+    """Return where an argument of a simulation belongs, as a user writes it; empty if unknown."""
+    known = options(at_hand=True)
+    if name in known:
+        law = known[name][0]
+        return f"it goes to its law: {kind_of(law)}=create({law!r}, {name}={shown(value)}); "
+    if not isinstance(value, str):  # a name is that of a law
+        for entry in (name, *SYMBOLS.get(name, ())):
+            for made, call in OF_SCENES.items():
+                if entry in signature(call).parameters:
+                    given = "..." if name in REMARKS else shown(value)
+                    return f"it goes to the scene: {made}(..., {entry}={given}); "
+    near = nearest(name, known, alike=0.75)
+    return f"{near}that is an option of a law; " if near else ""
+
+
+def with_restitution(law: Law, restitution: object) -> str:
+    """Return how a user makes a law with a restitution: ``law``, or that which takes its place."""
+    name = FIRST[0]
+    if takes_restitution(type(law)):
+        name = full_name(law_kind(law), REGISTRY.short_name(law))
+        try:
+            known = REGISTRY.law_class(name) is type(law)
+        except ValueError:  # a class that nobody installed
+            known = False
+        if not known:
+            return f"{type(law).__name__}(restitution={restitution!r})"
+    return f"create({name!r}, restitution={restitution!r})"
+
+
+def takes_restitution(law: type[Law]) -> bool:
+    """Return whether a law has the option ``restitution``."""
+    return "restitution" in signature(law).parameters

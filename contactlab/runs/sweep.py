@@ -1,0 +1,131 @@
+"""Sweeps: a batch cut into blocks that depend on the laws alone, solved here or by an executor."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import math
+from collections.abc import Callable, Generator, Iterable, Iterator
+from contextlib import AbstractContextManager
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from contactlab.contracts.status import Status
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import refuse, whole
+from contactlab.outcome.chunk_forms import Chunk
+from contactlab.outcome.motion import Motion
+from contactlab.outcome.plan import PlanColumns
+from contactlab.registry.composition import Laws
+from contactlab.runs.pieces import Part, Piece, solve_chunk, unsolved
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from contactlab.runs.kept import Kept
+
+#: Impacts of a block if nothing is marched: as many as fit into the cache.
+WHOLE_IMPACTS = 1 << 14
+#: Impacts of a block that are marched: a call costs little, an interruption loses little.
+MARCHED = 1000
+
+
+def block_for(laws: Laws, scene: Scene) -> int:
+    """Return how many impacts of a scene are solved in one call."""
+    # The last bits of an answer may depend on the impacts beside it: on the iterations of an array
+    # solver, and on whether the processor uses scalar or vector arithmetic. So the size of a block
+    # depends on the laws alone.
+    able = laws.capability
+    if able.path is not None:
+        return able.path.cost(scene, laws.integrator.accuracy).block
+    known = able.closed is not None and able.whole is not None
+    return WHOLE_IMPACTS if known else MARCHED
+
+
+def solve_parts(
+    laws: Laws, parts: Iterable[Part], executor: Executor | None, *, ahead: int | None = None
+) -> Generator[Piece, None, None]:
+    """Yield the pieces of parts, solved here or by an executor; ``ahead`` as in ``pieces_of``."""
+    if executor is None:
+        return (solve_chunk(laws, scene, chunk, block) for chunk, scene, block in parts)
+    from contactlab.runs.workers import pieces_of  # needed with an executor only
+
+    return pieces_of(laws, parts, executor, ahead=ahead)
+
+
+def swept(
+    laws: Laws,
+    scene: Scene,
+    *,
+    progress: Callable[[int, int], object] | None,
+    chunk: int | None,
+    executor: Executor | None,
+    keep: str | Path | None,
+) -> tuple[PlanColumns, Motion]:
+    """Return columns of the plan and motion of a batch of one axis; see ``Simulation.sweep``."""
+    size, block = scene.shape[0], block_for(laws, scene)
+    step = math.ceil(whole("chunk", block if chunk is None else chunk) / block) * block
+    solve = partial(solve_parts, laws, executor=executor)
+    plain = scene.unvaried()
+    with _kept(keep, laws, scene, block) as kept:
+        finished = [] if kept is None else kept.pieces()
+        done = sum(piece.chunk.size for piece in finished)
+        missing = cut(_gaps(finished, size), step)
+        parts = (Part(each, plain.take(slice(*each)), block) for each in missing)
+        pieces = solve(parts)
+        try:
+            if kept is not None:
+                kept.compare([*finished], block, solve)
+            for piece in pieces:
+                finished.append(piece)
+                if kept is not None:
+                    kept.keep(piece)
+                done += piece.chunk.size
+                if progress is not None:
+                    progress(done, size)
+        except KeyboardInterrupt:
+            if kept is not None and finished:
+                kept.keep(finished[-1])  # which may have been on its way to the disk
+            gaps = _gaps(finished, size)
+            finished += [unsolved(gap, scene.slip_axes, Status.INTERRUPTED) for gap in gaps]
+        finally:
+            pieces.close()
+    finished.sort(key=lambda piece: piece.chunk)
+    columns = PlanColumns.joined([piece.columns for piece in finished], (size,))
+    return columns, Motion.joined([piece.motion for piece in finished], (size,))
+
+
+def _kept(
+    keep: str | Path | None, laws: Laws, scene: Scene, block: int
+) -> AbstractContextManager[Kept | None]:
+    """Return a context with the folder of finished pieces, or with None."""
+    if keep is None:
+        return contextlib.nullcontext()
+    from contactlab.runs.kept import kept_in  # needed with ``keep`` only
+
+    return kept_in(keep, laws, scene, block)
+
+
+def one_axis(shape: tuple[int, ...]) -> None:
+    """Refuse scenes that are no batch of one axis."""
+    if len(shape) != 1:
+        rule = "must be a sequence, or a one-dimensional batch"
+        raise refuse("scenes", shape, rule, "for one impact use run")
+
+
+def _gaps(pieces: Iterable[Piece], size: int) -> list[Chunk]:
+    """Return the chunks that no piece covers."""
+    chunks = [(0, 0), *sorted(piece.chunk for piece in pieces), (size, size)]
+    return [
+        Chunk(before, after)
+        for (_, before), (after, _) in itertools.pairwise(chunks)
+        if before < after
+    ]
+
+
+def cut(gaps: Iterable[Chunk], step: int) -> Iterator[Chunk]:
+    """Yield the gaps in chunks of at most ``step`` impacts."""
+    for gap in gaps:
+        for first in range(gap.first, gap.stop, step):
+            yield Chunk(first, min(first + step, gap.stop))

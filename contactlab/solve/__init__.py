@@ -1,0 +1,1 @@
+"""Impacts solved: the decoupled and the coupled way, plans, errors."""

@@ -1,0 +1,249 @@
+"""Impacts in which friction changes the approach: normal and tangential motion together (§14)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Self
+
+import attrs
+import numpy as np
+
+from contactlab.contracts import faults, judges
+from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.normal import NormalLaw
+from contactlab.contracts.status import Status
+from contactlab.contracts.tangential import Errors, TangentialLaw
+from contactlab.contracts.tangential_motion import Observer
+from contactlab.impact.cautions import OUTSIDE
+from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import chosen, every, spread
+from contactlab.numeric.types import Array, Index, Real
+from contactlab.outcome.history import Recorder
+from contactlab.outcome.motion import Motion
+from contactlab.outcome.plan import ENDLESS, MARCHED, Clause, PlanColumns
+from contactlab.registry import stand_ins
+from contactlab.registry.composition import Laws
+from contactlab.solve.answers import Mask, check_motion, separated
+from contactlab.solve.failed_motion import FailedMotion
+from contactlab.solve.normal_motion import normal_or_failed
+from contactlab.solve.way import ONE_BY_ONE, WHOLE, Masks, Prepared, Way, ask, halves
+
+#: Imbalance of the energy books that is no failure: where W is nearly singular the energy is the
+#: small difference of large products. Beyond a law's own bound the declared errors grow instead.
+CANCELS = 1e-4
+#: Shares of W_nn that friction leaves, 1 - W_nt²/(W_nn W_tt), and the largest errors from each down
+#: to a tenth of it, where abs(lam) > 1: of V2 over max(1, V2) and psi2 over max(1, psi1), in 1,200
+#: random planar impacts by 50 springs and 200 steps.
+NEAR_SINGULAR = ((0.1, 0.07), (0.01, 0.4), (0.001, 1.2))
+#: Least slip at which cautions are ask, over the larger of two.
+LITTLE = 1e-3
+#: Statuses by which a law ends a whole batch: its impacts are then solved one by one.
+GIVEN_UP = (Status.LAW_RAISED, Status.MALFORMED, Status.NON_FINITE)
+#: Statuses of impacts that were not followed to an end, by no fault of a law's answer.
+WITHOUT_END = (Status.NOT_SEPARATED, Status.TOO_FEW_STEPS, Status.UNRESOLVED)
+#: What a plan says of such impacts.
+TOGETHER = "normal and tangential motion together: friction changes the approach, or slip turns"
+OF_CONTACT = (
+    "restitution: of a frictionless impact on the mass 1/W_nn; that of the bodies follows from it"
+)
+ONE_PLANE = "second tangent: the motion stays in a plane"
+OF_SPHERES = (
+    "cautions of laws: their sizes were measured for spheres, where friction does not change the "
+    "approach"
+)
+
+
+class Coupled(Way):
+    """Impacts whose approach friction changes, or whose slip turns."""
+
+    __slots__ = ()
+
+    both = as_integrator = True
+    at_a_time = 1000  # their springs stay in the cache
+    cancels = CANCELS
+
+    @classmethod
+    def of(cls, where: Index, scene: Scene, laws: Laws) -> Self:
+        """Return the way of such impacts, by laws that have an answer to them."""
+        return cls(where, scene, stand_ins.coupled(laws, scene))
+
+    def prepare(self, history: bool | str) -> Prepared:
+        """Return the approach without friction and columns of the plan, or raise LawFaultError."""
+        scene, laws = self.scene, self.laws
+        if history and laws.capability.coupled is not None:
+            self.refuse_history(history)
+        normal = normal_or_failed(laws, scene.central)
+        with faults.blaming(laws.tangential):
+            bound = judges.books_bound_of(laws.tangential, normal.scene)
+            return Prepared(normal, [], self._columns(normal), bound)
+
+    def _columns(self, normal: NormalMotion) -> PlanColumns:
+        """Return the columns of the plan: who answers, and the declared errors."""
+        scene, laws = self.scene, self.laws
+        law, integrator = laws.capability.coupled, laws.integrator
+        code = chosen(separated(normal), MARCHED if law is None else 0, ENDLESS)
+        errors: object
+        if type(normal) is FailedMotion:  # no law is asked about an approach that is not known
+            errors = Errors()
+        elif law is None:
+            errors = integrator.errors(scene, normal, laws.tangential)
+        else:
+            errors = law.errors(scene, normal, np.inf, integrator.accuracy)
+        judged = judges.judge_errors(laws.tangential, errors, scene.shape)
+        psi2, restitution = (spread(error, scene.shape) for error in judged)
+        return PlanColumns(code, psi2, () if law is None else (WHOLE,), restitution)
+
+    def solve(self, prepared: Prepared, recorder: Recorder | None) -> Motion:
+        """Return the motion, of a batch with the impacts solved again that failed beside others."""
+        scene, normal = self.scene, prepared.normal
+        if type(normal) is FailedMotion:  # isinstance of an abstract class is slow
+            return Motion.nothing(scene.shape, normal.status, normal.detail, axes=scene.slip_axes)
+        motion = self._ended_as_alone(self._answered(normal, recorder), normal)
+        if recorder is None and scene.shape not in ((), (1,)):
+            return self._apart(motion)
+        return motion
+
+    def _answered(self, normal: NormalMotion, observer: Observer | None) -> Motion:
+        """Return the motion that law or integrator answers, or raise LawFaultError."""
+        scene, laws, able = self.scene, self.laws, self.laws.capability
+        blamed = laws.integrator if able.coupled is None else able.coupled
+        with faults.blaming(blamed):
+            if able.coupled is not None:
+                accuracy = laws.integrator.accuracy
+                answer = able.coupled.solve_coupled(scene, normal, accuracy, observer)
+            else:  # other laws are stood in for
+                assert able.marcher is not None
+                assert able.causal is not None
+                answer = able.marcher.integrate_coupled(scene, normal, able.causal, observer)
+            moved = check_motion(answer, scene.shape, scene.slip_axes)
+            if moved.normal is None and np.any(np.asarray(moved.status) == Status.SUCCESS):
+                told = "the answer has not the ends of its normal motion"
+                raise faults.LawFaultError(Status.MALFORMED, faults.sentence(blamed, told, 1))
+            return Motion.along(normal, moved, scene.slip_axes)
+
+    def _ended_as_alone(self, motion: Motion, normal: NormalMotion) -> Motion:
+        """Return a motion whose impacts without an end have the status of the approach alone."""
+        ended = separated(normal)
+        if every(ended):
+            return motion
+        lost = np.isin(np.asarray(motion.status, dtype=object), np.array(WITHOUT_END, dtype=object))
+        where = np.logical_not(ended) & lost
+        if not self.scene.shape:
+            same = attrs.evolve(motion, status=normal.status, detail=normal.detail)
+            return same if where else motion
+        status = np.where(where, normal.status, motion.status)
+        detail = np.where(where, normal.detail, motion.detail)
+        return attrs.evolve(motion, status=status, detail=detail)
+
+    def _apart(self, motion: Motion) -> Motion:
+        """Return the motion of a batch with the impacts that one beside them made fail."""
+        statuses = np.asarray(motion.status, dtype=object)
+        again = np.isin(statuses, np.array(GIVEN_UP, dtype=object))
+        if not again.any():
+            return motion
+        part = self.taking(again)
+        size, shape = part.scene.shape[0], self.scene.shape
+        if size == shape[0]:
+            _, repeated = part.solve_parts(halves(size, most=ONE_BY_ONE))
+        else:
+            _, repeated = part.outcome(False, None)
+        return Motion.merged([(np.ones(shape, dtype=bool), motion), (again, repeated)], shape)
+
+    def line(self, scene: Scene) -> Array:
+        """Return the first tangent, along which slip has either sign."""
+        return np.array([1.0, 0.0])
+
+    @property
+    def scene_of_cautions(self) -> Scene:
+        """The central impacts at the larger slip: at first touch, or as pressure alone leaves it.
+
+        Sizes of cautions grow with the slip, and pressure makes slip where there is none at first.
+        """
+        return self._at_slip(np.maximum(*self._slips()))
+
+    @property
+    def _gripping(self) -> Scene:
+        """The central impacts at the smaller slip, but no less than a little of the larger.
+
+        Some cautions hold of contacts that grip alone.
+        """
+        slips = self._slips()
+        return self._at_slip(np.maximum(np.minimum(*slips), LITTLE * np.maximum(*slips)))
+
+    def _slips(self) -> tuple[Any, Any]:
+        """Return the slip speed at first touch, and that which pressure alone leaves."""
+        scene = self.scene
+        drag = scene.coupling(2.0 * np.asarray(scene.normal_speed))
+        return scene.slip_speed, scene.size_of(np.asarray(scene.slip_velocity) - drag)
+
+    def _at_slip(self, slip: Real) -> Scene:
+        """Return the central impacts at a slip speed."""
+        scene = self.scene
+        slip = spread(slip, scene.shape)
+        return attrs.evolve(scene.central, tangential_velocity=slip).numbered(scene.index)
+
+    def how(self) -> str:
+        """Return words on how the normal motion is found."""
+        return "with the tangential motion"
+
+    def one_by_one(self, masks: Masks) -> Mask:
+        """Return the impacts that a law takes one by one, if it does."""
+        return masks.ended
+
+    def remarks(self, masks: Masks) -> list[Clause]:
+        """Return that both motions are found together, and of what a restitution is."""
+        said = [TOGETHER]
+        if getattr(self.laws.normal, "restitution", None) not in (None, 1.0):
+            said.append(OF_CONTACT)
+        return [Clause(text, masks.known) for text in said]
+
+    def errors(self, columns: PlanColumns) -> Mapping[str, Real]:
+        """Return both errors; of spheres that of the restitution is far smaller."""
+        return {"psi2": columns.psi2_error, "the normal restitution": columns.restitution_error}
+
+    def left_out(self, masks: Masks) -> list[Clause]:
+        """Return what impacts in a plane leave out."""
+        return [Clause(ONE_PLANE, masks.known)] if self.scene.planar else []
+
+    def motion_of_cautions(self, motion: Motion | None) -> None:
+        """Return None: friction changed the normal motion of the run."""
+
+    def cautions_of_laws(self, scene: Scene, normal: NormalMotion, known: Mask) -> list[str]:
+        """Return what the laws say, and what one that shares the loss adds of the smaller slip."""
+        said, law = super().cautions_of_laws(scene, normal, known), self.laws.tangential
+        if self.laws.capability.shares_loss:
+            grip = self._gripping if every(known) else self._gripping.take(known)
+            usual = TangentialLaw.cautions(law, grip, normal)
+            said += [text for text in ask(law, law.cautions, grip, normal) if text not in usual]
+        return said
+
+    def cautions_of_contact(self, scene: Scene, normal: NormalMotion) -> list[str]:
+        """Return those of yield and of a large contact, which hold for any bodies."""
+        return list(NormalLaw.cautions(self.laws.normal, scene, normal))
+
+    def own_cautions(self, of_laws: bool) -> list[str]:
+        """Return a sentence for each doubt that only such impacts raise."""
+        scene, able = self.scene, self.laws.capability
+        said = [OF_SPHERES] if of_laws else []
+        if not scene.planar and "partial_slip" in able.tangential_claims:
+            said.append(
+                "springs in space: abs(q) <= mu p holds for each spring, not at every point; psi2 "
+                "moves by less than 0.01 in four of five random impacts, by up to 0.1 where the "
+                "slip turns most (model)"
+            )
+        return said + _near_singular(scene) if able.coupled is None else said
+
+
+def _near_singular(scene: Scene) -> list[str]:
+    """Return a caution where steps lose accuracy: friction can jam, and W is nearly singular."""
+    jams = scene.size_of(np.asarray(scene.lam)) > 1.0
+    least = float(np.min(scene.free_share, where=jams, initial=1.0))
+    if least > NEAR_SINGULAR[0][0]:
+        return []
+    sizes = [f"by up to {error:g}" for share, error in NEAR_SINGULAR if least > share / 10.0]
+    known = sizes[0] if sizes else f"by an amount {OUTSIDE}"
+    return [
+        "friction can jam and W is nearly singular, "
+        f"1 - W_nt²/(W_nn W_tt) = {least:.2g}: 50 springs in 200 steps were off {known} there "
+        "(numerical error; in the plane fronts is exact)"
+    ]

@@ -1,0 +1,117 @@
+"""The normal motion of any normal law: in closed form, solved to ``TOLERANCE``, or its ends."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import attrs
+import numpy as np
+
+from contactlab.contracts import faults
+from contactlab.contracts.law import claims
+from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw, unfollowed_rate
+from contactlab.contracts.status import Status
+from contactlab.impact.batches import NoIndexError
+from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import every
+from contactlab.numeric.checks import shown
+from contactlab.solve.failed_motion import FailedMotion, UnfollowedMotion
+
+if TYPE_CHECKING:
+    from contactlab.registry.composition import Laws
+    from contactlab.solve.solved_motion import MotionTable, SolvedMotion
+
+
+def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
+    """Return the motion from first touch to separation, or raise LawFaultError for a bad law.
+
+    Where no step can follow it, the motion is that of the ends alone.
+    """
+    closed = law if isinstance(law, ClosedFormNormalLaw) else None
+    return _closed(closed, scene) if closed is not None else _open(law, scene)
+
+
+def normal_or_failed(laws: Laws, scene: Scene) -> NormalMotion:
+    """Return the normal motion of ``scene``; all its values are NaN if the law fails."""
+    closed = laws.capability.closed
+    try:
+        return _closed(closed, scene) if closed is not None else _open(laws.normal, scene)
+    except faults.LawFaultError as fault:
+        return FailedMotion(laws.normal, scene, fault.status, fault.detail)
+
+
+def _closed(law: ClosedFormNormalLaw, scene: Scene) -> NormalMotion:
+    """Return the motion in closed form."""
+    try:
+        motion = law.motion(scene)
+        if not isinstance(motion, NormalMotion):
+            raise TypeError(f"motion returned {shown(motion)}, which is no NormalMotion")
+        if motion.scene is not scene:
+            raise ValueError("motion returned the motion of another scene")
+    except BaseException as error:
+        faults.blame(law, error)
+        raise
+    return motion
+
+
+def _open(law: NormalLaw, scene: Scene) -> NormalMotion:
+    """Return the motion of a law that returns forces."""
+    if (rate := unfollowed_rate(law, scene)) is not None and every(np.isfinite(rate)):
+        return UnfollowedMotion(law, scene, rate)
+    from contactlab.solve.solved_motion import SolvedMotion, Units  # not for closed forms
+
+    if "similar" in claims(law):
+        one = Scene.nondimensional(psi1=0.0, chi=1.0)
+        alone = _common(law, one)
+        if alone is not None and alone.status[0] is Status.SUCCESS:
+            return SolvedMotion(law, scene, alone, Units.of(scene, one))
+    table = _common(law, scene)
+    if table is not None:
+        return SolvedMotion(law, scene, table)
+    with np.errstate(all="ignore"):
+        return _solved(law, scene)
+
+
+def _solved(law: NormalLaw, scene: Scene) -> SolvedMotion:
+    """Return the motion solved in steps: of one impact in plain numbers, many times as fast."""
+    if scene.shape:
+        from contactlab.solve.motion_solver import Solver
+
+        return Solver(law, scene).solve()
+    from contactlab.solve.motion_solver_alone import Alone
+
+    return Alone(law, scene).solve()
+
+
+def _common(law: NormalLaw, scene: Scene) -> MotionTable | None:
+    """Return the table of impacts that differ in their tangential motion only, or None."""
+    numbers = (*attrs.astuple(scene.pair), scene.normal_speed)
+    if not all(isinstance(number, float) for number in numbers):
+        return None
+    single = attrs.evolve(scene, friction_coefficient=0.0, tangential_velocity=0.0, spin=0.0)
+    if single.shape:
+        return None
+    key = law, single
+    try:
+        if key in _TABLES:
+            return _TABLES[key]
+    except TypeError:  # a law, or a body of a law's own, that cannot be hashed
+        return None
+    try:
+        with np.errstate(all="ignore"):
+            solved = _solved(law, single.unnumbered())
+    except faults.LawFaultError as fault:
+        if isinstance(fault.__cause__, NoIndexError):
+            return None
+        raise
+    while len(_TABLES) >= MOST_KEPT:
+        del _TABLES[next(iter(_TABLES))]
+    _TABLES[key] = solved.table
+    return solved.table
+
+
+#: Tables of the last normal motions, by law and scene: solving takes milliseconds, and the same
+#: impact is often run under several friction laws. A table takes some 50 kB.
+MOST_KEPT = 16
+_TABLES: dict[tuple[NormalLaw, Scene], MotionTable] = {}

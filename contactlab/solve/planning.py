@@ -1,0 +1,294 @@
+"""The plan of a scene: its columns from the answers of the laws, its words when they are read."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from contactlab.contracts.law import claims
+from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.normal import NormalLaw
+from contactlab.contracts.status import Status
+from contactlab.impact.cautions import (
+    of_ellipse,
+    rigid_bodies,
+    three_numbers,
+    unit_slips,
+    unlikely,
+    yield_unknown,
+)
+from contactlab.impact.hertz import elongation_of
+from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import every, some, spread, taken
+from contactlab.numeric.taken import of_taken
+from contactlab.numeric.types import Real
+from contactlab.outcome.energy import ledger
+from contactlab.outcome.motion import ENDS, Motion
+from contactlab.outcome.plan import (
+    PSI2_ERROR,
+    TANGENTIAL_MOTION,
+    Clause,
+    Clauses,
+    Plan,
+    PlanColumns,
+    Words,
+)
+from contactlab.registration.manager import MANAGER
+from contactlab.registry.composition import Laws
+from contactlab.registry.law_words import in_words, name_of
+from contactlab.solve.answers import Mask
+from contactlab.solve.error_cautions import of_errors
+from contactlab.solve.normal_motion import normal_motion, normal_or_failed
+from contactlab.solve.solve import ways
+from contactlab.solve.way import WHOLE, Masks, Way, ask
+
+#: Advice of a plan if the error is not declared.
+ADVICE = "; run(scene, estimate_error=True) estimates it"
+#: Entry of a plan whose friction work is a difference of energies.
+UNCHECKED = (
+    "check of the energy books: closed by construction, not checked; the friction work is the "
+    "energy that the velocities lose"
+)
+#: Undeclared imbalances over the energy at the start are cautioned of from here on.
+BOOKS_OFF = 0.01
+#: Entries of a motion by the names that a normal motion has for them.
+SOURCES = {source: name for name, source in ENDS.items()}
+
+
+def plan_of(
+    laws: Laws,
+    scene: Scene,
+    columns: PlanColumns,
+    motion: Motion | None = None,
+    history: bool | str = False,
+    *,
+    estimated: bool = False,
+) -> Plan:
+    """Return the plan of a scene, with words that are made when they are first read.
+
+    ``motion`` is that of a run, with the numbers of impacts that failed; None before a run. Errors
+    that are ``estimated`` need no advice.
+    """
+    asked_for = _Asked(history, estimated)
+
+    def words() -> Words:
+        from contactlab.outcome.normal_spin_words import with_normal_spin  # only for words
+
+        answered = ~columns.marched & (
+            "normal_spin" in laws.capability.tangential_claims
+        )  # no march takes spin
+        return with_normal_spin(of_impacts(), scene, answered=answered)
+
+    def of_impacts() -> Words:
+        found = ways(laws, scene, as_one=bool(history))
+        if len(found) == 1:
+            return _words(laws, found[0], scene, columns, motion, asked_for)
+        said = []
+        for way in found:
+            some_columns = columns.take(way.where)
+            moved = None if motion is None else taken(motion, scene.shape, way.where)
+            kinds = _words(laws, way, scene.take(way.where), some_columns, moved, asked_for)
+            said.append((way.where, Plan(some_columns, kinds)))
+        return Plan.merged(said, scene.shape).words
+
+    return Plan(columns, words)
+
+
+def _words(
+    laws: Laws,
+    way: Way,
+    scene: Scene,
+    columns: PlanColumns,
+    motion: Motion | None,
+    asked_for: _Asked,
+) -> Words:
+    """Return the clauses on impacts of ``scene`` that are solved in one way."""
+    masks = Masks.of(columns)
+    if not some(masks.known):
+        return (), (), ()
+    used = way.laws
+    law = f"{in_words(used.normal)}, {way.how()}"
+    computed = [Clause(f"normal motion: {law}", masks.known)]
+    elongation = elongation_of(way.scene.pair)
+    if some(elliptic := masks.known & (elongation > 1.0)):
+        text = "contact: an ellipse of semi-axes {:.3g} : 1, by the circle that is as stiff"
+        computed.append(Clause(text, elliptic, (spread(elongation, scene.shape),)))
+    if used is not laws:
+        computed.append(Clause(_in_place(laws, used), masks.known))
+    if some(masks.marched):
+        text = f"tangential motion: {in_words(used.integrator)} over {in_words(used.tangential)}"
+        computed.append(Clause(text, masks.marched, code=TANGENTIAL_MOTION))
+    alone = way.one_by_one(masks)
+    if scene.shape and some(alone) and (path := used.capability.path) is not None:
+        cost = path.cost(way.scene.central, used.integrator.accuracy)
+        if cost.one_by_one:
+            computed.append(Clause(f"run time: impacts one by one, by {cost.solver}", alone))
+    computed += way.remarks(masks)
+    advice = "" if asked_for.estimate else ADVICE
+    for what, error in way.errors(columns).items():
+        computed += _error_clauses(what, error, masks.ended, advice)
+    left_out = _not_marched(columns, masks)
+    if _loses_in_pressure_alone(way):
+        name = name_of(used.tangential)
+        left_out.append(Clause(f"loss in shear: {name} has none beside this law", masks.known))
+    left_out += way.left_out(masks)
+    words, unknown, pressure = yield_unknown(scene)
+    if words and "plastic" not in used.capability.normal_claims:
+        left_out.append(Clause(words, masks.known & unknown, (pressure,)))
+    if reason := _no_history(asked_for.history, columns, masks.marched):
+        left_out.append(Clause(reason, masks.known))
+    with np.errstate(under="ignore"):
+        cautions = _cautions(way, scene, motion, masks)
+        if some(masks.marched):
+            error = columns.psi2_error
+            cautions += tuple(of_errors(used, way.scene, error, masks.marched, advice))
+    return tuple(computed), tuple(left_out), cautions
+
+
+def _loses_in_pressure_alone(way: Way) -> bool:
+    """Return whether the normal law is viscous, and the tangential law does not share its loss."""
+    able = way.laws.capability
+    if "viscous" not in able.normal_claims or "partial_slip" not in able.tangential_claims:
+        return False
+    return not able.shares_loss and way.scene_of_cautions.rubs
+
+
+def _in_place(laws: Laws, used: Laws) -> str:
+    """Return which laws stand in for those that nobody named, and why."""
+    pairs = [
+        f"{name_of(new)} for {name_of(old)}"
+        for old, new in zip(laws, used, strict=True)
+        if type(new) is not type(old)
+    ]
+    return f"laws: {', '.join(pairs)}, as friction changes the approach, or slip turns"
+
+
+class _Asked(NamedTuple):
+    """What a run was asked for beside the answer: a history, and an estimate of the error."""
+
+    history: bool | str
+    estimate: bool
+
+
+def _cautions(way: Way, scene: Scene, motion: Motion | None, masks: Masks) -> Clauses:
+    """Return the cautions about numbers of the scene, of the laws, and of the energy books."""
+    laws, part, central, known = way.laws, way.scene, way.scene_of_cautions, masks.known
+    whole = central if every(known) else central.take(known)
+    said = [*unit_slips(whole), *unlikely(whole), *rigid_bodies(whole)]
+    of_laws: list[str] = []
+    moved = way.motion_of_cautions(motion)
+    if some(masks.ended):
+        normal = _motion_of(laws, central, moved, known)
+        of_laws += way.cautions_of_laws(whole, normal, known)
+        said += way.cautions_of_contact(whole, normal)
+    if some(masks.marched):
+        marched = part if every(masks.marched) else part.take(masks.marched)
+        normal = _motion_of(laws, central, moved, masks.marched)
+        remarks = laws.integrator.cautions
+        of_laws += ask(laws.integrator, remarks, marched, normal, laws.tangential)
+    for law in (laws.normal, laws.tangential):
+        if "elliptic" not in claims(law):
+            said += of_ellipse(whole, name_of(law))
+    own = [text for text in dict.fromkeys(of_laws) if text not in said]
+    said += [*own, *way.own_cautions(bool(own)), *of_taken(way.laws.normal, way.laws.tangential)]
+    said += [
+        f"{told.item} ({told.info.distribution})"
+        for told in MANAGER.brought("cautions", silent=False, scene=whole, laws=laws)
+        if isinstance(told.item, str)
+    ]
+    clauses = [Clause(text, known) for text in said]
+    if motion is not None:
+        clauses += _books(laws, scene, motion)
+    vectors = three_numbers(scene)
+    return (*clauses, *(Clause(text, np.ones(scene.shape, dtype=bool)) for text in vectors))
+
+
+def _motion_of(laws: Laws, scene: Scene, motion: Motion | None, where: Mask) -> Any:
+    """Return the normal motion of some impacts: by its ends after a run, else made now."""
+    part = scene if every(where) else scene.take(where)
+    if motion is None:
+        return normal_or_failed(laws, part)
+    return _AfterRun(
+        laws.normal, part, motion if every(where) else taken(motion, scene.shape, where)
+    )
+
+
+def _books(laws: Laws, scene: Scene, motion: Motion) -> list[Clause]:
+    """Return the caution of an imbalance of the energy books for which no bound is declared."""
+    undeclared: Any = laws.tangential.books_bound(scene.central) == math.inf
+    if not some(undeclared):
+        return []
+    share: Any = np.abs(ledger(scene, motion).relative_imbalance)
+    where = np.asarray(undeclared & (share > BOOKS_OFF) & (motion.status == Status.SUCCESS))
+    if not where.any():
+        return []
+    text = (
+        f"energy books: off by {{:.2g}} of the energy at the start, and "
+        f"{name_of(laws.tangential)} declares no bound (books_bound); with more steps a "
+        "numerical error falls, what the law makes by its nature stays"
+    )
+    return [Clause(text, where, (np.asarray(share),))]
+
+
+class _AfterRun:
+    """The normal motion of a run by its end and its maxima; the rest is made when it is asked."""
+
+    def __init__(self, law: NormalLaw, scene: Scene, motion: Motion) -> None:
+        self.law, self.scene, self._motion = law, scene, motion
+        self.claims = claims(law)
+
+    def __getattr__(self, name: str) -> Any:
+        """Return an entry of the motion, or of the normal motion made again."""
+        if name in SOURCES:
+            return getattr(self._motion, SOURCES[name])
+        return getattr(self._course, name)
+
+    @cached_property
+    def _course(self) -> NormalMotion:
+        """The normal motion, made again."""
+        return normal_motion(self.law, self.scene)
+
+
+def _not_marched(columns: PlanColumns, masks: Masks) -> list[Clause]:
+    """Return why impacts are not marched, and whose books check nothing."""
+    march = "march of the tangential motion"
+    clauses = [
+        Clause(f"{march}: {reason.text}", np.asarray(columns.code == place))
+        for place, reason in enumerate(columns.reasons)
+    ]
+    if any(reason.unchecked for reason in columns.reasons):
+        clauses.append(Clause(UNCHECKED, np.asarray(columns.unchecked)))
+    if some(masks.endless):
+        clauses.append(Clause(f"{march}: the normal motion came to no end", masks.endless))
+    return clauses
+
+
+def _no_history(history: bool | str, columns: PlanColumns, marched: Mask) -> str | None:
+    """Return what a history leaves out, and why."""
+    if not history:
+        return "history: not asked for"
+    if history != "fields":
+        return "traction and stick/slip fields: not asked for (history='fields')"
+    if not some(marched) and WHOLE in columns.reasons:
+        return "traction and stick/slip fields: a law that answers both motions together has none"
+    if not (some(marched) or any(reason.fields for reason in columns.reasons)):
+        return "traction and stick/slip fields: there is no march to take them from"
+    return None
+
+
+def _error_clauses(what: str, error: Real, ended: Mask, advice: str) -> list[Clause]:
+    """Return what a plan says of a numerical error."""
+    undeclared = np.asarray(ended & np.isnan(error))
+    declared = np.asarray(ended & ~undeclared)
+    code = PSI2_ERROR if what == "psi2" else ""
+    clauses = []
+    if some(declared):
+        text = f"numerical error of {what}: at most {{:.2g}}, declared"
+        clauses.append(Clause(text, declared, (error,), code))
+    if some(undeclared):
+        text = f"numerical error of {what}: not declared{advice}"
+        clauses.append(Clause(text, undeclared, code=code))
+    return clauses

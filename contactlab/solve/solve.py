@@ -1,0 +1,81 @@
+"""The outcome of a scene under three laws: plan and motion, each impact solved in its own way."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from contactlab.impact.scene import Scene
+from contactlab.outcome.history import Recorder
+from contactlab.outcome.motion import Motion
+from contactlab.outcome.plan import PlanColumns
+from contactlab.registration.names import KINDS
+from contactlab.registry.acceptance import accept
+from contactlab.registry.composition import Laws, versions
+from contactlab.solve.decoupled import Decoupled
+from contactlab.solve.unfollowed import followed_apart, refuse_march
+from contactlab.solve.way import Way
+
+
+def ways(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
+    """Return the ways in which a scene is solved; ``as_one`` is that of ``Scene.parts``."""
+    found: list[Way] = []
+    # Where slip turns laws are asked first: their refusal and its remedy hold for the batch.
+    for where, part in reversed(scene.parts(as_one=as_one)):
+        if part.inverse_mass is None:
+            found += [Decoupled(*each, laws) for each in followed_apart(laws, where, part)]
+        else:
+            from contactlab.solve.coupled import Coupled  # spheres need none of this
+
+            found.append(Coupled.of(where, part, laws))
+    found.reverse()
+    return found
+
+
+def accept_scene(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
+    """Return the ways in which a scene is solved, or refuse one that a law cannot run."""
+    found = ways(laws, scene, as_one=as_one)
+    for way in found:
+        _, part, used = way
+        for law in used.capability.refusing:
+            accept(law, part.central)
+        refuse_march(way, history=as_one)
+    return found
+
+
+def versions_of(found: Sequence[Way]) -> dict[str, str]:
+    """Return name and version of each law by kind, of several in one scene with "and"."""
+    if len(found) == 1:
+        return versions(*found[0].laws)
+    used = [versions(*way.laws) for way in found]
+    return {kind: " and ".join(dict.fromkeys(each[kind] for each in used)) for kind in KINDS}
+
+
+@np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
+def outcome(
+    found: Sequence[Way], scene: Scene, history: bool | str, recorder: Recorder | None
+) -> tuple[PlanColumns, Motion]:
+    """Return columns of the plan, and motion, of a scene whose ways were ``found``.
+
+    A law that raises costs its impacts only. Numbers of impacts that failed are what the laws made
+    of them. A history of a batch is refused if its impacts have instants of their own.
+    """
+    if len(found) == 1:
+        columns, motion = found[0].outcome(history, recorder)
+        return columns, found[0].in_axes(motion, scene)
+    pieces = []
+    for way in found:
+        columns, motion = way.outcome(history, recorder)
+        pieces.append((way.where, columns, way.in_axes(motion, scene.take(way.where))))
+    return (
+        PlanColumns.merged([(where, columns) for where, columns, _ in pieces], scene.shape),
+        Motion.merged([(where, motion) for where, _, motion in pieces], scene.shape),
+    )
+
+
+@np.errstate(under="ignore")
+def plan_columns(found: Sequence[Way], scene: Scene, history: bool | str) -> PlanColumns:
+    """Return the columns of the plan, without a march."""
+    parts = [(way.where, way.prepare(history).columns) for way in found]
+    return parts[0][1] if len(parts) == 1 else PlanColumns.merged(parts, scene.shape)
