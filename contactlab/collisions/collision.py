@@ -14,6 +14,7 @@ from contactlab.collisions.collision_plan import collision_plan
 from contactlab.collisions.restituted import planned, run_by_restitution
 from contactlab.collisions.velocities import Velocities, velocities
 from contactlab.contracts.status import Status
+from contactlab.impact import kinetics
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.body_contact import in_space, pushed
 from contactlab.impact.encounter import Encounter
@@ -125,7 +126,7 @@ class Collision(Answer, Generic[Each]):
             motion = result.motion
             told = motion.normal_velocity, motion.slip_velocity_change, motion.friction_work
             moved = impulses.moved(encounter, _columns(encounter, met, *told).reshape(3, -1))
-            if result.scene.turns:
+            if kinetics.turns(result.scene):
                 (change,) = _columns(encounter, met, motion.normal_spin_change)
                 moved = impulses.turned(encounter, moved, change)
         else:
@@ -231,9 +232,9 @@ class Collision(Answer, Generic[Each]):
         after = self.normal_velocity, self.slip_velocity_change
         with np.errstate(over="ignore", under="ignore", invalid="ignore"):
             start, lost, slip = self.encounter.pair.energies(contact.approach, contact.slip, *after)
-            if np.any(self.collided) and (scene := self._met.scene).turns:
+            if np.any(self.collided) and kinetics.turns(scene := self._met.scene):
                 change = 0.0 if known is None else known.motion.normal_spin_change
-                whole, rubbed = self._spread(*scene.spin_energies(change))
+                whole, rubbed = self._spread(*kinetics.spin_energies(scene, change))
                 start, slip = start + whole, slip + rubbed
             energies = of_each(start, self.encounter.shape), lost, slip
             return books(energies, (self.friction_work, shear), exchange, unchecked == 0.0)

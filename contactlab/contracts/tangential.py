@@ -12,6 +12,7 @@ from contactlab.contracts.law import Law, claims
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.tangential_motion import Observer, TangentialMotion
 from contactlab.contracts.whole_impact import WholeImpact, no_force
+from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import AnyArray, Array, Mask, Real
 
@@ -149,7 +150,7 @@ class TangentialLaw(Law, kind="tangential"):
         slip: Any = scene.slip_velocity
         friction: Any = scene.friction_coefficient
         central, smooth = slip == 0.0, friction == 0.0
-        if scene.turns and "normal_spin" in claims(self):
+        if kinetics.turns(scene) and "normal_spin" in claims(self):
             central = central & (scene.normal_spin == 0.0)
         reasons = (
             (central, "central impact, no slip velocity"),

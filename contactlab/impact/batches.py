@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.impact.motions import Motions
+from contactlab.impact.kinetics import Motions
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import check_place, refuse
 from contactlab.numeric.types import Array, Index, Numbers
@@ -18,6 +18,9 @@ from contactlab.numeric.types import Array, Index, Numbers
 
 class NoIndexError(LookupError):
     """A law asked for the index of a scene that stands for many impacts."""
+
+
+AnyScene = TypeVar("AnyScene", bound="Batches")
 
 
 class Batches(Motions):
@@ -34,32 +37,6 @@ class Batches(Motions):
         _axes: tuple[tuple[str, Array], ...]
         _varied: tuple[tuple[str, Array], ...]
         _shapes: Any
-
-    def over(self, axes: Mapping[str, Numbers]) -> Self:
-        """Return this batch as a grid of ``axes``, whose combinations it must have in order.
-
-        Parameters
-        ----------
-        axes : mapping of str to array, shape (n_i,)
-            Values of each entry that varies, the last varying fastest.
-        """
-        lines = [(name, np.array(values, dtype=np.float64)) for name, values in axes.items()]
-        return self._with(_axes=tuple((name, batch.locked(v)) for name, v in lines))
-
-    def varying(self, entries: Mapping[str, Numbers]) -> Self:
-        """Return this batch with the values of the entries that vary in it together.
-
-        Parameters
-        ----------
-        entries : mapping of str to array
-            Values of the batch shape.
-        """
-        lines = tuple((name, batch.locked(np.array(each))) for name, each in entries.items())
-        return self._with(_varied=lines)
-
-    def unvaried(self) -> Self:
-        """Return this batch without the values of entries that vary, which no law reads."""
-        return self._with(_axes=(), _varied=()) if self._axes or self._varied else self
 
     @property
     def varied(self) -> Mapping[str, Array]:
@@ -207,10 +184,6 @@ class Batches(Motions):
             raise NoIndexError("the scene stands for many impacts")
         return self._index
 
-    def unnumbered(self) -> Self:
-        """Return this scene without ``index``: a law that asks for it raises ``NoIndexError``."""
-        return self._with(_index=None)
-
     def numbered(self, index: int | np.integer | Sequence[int] | NDArray[np.integer]) -> Self:
         """Return this scene with another ``index`` of its impacts in the whole batch.
 
@@ -233,3 +206,37 @@ class Batches(Motions):
             rule = f"must be whole numbers of the shape {self.shape}"
             raise refuse("index", index, rule, "such as scene.index of the whole batch")
         return self._with(_index=indices if self.shape else int(indices))
+
+
+def over(scene: AnyScene, axes: Mapping[str, Numbers]) -> AnyScene:
+    """Return this batch as a grid of ``axes``, whose combinations it must have in order.
+
+    Parameters
+    ----------
+    axes : mapping of str to array, shape (n_i,)
+        Values of each entry that varies, the last varying fastest.
+    """
+    lines = [(name, np.array(values, dtype=np.float64)) for name, values in axes.items()]
+    return scene._with(_axes=tuple((name, batch.locked(v)) for name, v in lines))
+
+
+def varying(scene: AnyScene, entries: Mapping[str, Numbers]) -> AnyScene:
+    """Return this batch with the values of the entries that vary in it together.
+
+    Parameters
+    ----------
+    entries : mapping of str to array
+        Values of the batch shape.
+    """
+    lines = tuple((name, batch.locked(np.array(each))) for name, each in entries.items())
+    return scene._with(_varied=lines)
+
+
+def unvaried(scene: AnyScene) -> AnyScene:
+    """Return this batch without the values of entries that vary, which no law reads."""
+    return scene._with(_axes=(), _varied=()) if scene._axes or scene._varied else scene
+
+
+def unnumbered(scene: AnyScene) -> AnyScene:
+    """Return this scene without ``index``: a law that asks for it raises ``NoIndexError``."""
+    return scene._with(_index=None)

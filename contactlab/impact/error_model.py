@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import chosen, greater
 
@@ -32,15 +33,15 @@ class Range(NamedTuple):
 
 def range_of(scene: Scene) -> Range:
     """Return the range of the change of slip velocity, in m/s, of the batch shape."""
-    speed: Any = scene.slip_speed
+    speed: Any = kinetics.slip_speed(scene)
     lesser: Any = np.minimum if scene.shape else min
     with np.errstate(over="ignore", under="ignore"):
         friction: Any = scene.friction_coefficient * scene.normal_speed
-        width = lesser(scene.most_slip_change, 2.0 * speed)
+        width = lesser(kinetics.most_slip_change(scene), 2.0 * speed)
         return Range(friction / scene.pair.stiffness_ratio, width, speed)
 
 
 def psi_magnitude(scene: Scene) -> Any:
     """Return max(1, |psi1|), the scale of relative errors of psi2; 1 where psi1 is infinite."""
-    magnitude: Any = scene.size_of(scene.psi1)
+    magnitude: Any = kinetics.size_of(scene, scene.psi1)
     return greater(chosen(magnitude < math.inf, magnitude, 1.0), 1.0)

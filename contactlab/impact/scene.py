@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from contactlab.impact import groups, inverse_mass
+from contactlab.impact import batches, groups, inverse_mass, kinetics
 from contactlab.impact.batches import Batches
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
 from contactlab.impact.material import Material
@@ -176,7 +176,7 @@ class Scene(Batches):
     def __attrs_post_init__(self) -> None:
         if self.sphere is not None and self.target is not None:
             # A given pair is ignored: attrs.evolve passes the pair of the former bodies.
-            pair = Pair.of(self.sphere, self.target, turning=self.turns)
+            pair = Pair.of(self.sphere, self.target, turning=kinetics.turns(self))
             object.__setattr__(self, "pair", pair)
         elif self.pair is None:
             raise refuse(
@@ -261,7 +261,7 @@ class Scene(Batches):
         with np.errstate(all="ignore"):
             energy = 0.5 * self.pair.normal_mass * (speed * speed)
             unit = friction * speed / self.pair.stiffness_ratio
-            slip: Any = self.slip_speed
+            slip: Any = kinetics.slip_speed(self)
             slip_energy = 0.5 * self.pair.tangential_mass * (slip * slip)
             momentum = friction * self.pair.normal_mass * speed
             tiny = (unit < LEAST_VELOCITY) & (slip < LEAST_VELOCITY)
@@ -269,7 +269,7 @@ class Scene(Batches):
             vast = slip / (unit + (unit == 0.0)) == math.inf
             unheld = (unit > 0.0) & (slip > 0.0) & (tiny | vast)
             lost = (friction > 0.0) & (unit == 0.0)
-        if self.turns:
+        if kinetics.turns(self):
             self._check_normal_spin()
         if not batch.every(slip_energy < math.inf):
             si = self.sphere is not None
@@ -304,7 +304,7 @@ class Scene(Batches):
             remedy = "give spheres, or R²/J in 1/kg with J about the normal"
             raise refuse("pair.inverse_spin_mass", inverse, rule, remedy)
         with np.errstate(all="ignore"):
-            finite = np.isfinite(self.spin_energies(0.0)[0])
+            finite = np.isfinite(kinetics.spin_energies(self, 0.0)[0])
         if not np.all(finite):
             rule = "the kinetic energy of the spin about the normal must be finite"
             raise refuse("normal_spin", self.normal_spin, rule, "give it in rad/s")
@@ -461,7 +461,7 @@ class Scene(Batches):
         from contactlab.impact.grid import axes_of, product  # needed for grids only
 
         axes = axes_of(entries)
-        return cls._maker(bodies, entries)(*bodies, **(entries | product(axes))).over(axes)
+        return batches.over(cls._maker(bodies, entries)(*bodies, **(entries | product(axes))), axes)
 
     @classmethod
     def grid_in_parts(
@@ -487,7 +487,7 @@ class Scene(Batches):
         make = cls._maker(bodies, entries)
 
         def part(values: Mapping[str, Array]) -> Scene:
-            return make(*bodies, **(entries | dict(values))).varying(values)
+            return batches.varying(make(*bodies, **(entries | dict(values))), values)
 
         from contactlab.impact.grid import GridParts, axes_of  # needed for grids only
 

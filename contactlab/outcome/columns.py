@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts.status import Status
+from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
@@ -240,7 +241,9 @@ def columns_of(scene: Scene) -> tuple[Column, ...]:
     """Return the columns that a file of a scene has."""
     coupled = scene.inverse_mass is not None
     of_bodies = scene.sphere is None and (coupled or scene.encounter is not None)
-    others = {"spheres" if of_bodies else "bodies", "" if scene.turns else "turning"} - {""}
+    others = {"spheres" if of_bodies else "bodies", "" if kinetics.turns(scene) else "turning"} - {
+        ""
+    }
     return tuple(column for column in all_columns() if column.of_scenes not in others)
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status
+from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import of_each, plain, some
 from contactlab.numeric.names import attributes_told
@@ -94,9 +95,11 @@ class EnergyLedger(Generic[Each]):
 def ledger(scene: Scene, motion: Motion, checked: Mask = True) -> EnergyLedger:
     """Return the energy books of ``motion``, in J, from its velocities and its friction work."""
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
-        start, lost, slip = scene.energies(motion.normal_velocity, motion.slip_velocity_change)
-        if scene.turns:
-            whole, taken = scene.spin_energies(motion.normal_spin_change)
+        start, lost, slip = kinetics.energies(
+            scene, motion.normal_velocity, motion.slip_velocity_change
+        )
+        if kinetics.turns(scene):
+            whole, taken = kinetics.spin_energies(scene, motion.normal_spin_change)
             start, slip = start + whole, slip + taken
         losses = motion.friction_work, motion.shear_loss
         start = of_each(start, scene.shape)
@@ -162,7 +165,7 @@ def balanced(
     gain = OF_THE_RATE * restitution_error + ROUNDING
     if (
         not scene.shape
-        and (alone or not scene.turns)
+        and (alone or not kinetics.turns(scene))
         and _balances(motion, scene, bound, alone, gain)
     ):
         return motion, 0.0
@@ -197,7 +200,7 @@ def _balances(motion: Motion, scene: Scene, bound: Real, alone: Mask, gain: Real
     rate: Any = motion.normal_velocity
     slip: Any = scene.slip_velocity
     change: Any = motion.slip_velocity_change
-    start, lost, slip_loss = scene.energies(rate, change)
+    start, lost, slip_loss = kinetics.energies(scene, rate, change)
     bound = LARGEST_UNDECLARED if bound == math.inf else bound
     work, shear_loss = motion.friction_work, motion.shear_loss
     imbalance = slip_loss - work - shear_loss + motion.exchange
@@ -225,12 +228,12 @@ def _with_unbalanced(
     """
     coupled = np.logical_not(alone)
     books = ledger(scene, motion)
-    before: Any = scene.slip_speed
-    after: Any = scene.size_of(scene.slip_velocity + motion.slip_velocity_change)
+    before: Any = kinetics.slip_speed(scene)
+    after: Any = kinetics.size_of(scene, scene.slip_velocity + motion.slip_velocity_change)
     imbalance: Any = abs(books.imbalance)
     start: Any = books.start
-    if scene.turns:  # a spin that friction left has no part in what is judged
-        left = scene.energies(motion.normal_velocity, motion.slip_velocity_change)
+    if kinetics.turns(scene):  # a spin that friction left has no part in what is judged
+        left = kinetics.energies(scene, motion.normal_velocity, motion.slip_velocity_change)
         start = np.where(motion.normal_spin_change == 0.0, left[0], start)[()]  # a number for one
     work, shear_loss = np.divide(books.friction_work, start), np.divide(books.shear_loss, start)
     made: Any = -np.divide(books.normal_loss, start)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Generic, Self, overload
 import attrs
 import numpy as np
 
+from contactlab.impact import kinetics
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import equal, of_each, plain, taken
@@ -89,11 +90,11 @@ class ImpactResult(Answer, Generic[Each]):
         if scene.shape:
             finite, what = psi2, "psi2"
             if psi2.ndim > len(scene.shape):
-                finite, what = scene.size_of(psi2), "abs(psi2)"
+                finite, what = kinetics.size_of(scene, psi2), "abs(psi2)"
             finite = finite[np.isfinite(finite)]
             span = f" from {finite.min():.6g} to {finite.max():.6g}" if finite.size else " unknown"
             return f"{np.size(self.motion.status)} impacts, {what}{span}"
-        told = scene.groups
+        told = kinetics.groups(scene)
         if told.pop("eta", None) is not None:
             del told["rho"]
             told["normal_restitution"] = self.normal_restitution
@@ -143,12 +144,12 @@ class ImpactResult(Answer, Generic[Each]):
     def impulse(self) -> Array:
         """Impulse on the target along n, t1 and t2, shape (..., 3), in N s."""
         motion = self.motion
-        return self.scene.impulse(motion.normal_velocity, motion.slip_velocity_change)
+        return kinetics.impulse(self.scene, motion.normal_velocity, motion.slip_velocity_change)
 
     @property
     def couple(self) -> Each:
         """Angular impulse on the target about the normal, of the batch shape, in N m s."""
-        return -self.scene.normal_inertia * self.motion.normal_spin_change
+        return -kinetics.normal_inertia(self.scene) * self.motion.normal_spin_change
 
     @property
     def normal_velocity(self) -> Each:
@@ -244,7 +245,7 @@ class ImpactResult(Answer, Generic[Each]):
     @property
     def w2(self) -> Each:
         """W = kappa omega_n a/(mu v1) of the spin about the normal after the impact, theory §17."""
-        return self.scene.rim(self.rebound_normal_spin)
+        return kinetics.rim(self.scene, self.rebound_normal_spin)
 
     @property
     def target_rebound_normal_velocity(self) -> Each | Any:
@@ -298,7 +299,7 @@ class ImpactResult(Answer, Generic[Each]):
         """Slip velocity after over before (psi2/psi1), along the slip; NaN where zero before."""
         scene = self.scene
         slips = self.rebound_slip_velocity, scene.slip_velocity
-        after, before = (scene.along_slip(slip) for slip in slips)
+        after, before = (kinetics.along_slip(scene, slip) for slip in slips)
         return _ratio(after, before)
 
     @property
@@ -308,7 +309,7 @@ class ImpactResult(Answer, Generic[Each]):
         if scene.along is not None:
             normal, along = _seen(scene, scene.encounter.velocity)
             return _angle(along, normal)
-        angle = _angle(scene.along_slip(scene.tangential_velocity), scene.normal_speed)
+        angle = _angle(kinetics.along_slip(scene, scene.tangential_velocity), scene.normal_speed)
         return of_each(angle, scene.shape)
 
     @property
@@ -320,7 +321,7 @@ class ImpactResult(Answer, Generic[Each]):
     @property
     def local_rebound_angle(self) -> Each:
         """Angle of reflexion of the contact point, in rad: (39) with psi2 in place of psi1."""
-        after = self.scene.along_slip(self.rebound_slip_velocity)
+        after = kinetics.along_slip(self.scene, self.rebound_slip_velocity)
         return _angle(after, -self.motion.normal_velocity)
 
     @property

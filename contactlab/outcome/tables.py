@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlab.contracts.status import Status
+from contactlab.impact import kinetics
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.hertz import semi_axes
 from contactlab.impact.scene import Scene, entry_unit
@@ -79,8 +80,8 @@ def scene_section(scene: Scene) -> Section:
         rows += _body("sphere", scene.sphere)
         if scene.target is not None:
             rows += _body("struck sphere" if sphere_target else "half-space", scene.target)
-    spins = ("normal_spin",) if scene.turns else ()
-    for name in (*SCENE, *spins, *scene.groups):
+    spins = ("normal_spin",) if kinetics.turns(scene) else ()
+    for name in (*SCENE, *spins, *kinetics.groups(scene)):
         unit = unit_in(entry_unit(name), scene)
         for part, values in components(name, getattr(scene, name), scene.shape):
             rows.append([part.replace("_", " "), _range(values), unit])
@@ -216,7 +217,7 @@ def _velocities(result: ImpactResult) -> list[Row]:
             "local tangential velocity", scene.slip_velocity, result.rebound_slip_velocity, "m/s"
         ),
     ]
-    if scene.turns:
+    if kinetics.turns(scene):
         spins = scene.normal_spin, result.rebound_normal_spin
         rows.append(["spin about the normal", *spins, "rad/s"])
     if not bodies:
@@ -257,7 +258,7 @@ def _contact(result: ImpactResult) -> list[Row]:
     rows: list[Row] = [
         *(
             [part, value, "1"]
-            for name, group in [*scene.groups.items()][1:]
+            for name, group in [*kinetics.groups(scene).items()][1:]
             for part, value in _each(name, group)
         ),
         ["normal restitution e", result.normal_restitution, "1"],

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contactlab.impact import batches
 from contactlab.impact.grid import GridParts
 from contactlab.impact.scene import IMPACTS_AT_A_TIME, Scene
 from contactlab.numeric.checks import of_kind, refuse, whole
@@ -50,8 +51,8 @@ def swept_into(
     """
     size = None if chunk is None else whole("chunk", chunk)
     of_kind("scenes", scenes, Scene, Iterable, rule="must be a Scene, or an iterable of them")
-    batches = _batches(scenes, size or MARCHED_AT_A_TIME)
-    if (begin := next(batches, None)) is None:
+    later = _batches(scenes, size or MARCHED_AT_A_TIME)
+    if (begin := next(later, None)) is None:
         remedy = "make the generator anew: it gives its scenes once"
         raise refuse("scenes", scenes, "must hold at least one Scene", remedy)
     accept_scene(laws, begin)  # of scenes that are refused there is no folder
@@ -71,7 +72,7 @@ def swept_into(
 
     def parts(target: ChunkFolder) -> Iterator[Part]:
         nonlocal done, stop
-        for scene in itertools.chain([begin], batches):
+        for scene in itertools.chain([begin], later):
             accept_scene(laws, scene)
             before, block = stop, block_for(laws, scene)
             usual = IMPACTS_AT_A_TIME if block == WHOLE_IMPACTS else MARCHED_AT_A_TIME
@@ -82,7 +83,7 @@ def swept_into(
                 taken = scene.take(slice(*place))
                 if not isinstance(scenes, Scene):  # the index in the whole sweep
                     taken = taken.numbered(np.arange(*where))
-                part, mark = Part(where, taken.unvaried(), block), fingerprint(taken)
+                part, mark = Part(where, batches.unvaried(taken), block), fingerprint(taken)
                 if target.holds(part._replace(scene=taken), mark):
                     done += where.size
                     continue

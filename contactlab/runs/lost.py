@@ -11,6 +11,7 @@ from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
 from typing import Any, NamedTuple, Self
 
 from contactlab.contracts.status import Status
+from contactlab.impact import kinetics
 from contactlab.outcome.chunk_forms import Chunk
 from contactlab.registration.hooks import short
 from contactlab.runs.calls import Calls
@@ -71,7 +72,9 @@ class Rescue:
         """Return the piece of a part that the same sweep tries again."""
         started = self.calls.answered or self._pool is not None
         remedy = "" if started else f"; {MAIN_REMEDY}"
-        return unsolved(part.chunk, part.scene.slip_axes, Status.WORKER_DIED, short(error) + remedy)
+        return unsolved(
+            part.chunk, kinetics.slip_axes(part.scene), Status.WORKER_DIED, short(error) + remedy
+        )
 
     def _alone(self, part: Part) -> Piece:
         """Return the piece of a part that is solved while nothing else is, or of its halves."""

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlab.contracts.status import Status
+from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import AnyArray, Array, Mask
@@ -80,8 +81,8 @@ class Sample:
 
 def _ranges(scene: Scene) -> dict[str, Array]:
     """Return psi1 and chi of each impact; of vectors and tensors the size."""
-    psi1: Any = scene.psi1 if scene.planar else scene.size_of(scene.psi1)
-    ranges = {"psi1": psi1, "chi": scene.largest_chi}
+    psi1: Any = scene.psi1 if scene.planar else kinetics.size_of(scene, scene.psi1)
+    ranges = {"psi1": psi1, "chi": kinetics.largest_chi(scene)}
     return {
         name: np.nan_to_num(np.broadcast_to(values, scene.shape)) for name, values in ranges.items()
     }

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from contactlab.contracts.status import Status
+from contactlab.impact import batches, kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse, whole
 from contactlab.outcome.chunk_forms import Chunk
@@ -67,7 +68,7 @@ def swept(
     size, block = scene.shape[0], block_for(laws, scene)
     step = math.ceil(whole("chunk", block if chunk is None else chunk) / block) * block
     solve = partial(solve_parts, laws, executor=executor)
-    plain = scene.unvaried()
+    plain = batches.unvaried(scene)
     with _kept(keep, laws, scene, block) as kept:
         finished = [] if kept is None else kept.pieces()
         done = sum(piece.chunk.size for piece in finished)
@@ -88,7 +89,9 @@ def swept(
             if kept is not None and finished:
                 kept.keep(finished[-1])  # which may have been on its way to the disk
             gaps = _gaps(finished, size)
-            finished += [unsolved(gap, scene.slip_axes, Status.INTERRUPTED) for gap in gaps]
+            finished += [
+                unsolved(gap, kinetics.slip_axes(scene), Status.INTERRUPTED) for gap in gaps
+            ]
         finally:
             pieces.close()
     finished.sort(key=lambda piece: piece.chunk)

@@ -11,6 +11,7 @@ from typing import Any
 
 import attrs
 
+from contactlab.impact import batches
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import real, refuse
@@ -152,7 +153,9 @@ def read_scene(
         return SceneFile(
             path=file,
             **{key: about.text(key, default="") for key in ABOUT_KEYS},
-            scene=scene.over(sweep.axes) if sweep.axes else scene.varying(sweep.varied),
+            scene=batches.over(scene, sweep.axes)
+            if sweep.axes
+            else batches.varying(scene, sweep.varied),
             encounter=encounter,
             varied=sweep.varied,
             laws=read_laws(document.get("simulation", {}), file.parent, allow_code=allow_code),

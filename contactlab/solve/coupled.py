@@ -14,6 +14,7 @@ from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import Errors, TangentialLaw
 from contactlab.contracts.tangential_motion import Observer
+from contactlab.impact import kinetics
 from contactlab.impact.cautions import OUTSIDE
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import chosen, every, spread
@@ -97,7 +98,9 @@ class Coupled(Way):
         """Return the motion, of a batch with the impacts solved again that failed beside others."""
         scene, normal = self.scene, prepared.normal
         if type(normal) is FailedMotion:  # isinstance of an abstract class is slow
-            return Motion.nothing(scene.shape, normal.status, normal.detail, axes=scene.slip_axes)
+            return Motion.nothing(
+                scene.shape, normal.status, normal.detail, axes=kinetics.slip_axes(scene)
+            )
         motion = self._ended_as_alone(self._answered(normal, recorder), normal)
         if recorder is None and scene.shape not in ((), (1,)):
             return self._apart(motion)
@@ -115,11 +118,11 @@ class Coupled(Way):
                 assert able.marcher is not None
                 assert able.causal is not None
                 answer = able.marcher.integrate_coupled(scene, normal, able.causal, observer)
-            moved = check_motion(answer, scene.shape, scene.slip_axes)
+            moved = check_motion(answer, scene.shape, kinetics.slip_axes(scene))
             if moved.normal is None and np.any(np.asarray(moved.status) == Status.SUCCESS):
                 told = "the answer has not the ends of its normal motion"
                 raise faults.LawFaultError(Status.MALFORMED, faults.sentence(blamed, told, 1))
-            return Motion.along(normal, moved, scene.slip_axes)
+            return Motion.along(normal, moved, kinetics.slip_axes(scene))
 
     def _ended_as_alone(self, motion: Motion, normal: NormalMotion) -> Motion:
         """Return a motion whose impacts without an end have the status of the approach alone."""
@@ -173,8 +176,10 @@ class Coupled(Way):
     def _slips(self) -> tuple[Any, Any]:
         """Return the slip speed at first touch, and that which pressure alone leaves."""
         scene = self.scene
-        drag = scene.coupling(2.0 * np.asarray(scene.normal_speed))
-        return scene.slip_speed, scene.size_of(np.asarray(scene.slip_velocity) - drag)
+        drag = kinetics.coupling(scene, 2.0 * np.asarray(scene.normal_speed))
+        return kinetics.slip_speed(scene), kinetics.size_of(
+            scene, np.asarray(scene.slip_velocity) - drag
+        )
 
     def _at_slip(self, slip: Real) -> Scene:
         """Return the central impacts at a slip speed."""
@@ -236,8 +241,8 @@ class Coupled(Way):
 
 def _near_singular(scene: Scene) -> list[str]:
     """Return a caution where steps lose accuracy: friction can jam, and W is nearly singular."""
-    jams = scene.size_of(np.asarray(scene.lam)) > 1.0
-    least = float(np.min(scene.free_share, where=jams, initial=1.0))
+    jams = kinetics.size_of(scene, np.asarray(scene.lam)) > 1.0
+    least = float(np.min(kinetics.free_share(scene), where=jams, initial=1.0))
     if least > NEAR_SINGULAR[0][0]:
         return []
     sizes = [f"by up to {error:g}" for share, error in NEAR_SINGULAR if least > share / 10.0]

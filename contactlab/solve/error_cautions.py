@@ -10,6 +10,7 @@ import numpy as np
 
 from contactlab.contracts.law import Law, law_kind
 from contactlab.contracts.motion import NormalMotion
+from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, some, spread
 from contactlab.numeric.types import Array, Mask, Real
@@ -39,7 +40,10 @@ def of_errors(laws: Laws, scene: Scene, error: Real, marched: Mask, advice: str)
         text = f"numerical error of psi2: up to {{:.2g}}, declared; {_remedy(laws, part)}"
         clauses.append(Clause(text, large, (spread(error, scene.shape),)))
     if advice and "partial_slip" in laws.capability.tangential_claims and np.isnan(error).any():
-        size = spread(scene.largest_chi + scene.size_of(np.asarray(scene.eta)), scene.shape)
+        size = spread(
+            kinetics.largest_chi(scene) + kinetics.size_of(scene, np.asarray(scene.eta)),
+            scene.shape,
+        )
         if some(unknown := np.asarray(marched & np.isnan(error) & (size >= LARGE_CHI))):
             text = f"numerical error of psi2: not declared, chi + abs(eta) up to {{:.3g}}{advice}"
             clauses.append(Clause(text, unknown, (size,)))

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts.status import Status, Statuses
+from contactlab.impact import kinetics
 from contactlab.impact.error_model import psi_magnitude
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import plain
@@ -138,7 +139,7 @@ def _again(laws: Laws, scene: Scene) -> Any:
 def _answer(scene: Scene, motion: Motion) -> Any:
     """Return slip (as a complex number) and rate of approach after impacts, shape (2, ...)."""
     change = np.asarray(motion.slip_velocity_change)
-    if scene.slip_axes:
+    if kinetics.slip_axes(scene):
         change = change[..., 0] + 1j * change[..., 1]
     rate = np.broadcast_to(motion.normal_velocity, scene.shape)
     return np.stack((np.broadcast_to(change, scene.shape), rate)).astype(complex)

@@ -12,6 +12,7 @@ from contactlab.contracts.law import claims
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw, unfollowed_rate
 from contactlab.contracts.status import Status
+from contactlab.impact import batches
 from contactlab.impact.batches import NoIndexError
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every
@@ -100,7 +101,7 @@ def _common(law: NormalLaw, scene: Scene) -> MotionTable | None:
         return None
     try:
         with np.errstate(all="ignore"):
-            solved = _solved(law, single.unnumbered())
+            solved = _solved(law, batches.unnumbered(single))
     except faults.LawFaultError as fault:
         if isinstance(fault.__cause__, NoIndexError):
             return None

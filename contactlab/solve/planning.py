@@ -12,6 +12,7 @@ from contactlab.contracts.law import claims
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
+from contactlab.impact import kinetics
 from contactlab.impact.cautions import (
     of_ellipse,
     rigid_bodies,
@@ -153,7 +154,7 @@ def _loses_in_pressure_alone(way: Way) -> bool:
     able = way.laws.capability
     if "viscous" not in able.normal_claims or "partial_slip" not in able.tangential_claims:
         return False
-    return not able.shares_loss and way.scene_of_cautions.rubs
+    return not able.shares_loss and kinetics.rubs(way.scene_of_cautions)
 
 
 def _in_place(laws: Laws, used: Laws) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
@@ -19,10 +20,10 @@ from contactlab.solve.way import Way
 
 
 def ways(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
-    """Return the ways in which a scene is solved; ``as_one`` is that of ``Scene.parts``."""
+    """Return the ways in which a scene is solved; ``as_one`` is that of ``kinetics.parts``."""
     found: list[Way] = []
     # Where slip turns laws are asked first: their refusal and its remedy hold for the batch.
-    for where, part in reversed(scene.parts(as_one=as_one)):
+    for where, part in reversed(kinetics.parts(scene, as_one=as_one)):
         if part.inverse_mass is None:
             found += [Decoupled(*each, laws) for each in followed_apart(laws, where, part)]
         else:

@@ -17,6 +17,7 @@ import numpy as np
 from contactlab.contracts import faults
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
+from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import consecutive
 from contactlab.numeric.checks import refuse
@@ -153,7 +154,9 @@ class Way(Entries, ABC):
         except faults.LawFaultError as fault:
             if divisible:
                 return self.solve_parts(halves(*scene.shape, most=1))
-            nothing = Motion.nothing(scene.shape, fault.status, fault.detail, axes=scene.slip_axes)
+            nothing = Motion.nothing(
+                scene.shape, fault.status, fault.detail, axes=kinetics.slip_axes(scene)
+            )
             return PlanColumns.nothing(scene.shape), nothing
         # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
         bound = prepared.books_bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
@@ -178,7 +181,7 @@ class Way(Entries, ABC):
 
     def in_axes(self, motion: Motion, scene: Scene) -> Motion:
         """Return a motion of this way with its slip in the axes of the scene."""
-        if scene is self.scene or scene.slip_axes == self.scene.slip_axes:
+        if scene is self.scene or kinetics.slip_axes(scene) == kinetics.slip_axes(self.scene):
             return motion
         return motion.turned(self.line(scene))
 

@@ -8,6 +8,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import attributes_told
@@ -103,7 +104,7 @@ class Comparison:
         with np.errstate(all="ignore"):
             error = self.numerical_error(law) / result.scene.psi_scale
             change = np.asarray(result.motion.slip_velocity_change)
-            error = np.multiply.outer(error, np.ones(result.scene.slip_axes))
+            error = np.multiply.outer(error, np.ones(kinetics.slip_axes(result.scene)))
         ends = [
             values_of(quantity, _shifted(result, change + sign * error)) for sign in (1.0, -1.0)
         ]
@@ -203,7 +204,7 @@ def _varied(scene: Scene) -> dict[str, Array]:
     if scene.varied:
         return dict(scene.varied)
     # Several entries may vary together: the first one with different values is the abscissa.
-    psi1 = scene.along_slip(scene.psi1)
+    psi1 = kinetics.along_slip(scene, scene.psi1)
     entries: dict[str, Any] = {"psi1": psi1, "chi": scene.central.chi}
     if scene.sphere is not None:
         angle = np.degrees(np.arctan2(scene.tangential_velocity, scene.normal_speed))

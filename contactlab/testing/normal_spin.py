@@ -6,6 +6,7 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import TangentialLaw
+from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.outcome.result import ImpactResult
 from contactlab.runs.simulation import Simulation
@@ -31,7 +32,7 @@ def spun(psi1: float, w1: float) -> Scene:
     still = scene(psi1, CHI)
     unit = attrs.evolve(still, pair=attrs.evolve(still.pair, inverse_spin_mass=1.0))
     pair = attrs.evolve(still.pair, inverse_spin_mass=TURNING / float(unit.chi_w))
-    return attrs.evolve(still, pair=pair, normal_spin=w1 / float(still.rim(1.0)))
+    return attrs.evolve(still, pair=pair, normal_spin=w1 / float(kinetics.rim(still, 1.0)))
 
 
 def run(way: Way, psi1: float, w1: float) -> ImpactResult:

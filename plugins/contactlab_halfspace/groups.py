@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import NormalMotion
+from contactlab.impact import kinetics
 from contactlab.impact.coupling import coupling_number
 from contactlab.numeric.types import Array
 from contactlab_halfspace.axisymmetric import STEPS, follow_all
@@ -84,7 +85,7 @@ class Matter(NamedTuple):
             coupling_number(scene),
             np.abs(scene.friction_coefficient * pair.dundurs_beta),
             unit.force * unit.time / momentum,
-            scene.normal_spin * unit.length * scene.psi_scale if scene.turns else 0.0,
+            scene.normal_spin * unit.length * scene.psi_scale if kinetics.turns(scene) else 0.0,
             inertia * (unit.length / pair.radius) ** 2,
         )
         return cls(*(np.broadcast_to(np.asarray(each, float), (count,)) for each in columns))

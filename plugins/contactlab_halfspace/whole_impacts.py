@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlab.contracts import NormalMotion, Status, WholeImpact, sliding
+from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array, Mask, Real
 from contactlab_halfspace.changed_motion import changed_motion
@@ -47,7 +48,7 @@ def own_answers(
         left = left & ~np.broadcast_to(each.where, shape)
     with np.errstate(all="ignore"):
         far = np.maximum(1.0, 4.0 * scene.chi)
-        if options.spins and scene.turns:
+        if options.spins and kinetics.turns(scene):
             far = np.maximum(far, np.abs(scene.w1))
         grazing = left & (np.abs(scene.psi1) >= GRAZING * far)
     answers = []

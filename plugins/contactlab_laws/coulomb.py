@@ -20,6 +20,7 @@ from contactlab.contracts import (
     sliding,
 )
 from contactlab.contracts.status import Status
+from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import filled, spread
 from contactlab.numeric.types import Real
@@ -129,7 +130,7 @@ class Frictionless(WholeImpactTangentialLaw, CoupledTangentialLaw):
             normal.maximum_force, 0.5 * impulse * (speed + rate),
         )  # fmt: skip
         return TangentialMotion(
-            slip_velocity_change=scene.tangent(drag),
+            slip_velocity_change=kinetics.tangent(scene, drag),
             friction_work=spread(0.0, scene.shape),
             normal=Ends(*entries),
             status=filled(Status.SUCCESS, scene.shape),

@@ -14,6 +14,7 @@ import numpy as np
 
 from contactlab.contracts import Ends, NormalMotion, Scene, TangentialMotion
 from contactlab.contracts.status import Status
+from contactlab.impact import kinetics
 from contactlab.numeric.arrays import filled, spread
 from contactlab.numeric.types import Array
 
@@ -37,7 +38,7 @@ def rigid_impacts(scene: Scene, normal: NormalMotion) -> TangentialMotion:
     number: Any = np.asarray if shape else float
     unknown = spread(math.nan, shape)  # they happen in no time
     return TangentialMotion(
-        slip_velocity_change=scene.tangent(change),
+        slip_velocity_change=kinetics.tangent(scene, change),
         friction_work=number(work),
         normal=Ends(unknown, number(after[..., 0]), *3 * (unknown,), number(loss)),
         status=filled(Status.SUCCESS, shape),

@@ -97,7 +97,7 @@ def test_running_a_law_imports_no_other_law():
 OF_A_RUN = """
 acceptance answer answers batches bodies bring cautions columns composition decoupled energy
 error_model failed_motion groups hertz history hooks installed inverse_mass loading manager material
-motion motions names normal_motion numerical_error plan planning registry result scene simulation
+motion kinetics names normal_motion numerical_error plan planning registry result scene simulation
 solve way
 """
 

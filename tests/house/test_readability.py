@@ -268,3 +268,8 @@ class Some(Base):
 )
 def test_a_missing_section_is_found(value, missing):
     assert undocumented("x", value) == missing
+
+
+def test_a_scene_shows_a_user_forty_members():
+    """What solvers alone ask are functions of ``impact.kinetics``."""
+    assert len([name for name in dir(contactlab.Scene) if not name.startswith("_")]) <= 40

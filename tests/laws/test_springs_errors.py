@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from contactlab import Scene, Simulation, create
+from contactlab.impact import kinetics
 from tests.longer import longer
 
 
@@ -97,7 +98,7 @@ def test_where_friction_could_jam():
     scene = planar(413, 60, most=3.0, high=30.0)
     found = simulation(50, 200).run(scene)
     hold(ratios(found, Simulation().run(scene)))
-    jams = (np.abs(scene.lam) > 1.0) & (scene.free_share < 0.1)
+    jams = (np.abs(scene.lam) > 1.0) & (kinetics.free_share(scene) < 0.1)
     assert np.array_equal(np.isnan(found.plan.psi2_error), jams)
 
 
@@ -168,7 +169,7 @@ def test_the_remedy_clears_the_caution(scene, options, springs):
     plan = simulation(*finer, **options).plan(scene)
     assert not told(plan)
     assert np.max(plan.psi2_error) <= 0.002
-    x = np.max(scene.largest_chi + scene.size_of(np.asarray(scene.eta)))
+    x = np.max(kinetics.largest_chi(scene) + kinetics.size_of(scene, np.asarray(scene.eta)))
     assert finer[1] >= 130.0 * x**0.75
 
 

@@ -22,6 +22,7 @@ from contactlab import (
     rebound,
 )
 from contactlab.contracts.status import Status
+from contactlab.impact import kinetics
 from contactlab.impact.normal_spin import nodes
 from contactlab.outcome.columns import columns, quantity_named
 from contactlab.outcome.plan import NORMAL_SPIN
@@ -577,7 +578,7 @@ def test_scenes_with_and_without_spin_are_stacked_and_taken():
     grid = Scene.grid(psi1=[0.5, 1.0], chi=SOLID, spin=[0.0, 0.1, 0.2], spin_inertia=0.01)
     assert grid.w1 == pytest.approx([0.0, 0.1, 0.2] * 2)
     bodies = Sphere(0.01, STEEL), HalfSpace(STEEL)
-    assert Scene.at_angle(*bodies, 0.1, speed=1.0, angle_deg=5.0, normal_spin=9.0).turns
+    assert kinetics.turns(Scene.at_angle(*bodies, 0.1, speed=1.0, angle_deg=5.0, normal_spin=9.0))
 
 
 def test_columns_of_files_have_the_spin_only_where_bodies_turn():

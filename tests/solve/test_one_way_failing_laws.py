@@ -22,6 +22,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.contracts.whole_impact import WholeImpact
+from contactlab.impact import kinetics
 from contactlab_laws.springs.law import Springs
 from tests.solve.any_scene import (
     ONES,
@@ -81,7 +82,7 @@ class Liar(OfVectors, CoupledTangentialLaw):
             slip = -W[..., 0, 1:] * np.asarray(push)[..., None]
             change = slip[..., 0] if scene.planar else slip
         else:
-            change = self._change(scene) * np.ones((*scene.shape, *scene.slip_axes))
+            change = self._change(scene) * np.ones((*scene.shape, *kinetics.slip_axes(scene)))
         status = np.full(scene.shape, Status.SUCCESS, dtype=object)
         return TangentialMotion(
             slip_velocity_change=change, friction_work=0.0 * ones,

@@ -12,6 +12,7 @@ from contactlab import (
     Scene,
     collide,
 )
+from contactlab.impact import kinetics
 from tests.solve.any_scene import (
     EXACT,
     FEW,
@@ -80,7 +81,7 @@ def test_a_history_under_even_steps(scene):
     history = FEW.run(scene, history=True).history
     instants = len(history.time)
     assert history.normal_force.shape == (instants, *scene.shape)
-    assert history.slip_velocity.shape == (instants, *scene.shape, *scene.slip_axes)
+    assert history.slip_velocity.shape == (instants, *scene.shape, *kinetics.slip_axes(scene))
     peak = FEW.run(scene).motion.maximum_force
     assert history.normal_force.max(axis=0) == pytest.approx(peak, rel=0.02)
 
@@ -90,11 +91,11 @@ def test_fields_of_a_history(scene):
     """Springs that stick and slip; displacements have the components of the slip."""
     fields = FEW.run(scene, history="fields").history.fields
     assert set(fields) == {"radius", "displacement", "limit", "stuck", "slipping"}
-    assert fields["displacement"].shape == (*fields["radius"].shape, *scene.slip_axes)
+    assert fields["displacement"].shape == (*fields["radius"].shape, *kinetics.slip_axes(scene))
     for name in ("radius", "limit", "displacement"):
         assert fields[name].dtype == np.float64
     sizes = np.abs(fields["displacement"])
-    if scene.slip_axes:
+    if kinetics.slip_axes(scene):
         sizes = np.linalg.norm(fields["displacement"], axis=-1)
         assert np.abs(fields["displacement"][..., 1]).max() > 0.0
     slips = fields["slipping"] != 0
@@ -102,7 +103,7 @@ def test_fields_of_a_history(scene):
     assert fields["stuck"].any()
     assert not (slips & fields["stuck"]).any()
     assert sizes[slips] == pytest.approx(fields["limit"][slips], rel=1e-9)
-    if not scene.slip_axes:
+    if not kinetics.slip_axes(scene):
         assert (fields["slipping"][slips] == np.sign(fields["displacement"][slips])).all()
 
 

@@ -20,6 +20,7 @@ from contactlab.contracts import (
     CausalTangentialLaw,
     TangentialResponse,
 )
+from contactlab.impact import kinetics
 from tests.present import extra
 from tests.solve.any_scene import (
     BATCHES,
@@ -44,7 +45,7 @@ def test_the_index_is_numbered(scene):
     assert scene.index.tolist() == [0, 1, 2]
     assert scene.take(slice(1, 3)).index.tolist() == [1, 2]
     assert scene.take(2).index == 2
-    for where, part in scene.parts():
+    for where, part in kinetics.parts(scene):
         assert np.array_equal(np.ravel(part.index), np.ravel(scene.index[where]))
         assert np.array_equal(np.ravel(part.central.index), np.ravel(scene.index[where]))
 

@@ -12,6 +12,7 @@ from contactlab import (
     Simulation,
     collide,
 )
+from contactlab.impact import kinetics
 from tests.solve.any_scene import (
     BATCHES,
     BY_SPRINGS,
@@ -39,7 +40,7 @@ def test_laws_that_nobody_named_give_way_to_springs_and_the_plan_says_so(scene):
     assert [*map(str, simulation.plan(scene).computed)] == [*map(str, result.plan.computed)]
     assert "springs" in result.laws["tangential"]
     named = Simulation(normal="linear", **BY_SPRINGS).run(scene)
-    where = np.asarray(scene.size_of(np.asarray(scene.lam))) > 0.0
+    where = np.asarray(kinetics.size_of(scene, np.asarray(scene.lam))) > 0.0
     assert np.array_equal(np.asarray(result.psi2)[where], np.asarray(named.psi2)[where])
 
 

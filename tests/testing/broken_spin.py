@@ -7,6 +7,7 @@ from typing import ClassVar
 import attrs
 import numpy as np
 
+from contactlab.impact import kinetics
 from tests.testing.broken_impacts import Whole
 from tests.testing.broken_laws import Sound
 
@@ -26,9 +27,9 @@ class Torsion(Whole):
     def told(self, known, scene):
         change = self.spin_change(scene)
         slip = known.slip_velocity_change * self.shift(scene)
-        _, lost = scene.spin_energies(change)
+        _, lost = kinetics.spin_energies(scene, change)
         work = -scene.pair.tangential_mass * slip * (scene.slip_velocity + 0.5 * slip)
-        spins = {"course": None} if scene.turns else {}
+        spins = {"course": None} if kinetics.turns(scene) else {}
         return attrs.evolve(
             known, slip_velocity_change=slip, friction_work=np.maximum(work + lost, 0.0),
             normal_spin_change=change[()], **spins,

@@ -13,6 +13,7 @@ import numpy as np
 
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion
+from contactlab.impact import kinetics
 from contactlab.impact.cautions import OUTSIDE
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Mask, Real
@@ -75,7 +76,7 @@ def rows() -> dict[str, tuple[Row, ...]]:
 
 def springs(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
     """Return the caution that separately limited springs are not Coulomb's law, with its size."""
-    if "elastic_hertz" in normal.claims or not scene.rubs:
+    if "elastic_hertz" in normal.claims or not kinetics.rubs(scene):
         return ()
     own, e, chi = rows().get(key(normal.law)), _restitution(normal), np.asarray(scene.chi)
     if own is None or not np.all(_within(e, own)) or _beyond(chi):
@@ -120,7 +121,7 @@ def choice(scene: Scene, normal: NormalMotion, *, shared: bool = False) -> tuple
 
     ``shared`` is True if shear shares the loss of viscous normal laws.
     """
-    if not scene.rubs:
+    if not kinetics.rubs(scene):
         return ()
     measured, own = rows(), key(normal.law)
     if own not in measured or "elastic_hertz" in normal.claims:

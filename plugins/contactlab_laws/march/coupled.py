@@ -31,6 +31,7 @@ from contactlab.contracts import (
     shares_loss,
 )
 from contactlab.contracts.status import Status
+from contactlab.impact import kinetics
 from contactlab.impact.hertz import DURATION_CONSTANT
 from contactlab.numeric.arrays import chosen, filled, locked
 from contactlab.numeric.types import Mask, Real
@@ -86,9 +87,9 @@ def _duration(normal: NormalMotion) -> Any:
 def deepest(scene: Scene) -> Any:
     """Return a bound of zeta^2.5, the energy in the normal contact over that of the approach."""
     unmoved = 0.0 * np.asarray(scene.slip_velocity)
-    energy, _, _ = scene.energies(scene.normal_speed, unmoved)
+    energy, _, _ = kinetics.energies(scene, scene.normal_speed, unmoved)
     alone = 0.5 * scene.pair.normal_mass * np.square(scene.normal_speed)
-    drag = scene.size_of(np.asarray(scene.lam))
+    drag = kinetics.size_of(scene, np.asarray(scene.lam))
     with np.errstate(divide="ignore"):
         held = np.where(drag < 1.0, 1.0 / np.maximum(1.0 - drag, 0.0), np.inf)
     return np.clip(np.minimum(energy / alone, held), 1.0, DEEPEST)
@@ -110,7 +111,7 @@ def march_together(
     """
     possible = np.isfinite(count)
     if not np.any(possible):
-        return TangentialMotion.nothing(scene.shape, *refused, axes=scene.slip_axes)
+        return TangentialMotion.nothing(scene.shape, *refused, axes=kinetics.slip_axes(scene))
     march = _March(scene, normal, law, count, usual)
     if not np.all(possible):
         left_out = ~np.broadcast_to(possible, scene.shape)
@@ -156,7 +157,7 @@ class _March:
 
         self.step = entry(np.asarray(_duration(normal)) / count)
         self.leading = np.ceil(LEADING * count)
-        self.longest = entry(LONGEST / np.sqrt(np.maximum(scene.free_share, LEAST_SHARE)))
+        self.longest = entry(LONGEST / np.sqrt(np.maximum(kinetics.free_share(scene), LEAST_SHARE)))
         most = np.asarray(self.longest) * count
         # steps raised for a contact that grows without end are no reason to follow it longer
         in_vain = np.asarray(self.longest) * np.minimum(count, usual)

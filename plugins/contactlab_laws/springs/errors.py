@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import Errors
+from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
 from contactlab_laws.march.coupled import deepest
@@ -63,14 +64,14 @@ def of_spheres(scene: Scene, springs: int, steps: Real, *, shared: bool, doublin
 
 def of_bodies(scene: Scene, springs: int, steps: Real, *, shared: bool) -> Errors:
     """Return the errors of impacts whose approach friction changes, or whose slip turns."""
-    chi: Any = scene.largest_chi
+    chi: Any = kinetics.largest_chi(scene)
     lam, eta, psi1 = (
-        scene.size_of(np.asarray(each)) for each in (scene.lam, scene.eta, scene.psi1)
+        kinetics.size_of(scene, np.asarray(each)) for each in (scene.lam, scene.eta, scene.psi1)
     )
     x: Any = chi + eta
     depth: Any = deepest(scene)
     jams = lam > JAMS
-    known = (lam <= LARGEST_LAM) & ~(jams & (scene.free_share < LEAST_FREE))
+    known = (lam <= LARGEST_LAM) & ~(jams & (kinetics.free_share(scene) < LEAST_FREE))
     known &= np.isfinite(x) & np.isfinite(psi1)
     # the contact radius grows as the fifth root of the energy that presses it
     doublings = np.ceil(np.log2(np.maximum(depth**0.2 / SPANNED, 1.0)))

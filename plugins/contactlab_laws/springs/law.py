@@ -23,6 +23,7 @@ from contactlab.contracts import (
     sliding,
     unfollowed_rate,
 )
+from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Rule, choice, count, flag, quantity, refuse
 from contactlab.numeric.types import Real
@@ -160,7 +161,7 @@ class Springs(ProfileLaw, CausalTangentialLaw):
         fitted = self.shear_loss != 1.0
         own = evidence.cautions(scene, normal, fitted=fitted)
         own = (*differences.choice(scene, normal, shared=True), *own)
-        if self.springs < errors.LEAST_MEASURED and scene.rubs:
+        if self.springs < errors.LEAST_MEASURED and kinetics.rubs(scene):
             own = (NOISE.format(self.springs, errors.LEAST_MEASURED), *own)
         return (*TangentialLaw.cautions(self, scene, normal), *own)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from contactlab.contracts.motion import NormalMotion
+from contactlab.impact import kinetics
 from contactlab.impact.cautions import DEEPEST, OUTSIDE, named
 from contactlab.impact.hertz import slips_throughout
 from contactlab.impact.scene import Scene
@@ -29,7 +30,7 @@ def cautions(scene: Scene, normal: NormalMotion, *, fitted: bool) -> tuple[str, 
 
     A loss in shear that is ``fitted`` clears the caution of the theory's.
     """
-    if not scene.rubs:
+    if not kinetics.rubs(scene):
         return ()
     e = np.broadcast_to(-np.asarray(normal.final_rate) / scene.normal_speed, scene.shape)
     slips = slips_throughout(scene.psi1, scene.chi, e)

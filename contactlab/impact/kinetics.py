@@ -1,0 +1,395 @@
+"""What a scene tells of its slip and its inverse mass, for spheres and for bodies of any shape."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Self, TypeVar
+
+import numpy as np
+
+from contactlab.impact import inverse_mass
+from contactlab.impact.bodies import Pair, size_ratio
+from contactlab.numeric import arrays as batch
+from contactlab.numeric.arrays import chosen, quotient
+from contactlab.numeric.types import Array, Real
+from contactlab.numeric.vectors import components, dot, entry, hypotenuse, joined, rows
+
+#: Groups of theory §14, where friction changes the approach.
+COUPLED = ("lam", "eta", "rho")
+#: Groups of theory §17, where bodies spin about the normal.
+OF_SPIN = ("w1", "chi_w")
+
+AnyScene = TypeVar("AnyScene", bound="Motions")
+
+
+class Motions:
+    """Base of scenes: slip, dimensionless groups, ways of solving, impulses and energies."""
+
+    __slots__ = ()
+
+    if TYPE_CHECKING:
+        pair: Pair
+        shape: tuple[int, ...]
+        planar: bool
+        inverse_mass: Array | None
+        friction_coefficient: Real
+        normal_speed: Real
+        tangential_velocity: Any
+        normal_spin: Real
+        index: Any
+        sphere: Any
+        spin: Real
+        take: Any
+
+    @property
+    def slip_velocity(self) -> Any:
+        """v_x = v + omega R, the slip velocity (20), in m/s; along t1 and t2 in space."""
+        if self.sphere is None:
+            return self.tangential_velocity
+        return self.tangential_velocity + self.spin * self.sphere.radius
+
+    @property
+    def psi_scale(self) -> Any:
+        """kappa/(mu v1) of eq. (29), psi per m/s of slip velocity; infinite without friction."""
+        if not self.shape:  # plain numbers are ten times as fast
+            unit = float(self.friction_coefficient * self.normal_speed)
+            return float(self.pair.stiffness_ratio) / unit if unit else math.inf
+        with np.errstate(divide="ignore", over="ignore"):
+            scale = np.divide(
+                self.pair.stiffness_ratio, self.friction_coefficient * self.normal_speed
+            )
+        return batch.plain(scale)
+
+    def psi(self, velocity: Real) -> Any:
+        """Return psi of a slip velocity, eq. (29), without unit: (...), or (..., 2) in space.
+
+        Parameters
+        ----------
+        velocity : float or array
+            Slip velocity in m/s, with the sign and shape of ``slip_velocity``.
+        """
+        if isinstance(velocity, float) and not self.shape:
+            return 0.0 if velocity == 0.0 else float(velocity) * self.psi_scale
+        scale = self.psi_scale
+        if not self.planar:
+            scale = np.asarray(scale)[..., None] * self._sides
+        with np.errstate(invalid="ignore", over="ignore"):
+            value = np.where(np.asarray(velocity) == 0.0, 0.0, velocity * scale)
+        return batch.plain(value)
+
+    @property
+    def psi1(self) -> Any:
+        """Dimensionless angle of incidence, psi of the slip velocity, eqs (20) and (29)."""
+        return self.psi(self.slip_velocity)
+
+    @property
+    def w1(self) -> Any:
+        """W of the spin about the normal before the impact, theory §17."""
+        return rim(self, self.normal_spin)
+
+    @property
+    def chi_w(self) -> Any:
+        """chi_w = (kappa/2) M_n a²/J, inertia ratio of spin about the normal; 0 without spin."""
+        pair, size = self.pair, self._size()
+        inertia = pair.normal_mass * pair.inverse_spin_mass
+        return 0.5 * pair.stiffness_ratio * inertia * size * size
+
+    def _size(self) -> Any:
+        """Return C of eq. (9), the largest contact radius of an elastic Hertz impact over R."""
+        pair = self.pair
+        return size_ratio(pair.normal_mass, pair.effective_modulus, pair.radius, self.normal_speed)
+
+    @property
+    def chi(self) -> Any:
+        """Inertia ratio, eq. (38); in space (kappa/2) W_tt/W_nn, shape (..., 2, 2).
+
+        On an ellipse each row has kappa of its direction, and the tensor is not symmetric.
+        """
+        if self.inverse_mass is None:
+            return self.pair.inertia_ratio
+        W, half = self.inverse_mass, 0.5 * self.pair.stiffness_ratio
+        if self.planar:
+            return half * entry(W, 1, 1) / entry(W, 0, 0)
+        sides = np.asarray(half)[..., None] * self._sides
+        return sides[..., None] * W[..., 1:, 1:] / W[..., :1, :1]
+
+    @property
+    def lam(self) -> Any:
+        """Lam = mu W_nt/W_nn, what friction adds to the approach; (..., 2) in space."""
+        return coupling(self, self.friction_coefficient)
+
+    @property
+    def eta(self) -> Any:
+        """Eta = kappa W_nt/(mu W_nn), what pressure adds to the slip; infinite without friction."""
+        eta = coupling(self, quotient(self.pair.stiffness_ratio, self.friction_coefficient))
+        return eta if self.planar else eta * self._sides
+
+    @property
+    def _sides(self) -> Array:
+        """Stiffness along t1 and t2 over that along t1, shape (..., 2); 1 on a circle."""
+        sides = np.ones((*self.shape, 2))
+        sides[..., 1] = self.pair.cross_stiffness_ratio
+        return sides
+
+    @property
+    def rho(self) -> Real:
+        """Rho = mu²/kappa, on an ellipse that along t1."""
+        mu: Any = self.friction_coefficient
+        rho: Real = mu * mu / self.pair.stiffness_ratio
+        return rho
+
+    @property
+    def central(self) -> Self:
+        """The impact with the same approach and no coupling: the scene itself for spheres.
+
+        Its slip is the magnitude in space, its tangential mass that along the slip.
+        """
+        if self.inverse_mass is None:
+            return self
+        pair = self.pair
+        if not self.planar:
+            along = components(inverse_mass.unit_slip(self.slip_velocity))
+            mass = 1.0 / inverse_mass.along(rows(self.inverse_mass), *along)
+            pair = batch.changed(pair, tangential_mass=batch.locked(mass))
+        slip = batch.spread(slip_speed(self) if not self.planar else self.slip_velocity, self.shape)
+        return self._with(tangential_velocity=slip, pair=pair, inverse_mass=None, planar=True)
+
+    def _with(self, **entries: object) -> Self:
+        """Return this scene with other entries, of numbers that were checked before."""
+        return batch.changed(self, **{name: batch.locked(each) for name, each in entries.items()})
+
+    def _ways(self) -> Any:
+        """Return the way in which each impact is solved."""
+        W: Any = self.inverse_mass
+        speed, *slip = self._components(self.normal_speed, self.slip_velocity)
+        return inverse_mass.ways(rows(W), speed, slip, self.pair.cross_stiffness_ratio)
+
+    def _going(self, way: int) -> Self:
+        """Return this scene as it is solved in one way."""
+        if way == inverse_mass.CENTRAL:
+            return self.central
+        if way == inverse_mass.SPATIAL or self.planar:
+            return self
+        W: Any = self.inverse_mass
+        pair = batch.changed(self.pair, tangential_mass=batch.locked(1.0 / entry(W, 1, 1)))
+        slip = batch.spread(self.slip_velocity[..., 0], self.shape)
+        return self._with(tangential_velocity=slip, pair=pair, planar=True)
+
+    @property
+    def velocity(self) -> Array:
+        """Approach and slip at first touch along n, t1 and t2, shape (..., 3), in m/s."""
+        return joined(self._components(self.normal_speed, self.slip_velocity), self.shape)
+
+    def _components(self, approach: Real, slip: Any) -> tuple[Any, Any, Any]:
+        """Return rates along n and slip velocities as components along n, t1 and t2."""
+        along, across = (slip, 0.0) if self.planar else components(slip)
+        return approach, along, across
+
+
+def slip_speed(scene: Motions) -> Any:
+    """Return magnitude of the slip velocity, in m/s, of the batch shape."""
+    return size_of(scene, scene.slip_velocity)
+
+
+def rubs(scene: Motions) -> bool:
+    """Return whether any impact has friction and slip at first touch."""
+    slip: Any = slip_speed(scene)
+    friction: Any = scene.friction_coefficient
+    return bool(np.any((slip != 0.0) & (friction != 0.0)))
+
+
+def turns(scene: Motions) -> bool:
+    """Return whether any pair of bodies spins about the normal."""
+    spin = scene.normal_spin
+    return spin != 0.0 if isinstance(spin, float) else bool(spin.any())
+
+
+def rim(scene: Motions, spin: Real) -> Any:
+    """Return w = kappa omega_n a/(mu v1) of spins about the normal, theory §17, without unit.
+
+    It is the speed of the rim of the largest elastic Hertz contact in the unit of psi.
+
+    Parameters
+    ----------
+    spin : float or array
+        omega_n in rad/s, of the batch shape.
+    """
+    return scene.central.psi(spin * scene._size() * scene.pair.radius)
+
+
+def normal_inertia(scene: Motions) -> Any:
+    """Return J about the normal in kg m², 1/J the sum of both bodies'; 0 without spin about it."""
+    inverse: Any = scene.pair.inverse_spin_mass
+    size: Any = scene.pair.radius
+    return chosen(inverse > 0.0, quotient(size * size, inverse), 0.0)
+
+
+def spin_energies(scene: Motions, change: Real) -> tuple[Any, Any]:
+    """Return the energy ½ J omega_n² at the start, and what it loses, in J.
+
+    Parameters
+    ----------
+    change : float or array
+        Change of the spin about the normal, in rad/s.
+    """
+    spin, momentum = scene.normal_spin, normal_inertia(scene) * scene.normal_spin
+    return 0.5 * momentum * spin, -normal_inertia(scene) * change * (spin + 0.5 * change)
+
+
+def size_of(scene: Motions, slip: Any) -> Any:
+    """Return the magnitude of slip velocities, of the batch shape.
+
+    Parameters
+    ----------
+    slip : float or array
+        As ``slip_velocity``.
+    """
+    return abs(slip) if scene.planar else hypotenuse(*components(slip))
+
+
+def along_slip(scene: Motions, velocity: Real) -> Any:
+    """Return the part of slip velocities along the slip at first touch, of the batch shape.
+
+    Parameters
+    ----------
+    velocity : float or array
+        As ``slip_velocity``.
+    """
+    if scene.planar:
+        return velocity
+    part = np.einsum("...i,...i->...", velocity, inverse_mass.unit_slip(scene.slip_velocity))
+    return batch.plain(part)
+
+
+def slip_axes(scene: Motions) -> tuple[int, ...]:
+    """Return the axes of a slip velocity beside the batch's: (2,) in space, else ()."""
+    return () if scene.planar else (2,)
+
+
+def largest_chi(scene: Motions) -> Any:
+    """Return the largest eigenvalue of chi, of the batch shape."""
+    if scene.planar:
+        return scene.chi
+    root = np.sqrt(scene._sides)  # the symmetric tensor with the same eigenvalues
+    return np.linalg.eigvalsh(scene.chi * (root[..., None, :] / root[..., None]))[..., -1]
+
+
+def free_share(scene: Motions) -> Any:
+    """Return the share of W_nn that an unchanged slip leaves, 1 - W_nt²/(W_nn W_tt) in a plane."""
+    if scene.inverse_mass is None:
+        return 1.0
+    W, size = scene.inverse_mass, 2 if scene.planar else 3
+    minor = np.linalg.det(W[..., 1:size, 1:size])
+    return np.linalg.det(W[..., :size, :size]) / (W[..., 0, 0] * minor)
+
+
+def coupling(scene: Motions, factor: Real) -> Any:
+    """Return ``factor`` times W_nt/W_nn, as this scene has its slip; 0 for spheres.
+
+    Parameters
+    ----------
+    factor : float or array
+    """
+    if scene.inverse_mass is None:
+        return 0.0
+    W = scene.inverse_mass
+    if scene.planar and not scene.shape:  # plain numbers warn of nothing
+        return factor * entry(W, 0, 1) / entry(W, 0, 0)
+    with np.errstate(all="ignore"):
+        if scene.planar:
+            return factor * entry(W, 0, 1) / entry(W, 0, 0)
+        return np.asarray(factor)[..., None] * W[..., 0, 1:] / W[..., :1, 0]
+
+
+def tangent(scene: Motions, vectors: Array) -> Any:
+    """Return vectors of the tangent plane, (..., 2), as this scene has its slip.
+
+    Parameters
+    ----------
+    vectors : array, shape (..., 2)
+        Along t1 and t2.
+    """
+    if not scene.planar:
+        return vectors
+    return vectors[..., 0] if scene.shape else float(vectors[0])
+
+
+def groups(scene: Motions) -> dict[str, Any]:
+    """Return the dimensionless groups that determine the impact, by name."""
+    names = ("psi1", "chi") if scene.inverse_mass is None else ("psi1", "chi", *COUPLED)
+    if turns(scene):
+        names = (*names, *OF_SPIN)
+    return {name: getattr(scene, name) for name in names}
+
+
+def most_slip_change(scene: Motions) -> Any:
+    """Return the largest change of slip velocity in m/s, of an elastic impact of gross slip.
+
+    It is infinite where friction changes the approach: no such bound is known there.
+    """
+    if scene.inverse_mass is not None:
+        return math.inf + 0.0 * slip_speed(scene)
+    pair = scene.pair
+    friction: Any = scene.friction_coefficient * scene.normal_speed
+    # This is 4 chi in psi; psi itself would be infinite without friction.
+    return 2.0 * (friction * (pair.normal_mass / pair.tangential_mass))
+
+
+def parts(scene: AnyScene, *, as_one: bool = False) -> list[tuple[Any, AnyScene]]:
+    """Return places and scenes of the impacts that are solved alike, at most three.
+
+    A part has no inverse mass where W does not couple and slip keeps its line, and is planar
+    where slip stays along t1.
+
+    Parameters
+    ----------
+    as_one : bool
+        True if impacts that differ stay one part, as a history with one time axis needs.
+    """
+    if scene.inverse_mass is None:
+        return [(..., scene)]
+    found = scene._ways()
+    if not scene.shape:
+        return [(..., scene._going(found))]
+    kinds = np.unique(found).tolist()
+    if len(kinds) == 1:
+        return [(..., scene._going(kinds[0]))]
+    if as_one:
+        return [(..., scene)]
+    masks = [(found == kind, kind) for kind in kinds]
+    return [(where, scene.take(where)._going(kind)) for where, kind in masks]
+
+
+def impulse(scene: Motions, rate: Real, change: Real) -> Array:
+    """Return the impulse on the target along n, t1 and t2, shape (..., 3), in N s.
+
+    Parameters
+    ----------
+    rate, change : float or array
+        Rate of approach after, and change of the slip velocity, in m/s.
+    """
+    if scene.inverse_mass is None:
+        push = scene.pair.normal_mass * (scene.normal_speed - rate)
+        drag = -scene.pair.tangential_mass * change
+        return joined((push, drag, 0.0), scene.shape)
+    moved = scene._components(rate - scene.normal_speed, change)
+    return joined(inverse_mass.impulse(scene.inverse_mass, moved), scene.shape)
+
+
+def energies(scene: Motions, rate: Real, change: Real) -> tuple[Any, Any, Any]:
+    """Return the energy at the start, and what approach and slip lose of it, in J.
+
+    Parameters
+    ----------
+    rate, change : float or array
+        Rate of approach after, and change of the slip velocity, in m/s.
+    """
+    speed: Any = scene.normal_speed
+    if scene.inverse_mass is None:
+        return scene.pair.energies(speed, scene.slip_velocity, rate, change)
+    before = scene._components(speed, scene.slip_velocity)
+    moved = scene._components(rate - speed, change)
+    taken, given = (inverse_mass.impulse(scene.inverse_mass, each) for each in (moved, before))
+    mean = [one + 0.5 * more for one, more in zip(before, moved, strict=True)]
+    lost = 0.5 * scene.pair.normal_mass * (speed - rate) * (speed + rate)
+    return -0.5 * dot(given, before), lost, dot(taken, mean) - lost
