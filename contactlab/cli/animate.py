@@ -33,7 +33,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     shared.add_names(parser, "--ghost", words, default=[])
     shared.add_file(parser, "--out", ".gif", required=True)
     shared.add_progress(parser)
-    return shared.checked(execute)
+    return shared.check_outputs_first(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -168,7 +168,7 @@ def look(arguments: argparse.Namespace) -> Drawing:
     return {"look": arguments.style, "width": arguments.width}
 
 
-def checked(execute: Execute) -> Execute:
+def check_outputs_first(execute: Execute) -> Execute:
     """Return a command that refuses outputs which cannot all be written before it runs."""
 
     def run(arguments: argparse.Namespace) -> int:
@@ -349,7 +349,7 @@ def check_budget(seconds: float) -> None:
         raise ValueError(f"--budget {seconds:g}: must be positive, in seconds")
 
 
-def why_ended(report: Benchmark | Stability) -> str:
+def say_why_incomplete(report: Benchmark | Stability) -> str:
     """Return why a report over all laws is not complete."""
     return "interrupted" if report.interrupted else "the budget ran out"
 

@@ -32,7 +32,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     parser.add_argument(
         "--markdown", action="store_true", help="print a row or two for each law, as Markdown"
     )
-    return shared.checked(execute)
+    return shared.check_outputs_first(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -90,7 +90,11 @@ def markdown(benchmark: Benchmark) -> str:
         numbers = [f"{value:.1e}" if value == value else "-" for value in errors]
         lines.append([name, row.options, *numbers, *_times(row)])
     text = "\n".join(f"| {' | '.join(line)} |" for line in lines)
-    return text if benchmark.complete else f"{text}\n\nnot complete: {shared.why_ended(benchmark)}"
+    return (
+        text
+        if benchmark.complete
+        else f"{text}\n\nnot complete: {shared.say_why_incomplete(benchmark)}"
+    )
 
 
 def _times(row: Row) -> list[str]:
@@ -117,4 +121,8 @@ def _report(benchmark: Benchmark) -> str:
     orders = [[name, order] for name, order in benchmark.orders.items() if order == order]
     if orders:
         text += "\n\n" + table(["method", "order observed"], orders, digits=3)
-    return text if benchmark.complete else f"{text}\n\nnot complete: {shared.why_ended(benchmark)}"
+    return (
+        text
+        if benchmark.complete
+        else f"{text}\n\nnot complete: {shared.say_why_incomplete(benchmark)}"
+    )

@@ -11,7 +11,7 @@ import numpy as np
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.material import Entry, Material
 from contactlab.impact.scene import Scene
-from contactlab.registration.hooks import PluginError, guarded
+from contactlab.registration.hooks import PluginError, guard
 from contactlab.registration.manager import MANAGER, Told
 from contactlab.registration.names import COMMAND, PluginInfo
 
@@ -90,7 +90,7 @@ def check(info: PluginInfo) -> Iterator[Checked]:
 
 def _complaint(check: Callable[[Any], str], item: Any) -> str:
     try:
-        with guarded(title(item), "raised"):
+        with guard(title(item), "raised"):
             return check(item)
     except PluginError as error:
         return str(error)

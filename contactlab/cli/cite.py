@@ -24,7 +24,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the scene, whose data are cited, and the laws."""
     add_file(parser)
     shared.add_laws(parser, many=True)
-    return shared.checked(execute)
+    return shared.check_outputs_first(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -30,7 +30,7 @@ from contactlab.cli import arguments as shared
 from contactlab.cli.scene import add_file, add_ranges, check_alone, read
 from contactlab.impact.scene import Scene
 from contactlab.numeric.names import nearest
-from contactlab.outcome.columns import json_value, quantity_named
+from contactlab.outcome.columns import find_quantity, json_value
 from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.registration.names import KINDS, full_name, kind_of
 from contactlab.registry.composition import ON_A_PATH
@@ -77,13 +77,13 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     shared.add_json(form, "tables")
     form.add_argument("--csv", action="store_true", help="print CSV instead of tables")
     shared.add_progress(parser)
-    return shared.checked(execute)
+    return shared.check_outputs_first(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Compare and report; the status is 1 if a law failed in an impact."""
     for quantity in arguments.quantity or ():
-        quantity_named(quantity, where="--quantity")
+        find_quantity(quantity, where="--quantity")
     file = shared.scene_file(arguments, partial(_file, arguments))
     named = bool(arguments.tangential)
     if arguments.all:

@@ -14,7 +14,7 @@ import functools
 from pathlib import Path
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.scene import composed
+from contactlab.cli.scene import compose_laws
 from contactlab.outcome.files import write_table
 from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.scene_file import LawChoice
@@ -43,12 +43,12 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     shared.add_look(parser)
     shared.add_laws(parser)
     shared.add_progress(parser)
-    return shared.checked(execute)
+    return shared.check_outputs_first(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Write the figures and print their paths."""
-    simulation = composed(arguments, LawChoice(tangential="annulus", integrator="paper"))
+    simulation = compose_laws(arguments, LawChoice(tangential="annulus", integrator="paper"))
     shared.make_folder("--out", arguments.out)
     with shared.progress(arguments.progress, "figures") as progress:
         from contactlab.figures.files import save  # matplotlib only when drawing

@@ -39,7 +39,7 @@ def readable(page: str, width: int) -> str:
     told = LINK.sub(r"\1", "".join(parts))
     parts = re.split(r"(^```.*?^```$)", told, flags=re.DOTALL | re.MULTILINE)
     for at in range(0, len(parts), 2):
-        parts[at] = "\n\n".join(filled(each, width) for each in parts[at].split("\n\n"))
+        parts[at] = "\n\n".join(fill_lines(each, width) for each in parts[at].split("\n\n"))
     return "".join(parts).replace(UNBROKEN, " ")
 
 
@@ -53,7 +53,7 @@ def _unbroken(text: str) -> str:
     return re.sub(r"\s+", UNBROKEN, text)
 
 
-def filled(paragraph: str, width: int) -> str:
+def fill_lines(paragraph: str, width: int) -> str:
     """Return a paragraph, or the items of a list, in lines of a width."""
     texts = []
     for item in re.split(r"\n(?=- |\d+\. |\||!\[)", paragraph):
@@ -136,7 +136,7 @@ class Reader:
     def fraction(self) -> str:
         """Return a fraction on one line, in brackets if a factor follows."""
         above, below = self.group(), self.group()
-        text = f"{bracketed(above)}/{bracketed(below)}"
+        text = f"{bracket(above)}/{bracket(below)}"
         if text in FRACTIONS:
             return FRACTIONS[text]
         following = "".join(self.tokens).lstrip()
@@ -154,7 +154,7 @@ def script(sign: str, text: str) -> str:
     return sign + (text if simple else f"({text})")
 
 
-def bracketed(text: str) -> str:
+def bracket(text: str) -> str:
     """Return a part of a fraction, in brackets unless it is one factor."""
     return text if re.fullmatch(r"[\w.*'\u0302]+|\w*\([^()]*\)", text) else f"({text})"
 

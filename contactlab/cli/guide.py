@@ -46,7 +46,7 @@ PARTS = {
 }  # fmt: skip
 
 
-def added() -> dict[str, Path]:
+def add_pages() -> dict[str, Path]:
     """Return the pages of plug-ins by name: files of the packages that their entry points name."""
     infos = [info for info in MANAGER.installed(PAGE) if info.usable and info.meant]
     found = {short_name(info.name): resource(info.module, info.name) for info in infos}
@@ -65,7 +65,7 @@ def resource(package: str, name: str) -> Path | None:
 
 def groups() -> dict[str, tuple[str, ...]]:
     """Return the topics by group; pages of plug-ins end the group of questions."""
-    return GROUPS | {QUESTIONS: GROUPS[QUESTIONS] + tuple(sorted(added()))}
+    return GROUPS | {QUESTIONS: GROUPS[QUESTIONS] + tuple(sorted(add_pages()))}
 
 
 def topics() -> tuple[str, ...]:
@@ -137,8 +137,8 @@ def text(topic: str) -> str:
         read = ", ".join(map(repr, about(name)))
         hint = nearest(name, pages(), alike=0.75) or f"read of {name} in {read}; " * bool(read)
         raise refuse("topic", topic, "is not in the guide", f"{hint}known: {', '.join(topics())}")
-    if name in added():
-        return added()[name].read_text("utf-8")
+    if name in add_pages():
+        return add_pages()[name].read_text("utf-8")
     return resources.files("contactlab").joinpath("guide", f"{name}.md").read_text("utf-8")
 
 

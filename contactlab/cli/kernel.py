@@ -35,7 +35,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         metavar="DIR",
         help="folder; made if it is not there",
     )
-    return shared.checked(execute)
+    return shared.check_outputs_first(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 import contactlab
 from contactlab.cli.statuses import BAD_INPUT, BROKEN_PIPE, FAILED, INTERRUPTED
-from contactlab.cli.terminal import fitted
+from contactlab.cli.terminal import fit_terminal
 from contactlab.numeric.names import nearest
 from contactlab.registration.hooks import PluginError
 from contactlab.registration.installed import PluginWarning
@@ -65,7 +65,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status."""
     words = sys.argv[1:] if arguments is None else list(arguments)
     parsed = argparse.Namespace(command="", traceback=False, words=words)
-    with fitted(), _warned():
+    with fit_terminal(), _print_warnings():
         try:
             status = _execute(_join_negative_numbers(words), parsed)
             sys.stdout.flush()
@@ -92,7 +92,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _execute(words: list[str], parsed: argparse.Namespace) -> int:
     """Parse the words into ``parsed``, run the subcommand and return its status."""
     try:
-        _, unknown = _parser(*_needed(words)).parse_known_args(words, parsed)
+        _, unknown = _parser(*_find_commands(words)).parse_known_args(words, parsed)
         if unknown:
             parsed.parser.error(f"unrecognized arguments: {' '.join(unknown)}")
     except SystemExit as stop:  # argparse has printed help, version or the error
@@ -102,7 +102,7 @@ def _execute(words: list[str], parsed: argparse.Namespace) -> int:
 
 
 @contextlib.contextmanager
-def _warned() -> Iterator[None]:
+def _print_warnings() -> Iterator[None]:
     """Print warnings about plug-ins on one line, as errors."""
     with warnings.catch_warnings():
         show_other = warnings.showwarning
@@ -134,7 +134,7 @@ def _leave_stdout() -> None:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _needed(words: Sequence[str]) -> tuple[Mapping[str, PluginInfo], bool]:
+def _find_commands(words: Sequence[str]) -> tuple[Mapping[str, PluginInfo], bool]:
     """Return the subcommands that the parser needs, and whether they are called, not listed."""
     word = next((word for word in words if not word.startswith("-")), None)
     if word is not None and (called := command(word)):

@@ -32,8 +32,8 @@ from contactlab.registration.names import (
     clash,
     kind_of,
     meant,
-    parted,
     same_distribution,
+    split_name,
 )
 from contactlab.registry.options import Option, options
 from contactlab.registry.registry import REGISTRY, PluginInfo
@@ -104,7 +104,7 @@ def _no_law(name: str) -> PluginInfo | None:
     kind = kind_of(name)
     if kind not in (COMMAND, *COLLECTIONS):
         return None
-    distribution, plain = parted(name)
+    distribution, plain = split_name(name)
     found = [info for info in MANAGER.installed(kind) if info.name == plain]
     if distribution:
         found = [info for info in found if same_distribution(info.distribution, distribution)]
@@ -136,7 +136,7 @@ def _show_other(info: PluginInfo, *, as_json: bool) -> int:
         print(f"{key.ljust(width)}  {value}")
     if names:
         print("\nbrings")
-        print(_indented(", ".join(names), "  "), end="")
+        print(_indent(", ".join(names), "  "), end="")
     return OK
 
 
@@ -198,11 +198,11 @@ def _show(arguments: argparse.Namespace) -> int:
     for option in accepted:
         print(f"  {_with_unit(option)}")
         for words in (option.meaning, option.rule):
-            print(_indented(words, "      "), end="")
+            print(_indent(words, "      "), end="")
     if sources:
         print("\nsource")
     for source in sources:
-        print(_indented(source, "  "), end="")
+        print(_indent(source, "  "), end="")
     return OK
 
 
@@ -211,7 +211,7 @@ def _with_unit(option: Option) -> str:
     return f"{option} ({option.unit})" if option.unit not in ("", "1") else str(option)
 
 
-def _indented(words: str, margin: str) -> str:
+def _indent(words: str, margin: str) -> str:
     """Return words wrapped to the terminal's width, each line with its end."""
     lines = textwrap.wrap(
         words.replace("``", ""), WIDTH, initial_indent=margin, subsequent_indent=margin,

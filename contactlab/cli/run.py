@@ -54,7 +54,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         help="estimate the numerical error of a single impact by finer runs (the default)",
     )
     shared.add_progress(parser)
-    return shared.checked(execute)
+    return shared.check_outputs_first(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

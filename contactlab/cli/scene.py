@@ -110,10 +110,10 @@ def inputs(arguments: argparse.Namespace) -> Inputs:
     """Return the scene and the simulation of the arguments."""
     file = read(arguments)
     scene = _scene(arguments, file)
-    return Inputs(file, scene, composed(arguments, file.laws if file else LawChoice()))
+    return Inputs(file, scene, compose_laws(arguments, file.laws if file else LawChoice()))
 
 
-def composed(arguments: argparse.Namespace, choice: LawChoice) -> Simulation:
+def compose_laws(arguments: argparse.Namespace, choice: LawChoice) -> Simulation:
     """Return the laws of ``choice``, replaced by the laws and options of the arguments."""
     settings = dict(arguments.settings)
     if arguments.restitution is not None:

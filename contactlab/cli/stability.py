@@ -36,7 +36,7 @@ WORDS = ("answered", "coarse", "refused", SKIPPED, RAISED, WRONG)
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the laws, the size, and the outputs."""
     shared.add_report(parser)
-    return shared.checked(execute)
+    return shared.check_outputs_first(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -73,7 +73,7 @@ def _draw(
         why = (
             "there is nothing to map"
             if result.complete
-            else f"{shared.why_ended(result)} before the map was done"
+            else f"{shared.say_why_incomplete(result)} before the map was done"
         )
         print(f"no map drawn: {why}", file=sys.stderr)
         return False
@@ -107,7 +107,7 @@ def report(result: Stability) -> str:
         "error."
     )
     if not result.complete:
-        parts.append(f"not complete: {shared.why_ended(result)}")
+        parts.append(f"not complete: {shared.say_why_incomplete(result)}")
     return "\n\n".join(parts)
 
 

@@ -30,7 +30,7 @@ from contactlab.cli.scene import (
     add_file,
     add_ranges,
     check_alone,
-    composed,
+    compose_laws,
     read,
 )
 from contactlab.contracts.status import Status, succeeded
@@ -82,7 +82,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     parser.add_argument("--workers", type=int, metavar="N", help="share the work among N processes")
     shared.add_figure(parser, "also draw psi2 over psi1")
     shared.add_progress(parser)
-    return shared.checked(execute)
+    return shared.check_outputs_first(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -94,7 +94,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if _is_folder(arguments.out):
         return _into_folder(arguments, file)
     scene = file.scene if file else _ranges(arguments.psi1, arguments.chi)
-    simulation = composed(arguments, file.laws if file else LawChoice())
+    simulation = compose_laws(arguments, file.laws if file else LawChoice())
     keep = _folder(arguments.out) if arguments.resume else None
     before = 0 if keep is None else _done(keep)
     with (
@@ -170,7 +170,7 @@ def _into_folder(arguments: argparse.Namespace, file: SceneFile | None) -> int:
             rule = f"--{name}: needs all impacts in memory; leave it out, or name a file with --out"
             raise ValueError(rule)
     scenes = file.scene if file else _parts(arguments.psi1, arguments.chi)
-    simulation = composed(arguments, file.laws if file else LawChoice())
+    simulation = compose_laws(arguments, file.laws if file else LawChoice())
     with (
         shared.progress(arguments.progress, "impacts") as progress,
         contextlib.redirect_stdout(sys.stderr),  # plug-ins may print
@@ -198,7 +198,7 @@ def _print_table(result: ImpactResult, varied: Mapping[str, Real], out: Path | N
     else:
         print(table(*_rows(result, evenly(len(result), most))))
     if most is not None and len(result) > most:
-        done = _finished(result)
+        done = _count_done(result)
         which = "all of them" if done == len(result) else f"the {done} finished ones"
         print(f"{most} of {len(result)} impacts; {which} are in {out}")
 
@@ -233,7 +233,7 @@ def _clear(folder: Path) -> None:
     remove(folder)
 
 
-def _finished(result: ImpactResult) -> int:
+def _count_done(result: ImpactResult) -> int:
     """Return the number of impacts that were computed."""
     if succeeded(result.status):
         return len(result)

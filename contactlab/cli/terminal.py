@@ -80,7 +80,7 @@ class Printed:
 
 
 @contextlib.contextmanager
-def fitted() -> Iterator[None]:
+def fit_terminal() -> Iterator[None]:
     """Redirect stdout and stderr through ``Printed`` inside a ``with`` block."""
     # A program without a terminal may have no streams; print would then take stdout for stderr.
     out, err = (Printed(stream or io.StringIO()) for stream in (sys.stdout, sys.stderr))

@@ -44,7 +44,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     )
     shared.add_json(parser, "the tables")
     shared.add_progress(parser)
-    return shared.checked(execute)
+    return shared.check_outputs_first(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

@@ -103,14 +103,14 @@ def collide(
         _alone(given, e, simulation)
     elif encounter.of_spheres:
         strict = separating == "refuse"
-        moved = impulses.moved(encounter, restitution=e, strict=strict)
+        moved = impulses.strike(encounter, restitution=e, strict=strict)
         return Collision(encounter=encounter, **moved, restitution=e)
     met: Any = np.ones(encounter.shape, dtype=bool) if encounter.shape else True
     if separating == "pass":  # else the scene refuses bodies that separate
         met = encounter.approaching
     about: dict[str, Any] = {"simulation": simulation, "restitution": e}
     if not some(met):
-        unmoved = impulses.unmoved(encounter)
+        unmoved = impulses.pass_through(encounter)
         return Collision(encounter=encounter, **unmoved, **about)
     if every(met):
         scene = encounter.scene

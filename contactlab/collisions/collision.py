@@ -11,19 +11,19 @@ import numpy as np
 
 from contactlab.collisions import impulses
 from contactlab.collisions.collision_plan import collision_plan
-from contactlab.collisions.restituted import planned, run_by_restitution
+from contactlab.collisions.restituted import plan_rebounds, run_by_restitution
 from contactlab.collisions.velocities import Velocities, velocities
 from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
 from contactlab.impact.bodies import HalfSpace, Sphere
-from contactlab.impact.body_contact import in_space, pushed
+from contactlab.impact.body_contact import in_space, push_bodies
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.rigid_body import RigidBody
-from contactlab.numeric.arrays import every, filled, of_each, plain, taken
+from contactlab.numeric.arrays import every, of_each, plain, spread_object, taken
 from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import attributes_told
 from contactlab.numeric.types import Array, Each, Labelled, Mask, Numbers, Real
-from contactlab.numeric.vectors import NOTHING, components, cross, joined
+from contactlab.numeric.vectors import NOTHING, components, cross, join_components
 from contactlab.outcome.answer import Answer
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.energy import EnergyLedger, books
@@ -125,12 +125,12 @@ class Collision(Answer, Generic[Each]):
         if encounter.of_spheres:
             motion = result.motion
             told = motion.normal_velocity, motion.slip_velocity_change, motion.friction_work
-            moved = impulses.moved(encounter, _columns(encounter, met, *told).reshape(3, -1))
+            moved = impulses.strike(encounter, _columns(encounter, met, *told).reshape(3, -1))
             if kinetics.turns(result.scene):
                 (change,) = _columns(encounter, met, motion.normal_spin_change)
-                moved = impulses.turned(encounter, moved, change)
+                moved = impulses.turn_bodies(encounter, moved, change)
         else:
-            moved = _moved(encounter, result, met)
+            moved = _attributes(encounter, result, met)
         return cls(encounter=encounter, **moved, known=result, **about)
 
     @staticmethod
@@ -205,7 +205,7 @@ class Collision(Answer, Generic[Each]):
             return collision_plan(Plan(PlanColumns.nothing(passed.shape)), None, passed)
         met = self._met
         known, e = self.known, self._restitutions
-        plan = planned(met.scene, e) if known is None else known.plan
+        plan = plan_rebounds(met.scene, e) if known is None else known.plan
         return collision_plan(plan, met, passed)
 
     @property
@@ -290,7 +290,7 @@ class Collision(Answer, Generic[Each]):
         if isinstance(body, Sphere):
             radius = -body.radius if side else body.radius
             arm = [radius * each for each in encounter.meeting().normal]
-        return joined(cross(components(spin), arm), encounter.shape)
+        return join_components(cross(components(spin), arm), encounter.shape)
 
     @property
     def _met(self) -> Encounter:
@@ -319,7 +319,7 @@ class Collision(Answer, Generic[Each]):
         """A ``Status``, or an array of statuses; ``SUCCESS`` if the bodies passed through."""
         if self.known is not None and np.all(self.collided):
             return self.known.status
-        status = filled(Status.SUCCESS, self.encounter.shape)
+        status = spread_object(Status.SUCCESS, self.encounter.shape)
         if self.known is not None:
             status[self.collided] = self.known.status
         return status
@@ -342,11 +342,11 @@ def _columns(encounter: Encounter, met: Mask, *quantities: Real) -> Array:
     return columns
 
 
-def _moved(encounter: Encounter, result: ImpactResult, met: Mask) -> dict[str, Any]:
+def _attributes(encounter: Encounter, result: ImpactResult, met: Mask) -> dict[str, Any]:
     """Return the attributes of a collision of bodies that are no spheres."""
     motion, part = result.motion, encounter if every(met) else encounter.take(met)
     axes: Any = result.scene.frame
-    moved: dict[str, Any] = pushed(part, axes, result.impulse, result.couple) | {
+    moved: dict[str, Any] = push_bodies(part, axes, result.impulse, result.couple) | {
         "normal_velocity": motion.normal_velocity,
         "slip_velocity_change": motion.slip_velocity_change,
         "friction_work": motion.friction_work,

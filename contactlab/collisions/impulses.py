@@ -11,7 +11,7 @@ from contactlab.impact.bodies import Pair, Sphere, inverse_turning_mass
 from contactlab.impact.body_contact import Contact
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import LEAST_IMPULSE
-from contactlab.numeric.arrays import chosen, every, finite, locked, plain, spread
+from contactlab.numeric.arrays import chosen, every, finite, lock_arrays, plain, spread
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array, Real
 from contactlab.numeric.vectors import LEAST, components, three
@@ -22,7 +22,7 @@ VELOCITIES = ("velocity", "spin", "target_velocity", "target_spin")
 Moved: TypeAlias = dict[str, Any]
 
 
-def unmoved(encounter: Encounter) -> Moved:
+def pass_through(encounter: Encounter) -> Moved:
     """Return two bodies that passed through, of every encounter of a batch."""
     shape = encounter.shape
     vectors = {name: np.broadcast_to(getattr(encounter, name), (*shape, 3)) for name in VELOCITIES}
@@ -73,7 +73,7 @@ def _check(part: Encounter, impulse: Real, change: Real) -> None:
         )
 
 
-def moved(
+def strike(
     encounter: Encounter,
     answers: Array | None = None,
     *,
@@ -110,18 +110,18 @@ def moved(
         flags[where] = meets
         push, drag = pair.normal_mass * (after - contact.approach), pair.tangential_mass * change
         _push([array[where] for array in flat], part, contact, push, drag)
-    after, change, work = (locked(plain(each)) for each in numbers)
+    after, change, work = (lock_arrays(plain(each)) for each in numbers)
     return dict(
-        zip(VELOCITIES, map(locked, vectors), strict=True),
+        zip(VELOCITIES, map(lock_arrays, vectors), strict=True),
         normal_velocity=after,
         slip_velocity_change=change,
         friction_work=work,
-        collided=locked(collided) if shape else bool(collided),
+        collided=lock_arrays(collided) if shape else bool(collided),
     )
 
 
-def turned(encounter: Encounter, moved: Moved, change: Real) -> Moved:
-    """Return what ``moved`` returned, with a change (rad/s) of the relative spin about the normal.
+def turn_bodies(encounter: Encounter, moved: Moved, change: Real) -> Moved:
+    """Return what ``strike`` returned, with a change (rad/s) of the relative spin about the normal.
 
     The couple is opposite on both spheres: each takes its share by its inertia.
     """
@@ -133,7 +133,7 @@ def turned(encounter: Encounter, moved: Moved, change: Real) -> Moved:
         own, other = (inverse_turning_mass(each, body.radius) for each in (body, target))
         share = np.asarray(own / (own + other))[..., None]
     spins = moved["spin"] + share * about, moved["target_spin"] - (1.0 - share) * about
-    return moved | dict(zip(("spin", "target_spin"), map(locked, spins), strict=True))
+    return moved | dict(zip(("spin", "target_spin"), map(lock_arrays, spins), strict=True))
 
 
 def _alone(encounter: Encounter, restitution: Any, strict: bool) -> Moved:
@@ -154,7 +154,7 @@ def _alone(encounter: Encounter, restitution: Any, strict: bool) -> Moved:
     elif strict:
         raise encounter.separate()
     push, drag = normal_mass * (after - approach), tangential_mass * change
-    velocity, spin, target_velocity, target_spin = _pushed(encounter, contact, push, drag)
+    velocity, spin, target_velocity, target_spin = _push_both(encounter, contact, push, drag)
     return {
         "velocity": velocity,
         "spin": spin,
@@ -167,7 +167,7 @@ def _alone(encounter: Encounter, restitution: Any, strict: bool) -> Moved:
     }
 
 
-def _pushed(part: Encounter, contact: Contact, push: Any, drag: Any) -> list[Array]:
+def _push_both(part: Encounter, contact: Contact, push: Any, drag: Any) -> list[Array]:
     """Return ``VELOCITIES`` of a single encounter after both impulses, in N s."""
     (n1, n2, n3), (t1, t2, t3), _, _ = contact
     vectors = []

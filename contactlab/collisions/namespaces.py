@@ -133,7 +133,7 @@ def _is_array(value: object) -> bool:
 
 
 @cache
-def library_named(name: str) -> TracingLibrary:
+def find_library(name: str) -> TracingLibrary:
     """Return the library of a package, ``"jax"`` or ``"torch"``, which is imported."""
     return _Torch() if name == "torch" else _Jax()
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts.restitution import RESTITUTIONS
-from contactlab.numeric.checks import FINITE, POSITIVE, Rule, paired, real, refuse
+from contactlab.numeric.checks import FINITE, POSITIVE, Rule, pair_up, real, refuse
 from contactlab.numeric.labels import library_of
 from contactlab.numeric.types import Array, Labelled, Many, Number, Numbers, Real
 
@@ -224,7 +224,7 @@ def rebound(
             if _within(psi1, chi, span):
                 return _by_table(table, psi1, chi, restitution)
     if library_of(psi1) or library_of(chi) or library_of(restitution):
-        return _labelled(psi1, chi, tolerance, derivatives, restitution)
+        return _rebound_with_labels(psi1, chi, tolerance, derivatives, restitution)
     incidence = real(
         "psi1",
         psi1,
@@ -243,13 +243,13 @@ def rebound(
     aim = _tolerance(tolerance)
     e = 1.0 if restitution is None else _restitution(restitution)
     three = derivatives and restitution is not None
-    velocity, ratio = paired("psi1", "chi", (incidence, inertia))
+    velocity, ratio = pair_up("psi1", "chi", (incidence, inertia))
     if type(psi1) in (float, int) and type(chi) in (float, int):  # typed, not out of an array
         _warn_if_exchanged(float(incidence), float(inertia))
     one = isinstance(e, float)  # one restitution for all
     if not one:
-        velocity, each = paired("psi1", "restitution", (velocity, e))
-        velocity, ratio = paired("psi1", "chi", (velocity, ratio))
+        velocity, each = pair_up("psi1", "restitution", (velocity, e))
+        velocity, ratio = pair_up("psi1", "chi", (velocity, ratio))
     flat, ratios = velocity.ravel(), ratio.ravel()
     if not flat.size:
         count = 1 + (2 + three) * derivatives
@@ -289,7 +289,7 @@ def _restitution(value: object) -> Real:
     return real("restitution", value, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
 
 
-def _labelled(
+def _rebound_with_labels(
     psi1: object, chi: object, tolerance: float, derivatives: bool, restitution: object
 ) -> Any:
     """Return ``rebound`` of labelled or lazy arrays, with their labels."""
@@ -343,16 +343,16 @@ def _slopes(psi1: Array, chi: Array, restitution: Real | None) -> tuple[Array, .
     """Return d psi2/d psi1, d psi2/d chi, and d psi2/d e unless the restitution is left out."""
     if restitution is None:
         law = _law("tangential")
-        _tabulated(chi, *law.chi_range)
+        _require_range(chi, *law.chi_range)
         return law.rebound(psi1, chi, derivatives=True)[1:]  # type: ignore[no-any-return]
     law = _law("normal")
-    _tabulated(chi, *law.chi_range)
+    _require_range(chi, *law.chi_range)
     elastic = np.broadcast_to(np.equal(restitution, 1.0), chi.shape)
-    _tabulated(chi[elastic], *_law("tangential").chi_range)
+    _require_range(chi[elastic], *_law("tangential").chi_range)
     return law.rebound(psi1, chi, restitution, derivatives=True)[1:]  # type: ignore[no-any-return]
 
 
-def _tabulated(chi: Array, low: float, high: float) -> None:
+def _require_range(chi: Array, low: float, high: float) -> None:
     """Refuse chi out of the range of a table of derivatives."""
     out = chi[(chi < low) | (chi > high)]
     if out.size:
@@ -399,7 +399,7 @@ def _within(psi1: Any, chi: Any, span: tuple[float, float]) -> bool:
     return all(map(math.isfinite, speeds)) and all(low <= one <= high for one in ratios)
 
 
-def _parted(
+def _rebound_by_parts(
     where: NDArray[np.bool_],
     inside: Callable[..., Array],
     outside: Callable[..., Array],
@@ -418,7 +418,7 @@ def _parted(
 def _solve(psi1: Array, chi: Array, tolerance: float) -> Array:
     """Return psi2, shape (impacts,), from the table where chi is in range, else solved."""
     table, (_, high) = _table("tangential")
-    return _parted((chi <= high) & (tolerance > TABULATED), table, _exact, psi1, chi)
+    return _rebound_by_parts((chi <= high) & (tolerance > TABULATED), table, _exact, psi1, chi)
 
 
 def _each(psi1: Array, chi: Array, restitution: Array, tolerance: float) -> Array:
@@ -427,7 +427,9 @@ def _each(psi1: Array, chi: Array, restitution: Array, tolerance: float) -> Arra
     def elastic(psi1: Array, chi: Array, _: Array) -> Array:
         return _solve(psi1, chi, tolerance)
 
-    return _parted(restitution == 1.0, elastic, _law("normal").rebound, psi1, chi, restitution)
+    return _rebound_by_parts(
+        restitution == 1.0, elastic, _law("normal").rebound, psi1, chi, restitution
+    )
 
 
 def laws_of(restitution: float) -> Simulation:

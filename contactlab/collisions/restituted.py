@@ -50,7 +50,7 @@ def _run(scene: Scene, restitution: float) -> ImpactResult:
     return run_in_blocks(_simulation(restitution), scene)
 
 
-def planned(scene: Scene, restitution: Real) -> Plan:
+def plan_rebounds(scene: Scene, restitution: Real) -> Plan:
     """Return the plan of impacts that ``contactlab.rebound`` answers."""
     plan = _of_groups(attrs.evolve(scene, encounter=None, normal_spin=0.0), restitution)
     return Plan(plan.columns, lambda: with_normal_spin(plan.words, scene))
@@ -59,16 +59,18 @@ def planned(scene: Scene, restitution: Real) -> Plan:
 def _of_groups(scene: Scene, restitution: Real) -> Plan:
     """Return the plan of impacts, with the words of each restitution."""
     if isinstance(restitution, float):
-        return _planned(scene, restitution, restitution)
+        return _plan_of_each(scene, restitution, restitution)
     groups = _alike(restitution)
     if len(groups) > MOST_STATEMENTS:
         masks = [mask for mask in (restitution == 1.0, restitution < 1.0) if mask.any()]
         groups = [(mask, float(restitution[mask].min())) for mask in masks]
-    plans = [(mask, _planned(scene.take(mask), value, restitution[mask])) for mask, value in groups]
+    plans = [
+        (mask, _plan_of_each(scene.take(mask), value, restitution[mask])) for mask, value in groups
+    ]
     return Plan.merged(plans, scene.shape)
 
 
-def _planned(scene: Scene, restitution: float, each: Real) -> Plan:
+def _plan_of_each(scene: Scene, restitution: float, each: Real) -> Plan:
     """Return the plan of impacts, with the cautions of one restitution and the errors of each."""
     plan = _simulation(restitution).plan(scene)
     return plan if restitution == 1.0 else by_rebound(plan, scene.chi, each)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
 
-from contactlab.collisions.namespaces import known, library_named
+from contactlab.collisions.namespaces import find_library, known
 from contactlab.contracts.whole_impact import Tabulated
 from contactlab.numeric.checks import Rule, refuse
 
@@ -45,8 +45,8 @@ def by_standard(
     """
     for name, value in arguments.items():
         known(library, name, value, rules[name], ENDS)
-    arrays = library_named(library).arrays(arguments.values())
-    xp = library_named(library).xp
+    arrays = find_library(library).arrays(arguments.values())
+    xp = find_library(library).xp
     try:
         shape = xp.broadcast_shapes(*(array.shape for array in arrays))
     except (ValueError, RuntimeError):  # of JAX, of PyTorch
@@ -61,16 +61,16 @@ def _tables(library: str, law: Tabulated, like: Any) -> Any:
     place = like.device if library == "torch" else None
     key = law, library, like.dtype, place
     if key not in _TABLES:
-        _TABLES[key] = library_named(library).constants(law.table_of_arrays(), like)
+        _TABLES[key] = find_library(library).constants(law.table_of_arrays(), like)
     return _TABLES[key]
 
 
 @cache
 def _function(library: str, law: Tabulated, joined: bool) -> Callable[..., Any]:
     """Return psi2 of tables and impacts, compiled when it is called if the library compiles."""
-    xp = library_named(library).xp
+    xp = find_library(library).xp
 
     def psi2(tables: Any, *impact: Any) -> Any:
         return law.rebound_of_arrays(xp, tables, *impact, joined=joined)
 
-    return library_named(library).compiled(psi2)
+    return find_library(library).compiled(psi2)

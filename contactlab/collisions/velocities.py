@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlab.collisions.namespaces import known, library_named
+from contactlab.collisions.namespaces import find_library, known
 from contactlab.collisions.rebound import rebound, traceable
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
@@ -49,7 +49,7 @@ def velocities(
     spheres = [each for each in (body, target) if isinstance(each, Sphere)]
     sizes = [n for each in spheres for n in (each.mass, each.radius, each.gyration_ratio)]
     numbers = [friction, e, *masses, pair.stiffness_ratio, pair.inertia_ratio, *sizes]
-    xp, together = library_named(library).xp, library_named(library).arrays
+    xp, together = find_library(library).xp, find_library(library).arrays
     arrays = together([*vectors.values(), *numbers])
     arrays = _of_one_shape(xp, dict(zip(vectors, arrays, strict=False)), arrays[len(vectors) :])
     n, velocity, spin, target_velocity, target_spin, mu, e, *arrays = arrays

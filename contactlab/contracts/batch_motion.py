@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts.status import Status
-from contactlab.numeric.arrays import are_zeros, consecutive, filled, merged, zeros
+from contactlab.numeric.arrays import are_zeros, consecutive, merge_parts, spread_object, zeros
 from contactlab.numeric.types import AnyArray, Mask, Real
 
 #: Entries of motions that are no numbers.
@@ -39,7 +39,7 @@ class BatchMotion:
         if isinstance(self.status, Status):
             return  # one impact: np.ndim is slower than this test
         if isinstance(self.detail, str) and np.ndim(self.status):
-            details = filled("", np.shape(self.status))
+            details = spread_object("", np.shape(self.status))
             if self.detail:
                 details[self.status != Status.SUCCESS] = self.detail
             object.__setattr__(self, "detail", details)
@@ -53,7 +53,7 @@ class BatchMotion:
 
     @classmethod
     @cache
-    def _marked(cls, word: str) -> frozenset[str]:
+    def _entries_with(cls, word: str) -> frozenset[str]:
         """Return the names of the entries that have a word: ``vectors`` of the plane, ``rare``."""
         fields: Any = attrs.fields(cls)
         return frozenset(field.name for field in fields if word in field.metadata)
@@ -94,15 +94,15 @@ class BatchMotion:
         entries: dict[str, Any] = {}
         for name in (*cls.numbers(), "status", "detail"):
             columns = [(where, getattr(motion, name)) for where, motion in parts]
-            if name in cls._marked("rare") and all(are_zeros(value) for _, value in columns):
+            if name in cls._entries_with("rare") and all(are_zeros(value) for _, value in columns):
                 entries[name] = zeros(shape)
                 continue
             trailing: tuple[int, ...] = ()
-            if name in cls._marked("vectors"):
+            if name in cls._entries_with("vectors"):
                 axes = [np.ndim(motion.status) for _, motion in parts]
                 columns, trailing = _vectors_alike(columns, axes)
             kind = float if name in cls.numbers() else object
-            entries[name] = merged(columns, shape, kind, trailing)
+            entries[name] = merge_parts(columns, shape, kind, trailing)
         return cls(**entries, counters=dict(counters))
 
     @classmethod
@@ -129,11 +129,11 @@ class BatchMotion:
         """
         entries: dict[str, Any] = {}
         for name in cls.numbers():
-            whole = (*shape, *axes) if name in cls._marked("vectors") else shape
+            whole = (*shape, *axes) if name in cls._entries_with("vectors") else shape
             entries[name] = np.full(whole, math.nan) if whole else math.nan
         return cls(
             **entries,
-            status=filled(status, shape),
+            status=spread_object(status, shape),
             detail=detail if isinstance(detail, str) else np.array(detail, dtype=object),
         )
 

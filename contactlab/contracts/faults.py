@@ -1,6 +1,6 @@
 """Faults of laws in the middle of a run: detection, and sentences that describe them.
 
-Integrators use this module. A step without fault calls ``malformed`` only, and only if an answer
+Integrators use this module. A step without fault calls ``is_malformed`` only, and only if an answer
 is not a plain float.
 """
 
@@ -58,10 +58,10 @@ def blame(law: Law, error: BaseException, step: int = 1) -> None:
     if isinstance(error, KeyboardInterrupt | LawFaultError):
         return
     # SystemExit too: a plug-in must not end the process
-    raise LawFaultError(Status.LAW_RAISED, sentence(law, raised(error), step)) from error
+    raise LawFaultError(Status.LAW_RAISED, sentence(law, tell_error(error), step)) from error
 
 
-def malformed(value: object, shape: tuple[int, ...]) -> bool:
+def is_malformed(value: object, shape: tuple[int, ...]) -> bool:
     """Return True unless ``value`` is real numbers that broadcast to the batch ``shape``.
 
     An array of one impact does not hold for many: a plain number, or one without axes, does.
@@ -96,7 +96,7 @@ def sentence(law: Law, what: str, step: int, time: Real | None = None) -> str:
     return f"At step {step}{when}: {what}, from {type(law).__name__} in {type(law).__module__}."
 
 
-def raised(error: BaseException) -> str:
+def tell_error(error: BaseException) -> str:
     """Return the type, message and place of an error as a sentence."""
     import traceback  # only failed runs need it
 

@@ -50,7 +50,7 @@ def judge_contact(law: Law, contact: object, shape: tuple[int, ...], step: int) 
         sentence = faults.sentence(law, f"respond gave {shown(contact)}, not a NormalContact", step)
         raise faults.LawFaultError(Status.LAW_RAISED, sentence)
     for entry in contact:
-        if entry is not None and faults.malformed(entry, shape):
+        if entry is not None and faults.is_malformed(entry, shape):
             raise _refusal(law, f"the answer {shown(entry)}", step)
     return contact.complete
 
@@ -64,7 +64,7 @@ def wrong_response(
     """
     force, work, settled, shear_loss = response
     for answer, wanted in ((force, (*shape, *axes)), (work, shape), (shear_loss, shape)):
-        if faults.malformed(answer, wanted):
+        if faults.is_malformed(answer, wanted):
             return f"the answer {shown(answer)}"
     if axes and np.ndim(force) == 0 and force != 0.0:  # no force is a number
         return f"no vector: {shown(force)}"
@@ -89,7 +89,7 @@ def judge_errors(law: Law, errors: object, shape: tuple[int, ...]) -> Errors:
     for name, error in zip(errors._fields, errors, strict=True):
         if type(error) is float and not error < 0.0:  # NaN is not declared
             continue
-        if faults.malformed(error, shape) or np.any(np.less(error, 0.0)):
+        if faults.is_malformed(error, shape) or np.any(np.less(error, 0.0)):
             raise _refusal(law, f"errors gave {name} = {shown(error)}", 1)
     return errors
 
@@ -98,7 +98,7 @@ def _known(law: Law, name: str, value: Any, shape: tuple[int, ...]) -> Real:
     """Return a number from 0 that a law declares for each impact, or refuse the declaration."""
     if isinstance(value, float) and value >= 0.0:
         return value
-    if faults.malformed(value, shape) or not np.all(np.greater_equal(value, 0.0)):
+    if faults.is_malformed(value, shape) or not np.all(np.greater_equal(value, 0.0)):
         raise _refusal(law, f"{name} gave {shown(value)}, not a number from 0", 1)
     number: Real = value
     return number

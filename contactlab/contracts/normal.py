@@ -9,7 +9,7 @@ from typing import Any
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law, claims
 from contactlab.contracts.motion import ClosedFormMotion, NormalMotion
-from contactlab.impact.cautions import large_contact, named, size_of_contact, yielding
+from contactlab.impact.cautions import large_contact, name_bodies, size_of_contact, yielding
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
 
@@ -59,7 +59,7 @@ class NormalLaw(Law, kind="normal"):
 
     def cautions(self, scene: Scene, motion: NormalMotion) -> tuple[str, ...]:
         """Return one sentence for each doubt about the model; asked when a plan is read."""
-        if not named(scene):
+        if not name_bodies(scene):
             return ()
         cautions = () if "plastic" in claims(self) else yielding(scene)
         return (*cautions, *large_contact(size_of_contact(scene, motion.maximum_radius)))

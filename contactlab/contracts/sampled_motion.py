@@ -12,7 +12,7 @@ from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion, NormalSample
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import merged, spread
+from contactlab.numeric.arrays import merge_parts, spread
 from contactlab.numeric.types import Array, Index, Mask, Real
 
 
@@ -166,4 +166,4 @@ class Ends(NamedTuple):
         """
         ends = [(where, cls.of(normal)) for where, normal in parts]
         columns = ([(where, getattr(each, name)) for where, each in ends] for name in cls._fields)
-        return cls._make(merged(column, shape) for column in columns)
+        return cls._make(merge_parts(column, shape) for column in columns)

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from contactlab.figures.names import name_curves
 from contactlab.impact.scene import entry_unit
 from contactlab.numeric.types import Array
-from contactlab.outcome.columns import quantity_named
+from contactlab.outcome.columns import find_quantity
 from contactlab.outcome.history import scaled_forces
 from contactlab.outcome.style import (
     BELOW,
@@ -107,16 +107,16 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
         for axes, middle in ((upper, values), (lower, difference)):
             error_band(axes, x, middle, half, look)
     points = _codes(upper, comparison, quantity, varied)
-    upper.set_ylabel(label(quantity, quantity_named(quantity).unit_in(comparison.scene)))
+    upper.set_ylabel(label(quantity, find_quantity(quantity).unit_in(comparison.scene)))
     lower.set_ylabel(rf"law $-$ {verbatim(comparison.model(first) or first)}")
     lower.set_xlabel(label(varied, entry_unit(varied)))
     named = {name: _said(comparison, name) for name in (first, *drawn)}
-    if not _named(upper, lower, groups, below, close, points, named):
+    if not _write_names(upper, lower, groups, below, close, points, named):
         _legend_of_all(upper, lower)
     return upper, lower
 
 
-def _named(
+def _write_names(
     upper: Axes,
     lower: Axes,
     groups: Mapping[str, list[Line2D]],
@@ -211,7 +211,7 @@ def laws_over_sweep(
 
     for number, name in enumerate(comparison.names):
         values = drawn(ordered(comparison.values(quantity, name)), x)
-        look = law_style(number) | (_marked(number) if rows else {})
+        look = law_style(number) | (_point_look(number) if rows else {})
         axes.plot(x, values, label=verbatim(_said(comparison, name)), **look)
         half = ordered(comparison.band(quantity, name))
         error_band(axes, x, values, half, law_style(number))
@@ -226,7 +226,7 @@ def laws_over_sweep(
             **POINTS,
         )
     axes.set_xlabel(label(varied, entry_unit(varied)))
-    axes.set_ylabel(words or label(quantity, quantity_named(quantity).unit_in(comparison.scene)))
+    axes.set_ylabel(words or label(quantity, find_quantity(quantity).unit_in(comparison.scene)))
     parted = [name for name in _axes(comparison) if name != varied]
     if parted and varied in _axes(comparison):
         axes.set_title(f"a curve for each {' and '.join(map(verbatim, parted))}")
@@ -239,7 +239,7 @@ def _bars(errors: Array) -> Array | None:
     return errors if np.any(errors > 0.0) else None
 
 
-def _marked(number: int) -> dict[str, Any]:
+def _point_look(number: int) -> dict[str, Any]:
     """Return the look of a law whose impacts are points, joined by a thin line."""
     return {"marker": "os^Dv<"[number % 6], "markersize": 4.0, "linewidth": 1.0}
 
@@ -267,14 +267,14 @@ def differences(
         if agreement is not None:
             order = np.argsort(agreement.measured.x, kind="stable")
             at, off = agreement.measured.x[order], agreement.difference(name)[order]
-            look = {key: style[key] for key in ("color", "linestyle")} | _marked(number)
+            look = {key: style[key] for key in ("color", "linestyle")} | _point_look(number)
             axes.plot(at, off, **look)
         elif number:
             axes.plot(x, ordered(comparison.difference(quantity, name)), **style)
     axes.set_xlabel(label(varied, entry_unit(varied)))
     reference = "measured" if agreement is not None else names[0]
     axes.set_ylabel(
-        label(f"law $-$ {reference}", quantity_named(quantity).unit_in(comparison.scene))
+        label(f"law $-$ {reference}", find_quantity(quantity).unit_in(comparison.scene))
     )
     return axes
 

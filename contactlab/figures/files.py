@@ -147,7 +147,7 @@ def _drawn(
     figure = Figure(figsize=size, dpi=RESOLUTION)  # as it is written: text is measured once
     FigureCanvasAgg(figure)
     if columns > 1 and size[0] < NARROW:
-        axes = _stacked(figure, rows=rows, columns=columns, heights=heights)
+        axes = _stack(figure, rows=rows, columns=columns, heights=heights)
     else:
         axes = figure.subplots(
             rows, columns, sharex="col", gridspec_kw={"height_ratios": heights}, squeeze=False
@@ -157,7 +157,7 @@ def _drawn(
     return figure
 
 
-def _stacked(figure: Figure, *, rows: int, columns: int, heights: tuple[float, ...]) -> Any:
+def _stack(figure: Figure, *, rows: int, columns: int, heights: tuple[float, ...]) -> Any:
     """Return axes, shape (rows, columns), with each column below the column before."""
     ratios = {"height_ratios": heights * columns}
     stack = figure.subplots(rows * columns, 1, gridspec_kw=ratios, squeeze=False)

@@ -49,7 +49,7 @@ def figure_1(axes: Axes, data: FigureData) -> Axes:
     lines = _forces(axes, data)
     axes.text(0.02, 0.03, rf"$\chi$ = {SOLID_CHI:.4f}", transform=axes.transAxes)
     names = [f"{curve.parameter:g}" for curve in data.curves[1:]]
-    return _named(axes, lines, r"$\psi_1$", names, title=r"$\psi_1$")
+    return _write_values(axes, lines, r"$\psi_1$", names, title=r"$\psi_1$")
 
 
 def figure_2(axes: Axes, data: FigureData) -> Axes:
@@ -76,7 +76,7 @@ def figure_3(axes: Axes, data: FigureData) -> Axes:
     lines = _forces(axes, data, name=lambda ratio: f"{ratio:.3g}  ({chi_of_gyration(ratio):.2f})")
     axes.text(0.02, 0.03, rf"$\psi_1$ = {FIXED_PSI1}", transform=axes.transAxes)
     names = [f"{curve.parameter:.3g}" for curve in data.curves[1:]]
-    return _named(axes, lines, "$K$", names, title=r"$K$  ($\chi$)")
+    return _write_values(axes, lines, "$K$", names, title=r"$K$  ($\chi$)")
 
 
 def figure_4(axes: Axes, data: FigureData) -> Axes:
@@ -107,7 +107,9 @@ def figure_4(axes: Axes, data: FigureData) -> Axes:
 FIGURES = {1: figure_1, 2: figure_2, 3: figure_3, 4: figure_4}
 
 
-def _named(axes: Axes, lines: list[Line2D], symbol: str, values: list[str], *, title: str) -> Axes:
+def _write_values(
+    axes: Axes, lines: list[Line2D], symbol: str, values: list[str], *, title: str
+) -> Axes:
     """Write the values beside the curves, the first with its symbol; else draw a legend."""
     if not name_curves(axes, lines, [f"{symbol} = {values[0]}", *values[1:]]):
         axes.legend(title=title, **BESIDE)

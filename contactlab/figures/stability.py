@@ -34,10 +34,10 @@ def draw_stability(
     look, width
         As of ``contactlab.figures.files.save``.
     """
-    save(path, lambda axes: steps_needed(axes, maps), look=look, width=width)
+    save(path, lambda axes: draw_least_steps(axes, maps), look=look, width=width)
 
 
-def steps_needed(axes: Axes, maps: Sequence[ErrorMap]) -> Axes:
+def draw_least_steps(axes: Axes, maps: Sequence[ErrorMap]) -> Axes:
     """Draw the least steps with which a law stays within ``ALLOWED``, and what is enough for all.
 
     Parameters
@@ -65,7 +65,7 @@ def steps_needed(axes: Axes, maps: Sequence[ErrorMap]) -> Axes:
         words = "\n".join([rf"more than {max(maps[0].steps)} at some $\chi$:", *beyond])
         axes.text(0.03, 0.97, words, transform=axes.transAxes, va="top", **ASIDE)
     if maps:
-        refused = np.min([_refused(each) for each in maps], axis=0)
+        refused = np.min([_find_least_steps(each) for each in maps], axis=0)
         lowest = min(maps[0].steps)
         axes.fill_between(maps[0].chis, lowest, refused, color=REFUSED_COLOUR, linewidth=0.0)
         axes.set_ylim(lowest, None)
@@ -102,7 +102,7 @@ def _least(drawn: ErrorMap) -> NDArray[np.float64]:
     return np.asarray(steps[len(drawn.steps) - _from_above(good)])
 
 
-def _refused(drawn: ErrorMap) -> NDArray[np.float64]:
+def _find_least_steps(drawn: ErrorMap) -> NDArray[np.float64]:
     """Return the least steps that were not refused, for each chi."""
     steps = np.array([*drawn.steps, drawn.steps[-1]], dtype=np.float64)
     return np.asarray(steps[len(drawn.steps) - _from_above(np.isfinite(drawn.error))])

@@ -53,7 +53,7 @@ class Batches(Motions):
 
         ``np.unravel_index(i, scene.dimensions)`` is the index of impact ``i`` on each axis.
         """
-        return MappingProxyType({name: batch.locked(values) for name, values in self._axes})
+        return MappingProxyType({name: batch.lock_arrays(values) for name, values in self._axes})
 
     @property
     def dimensions(self) -> tuple[int, ...]:
@@ -106,17 +106,17 @@ class Batches(Motions):
             for scene in scenes
         }
         if len(kinds) > 1:  # no one encounter has bodies of several kinds
-            scenes = [scene._checked(encounter=None) for scene in scenes]
+            scenes = [scene._evolve(encounter=None) for scene in scenes]
         if any(scene.inverse_mass is not None for scene in scenes):
             planar = all(scene.planar for scene in scenes)
             scenes = [scene._of_any_shape(planar) for scene in scenes]
-        stacked = batch.stacked(scenes)
+        stacked = batch.stack_trees(scenes)
         assert isinstance(stacked, cls)
         if stacked.shape:
             return stacked
-        return stacked._checked(normal_speed=np.full(len(scenes), stacked.normal_speed))
+        return stacked._evolve(normal_speed=np.full(len(scenes), stacked.normal_speed))
 
-    def _checked(self, **entries: object) -> Self:
+    def _evolve(self, **entries: object) -> Self:
         """Return this scene with other entries, which are checked."""
         scene: Any = self
         changed: Self = attrs.evolve(scene, **entries)
@@ -130,7 +130,7 @@ class Batches(Motions):
         W, pair = self.inverse_mass, self.pair
         if W is None:
             W = np.diag([1.0 / pair.normal_mass, *2 * [1.0 / pair.tangential_mass]])
-        return self._checked(tangential_velocity=slip, inverse_mass=W, planar=planar)
+        return self._evolve(tangential_velocity=slip, inverse_mass=W, planar=planar)
 
     def take(self, part: Index) -> Self:
         """Return the scene of the impacts that ``part`` indexes.
@@ -159,20 +159,20 @@ class Batches(Motions):
         if taken.shape or isinstance(part, int | tuple):
             return taken
         count = np.shape(taken.index)
-        spread = taken._checked(normal_speed=np.full(count, taken.normal_speed))
+        spread = taken._evolve(normal_speed=np.full(count, taken.normal_speed))
         return spread.numbered(taken.index)
 
     def _varied_at(self, part: Index) -> tuple[tuple[str, Array], ...]:
         """Return the values of each entry that varies, of the impacts that ``part`` indexes."""
         if not self._axes:
-            return tuple((name, batch.locked(values[part])) for name, values in self._varied)
+            return tuple((name, batch.lock_arrays(values[part])) for name, values in self._varied)
         size = self.shape[0]  # a grid is flat, and too large to be made anew for each part
         if isinstance(part, slice):
             impacts = np.arange(*part.indices(size))
         else:
             impacts = np.arange(size)[part]
         places = zip(self._axes, np.unravel_index(impacts, self.dimensions), strict=True)
-        return tuple((name, batch.locked(values[place])) for (name, values), place in places)
+        return tuple((name, batch.lock_arrays(values[place])) for (name, values), place in places)
 
     @property
     def index(self) -> Any:
@@ -217,7 +217,7 @@ def over(scene: AnyScene, axes: Mapping[str, Numbers]) -> AnyScene:
         Values of each entry that varies, the last varying fastest.
     """
     lines = [(name, np.array(values, dtype=np.float64)) for name, values in axes.items()]
-    return scene._with(_axes=tuple((name, batch.locked(v)) for name, v in lines))
+    return scene._with(_axes=tuple((name, batch.lock_arrays(v)) for name, v in lines))
 
 
 def varying(scene: AnyScene, entries: Mapping[str, Numbers]) -> AnyScene:
@@ -228,7 +228,7 @@ def varying(scene: AnyScene, entries: Mapping[str, Numbers]) -> AnyScene:
     entries : mapping of str to array
         Values of the batch shape.
     """
-    lines = tuple((name, batch.locked(np.array(each))) for name, each in entries.items())
+    lines = tuple((name, batch.lock_arrays(np.array(each))) for name, each in entries.items())
     return scene._with(_varied=lines)
 
 

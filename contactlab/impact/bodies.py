@@ -21,7 +21,7 @@ from contactlab.numeric.checks import (
     quantity,
     refuse,
 )
-from contactlab.numeric.names import arguments_stated
+from contactlab.numeric.names import state_arguments
 from contactlab.numeric.types import Either, Numbers, Real
 
 #: K of a solid homogeneous sphere: K² = 2/5.
@@ -43,7 +43,7 @@ def _material() -> Any:
     )
 
 
-@arguments_stated
+@state_arguments
 @attrs.frozen(init=False)
 class Sphere:
     """An elastic sphere.
@@ -103,7 +103,7 @@ class Sphere:
         object.__setattr__(self, "mass", mass)
 
 
-@arguments_stated
+@state_arguments
 @attrs.frozen(init=False)
 class HalfSpace:
     """An elastic body with a plane surface, so large that no impact changes its motion.

@@ -30,11 +30,11 @@ from contactlab.numeric.vectors import (
     difference,
     dot,
     hypotenuse,
-    joined,
+    join_components,
     moving,
     over,
     rows,
-    solved,
+    solve_tensor,
     square_root,
 )
 
@@ -165,11 +165,11 @@ def sides(encounter: _Meeting, normal: Vector) -> list[Side]:
     return found
 
 
-def turned(body: Sphere | RigidBody, *moments: Vector) -> list[Vector]:
+def turn_body(body: Sphere | RigidBody, *moments: Vector) -> list[Vector]:
     """Return J⁻¹ times moments about the centre of mass."""
     if isinstance(body, RigidBody):
         tensor = rows(body.inertia)
-        return [solved(tensor, moment) for moment in moments]
+        return [solve_tensor(tensor, moment) for moment in moments]
     inertia = body.mass * body.gyration_ratio**2 * body.radius * body.radius
     return [tuple(each / inertia for each in moment) for moment in moments]
 
@@ -180,7 +180,7 @@ def inverse_mass_of(bodies: Sequence[Side], axes: Sequence[Vector]) -> list[list
     for _, body, arm, _ in bodies:
         # an impulse p turns the body by J⁻¹ (arm x p), and moves the contact by that x arm
         moments = [cross(arm, axis) for axis in axes]
-        turns = turned(body, *moments)
+        turns = turn_body(body, *moments)
         for i, moment in enumerate(moments):
             W[i][i] = W[i][i] + 1.0 / body.mass
             for j in range(i + 1):
@@ -222,7 +222,7 @@ def _spin_alone(encounter: _Meeting, bodies: Sequence[Side], n: Vector, round_: 
     spin: Any = chosen(round_, spin_about(encounter, n), 0.0)
     for _, body, arm, _ in bodies:
         if isinstance(body, RigidBody) and some(spin != 0.0):
-            for vector in (arm, *turned(body, n)):
+            for vector in (arm, *turn_body(body, n)):
                 least = inverse_mass.ROUNDING * square_root(dot(vector, vector))
                 x, y, z = (abs(each) > least for each in cross(vector, n))
                 spin = chosen(x | y | z, 0.0, spin)
@@ -236,7 +236,7 @@ def turning_compliance(bodies: Sequence[Side], normal: Vector, radius: Real) -> 
         if isinstance(body, Sphere):
             total = total + inverse_turning_mass(body, radius)
         else:
-            total = total + radius * radius * dot(normal, *turned(body, normal))
+            total = total + radius * radius * dot(normal, *turn_body(body, normal))
     return total
 
 
@@ -418,9 +418,9 @@ def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
     whole: Any = abs(speed)
     across = aside > inverse_mass.ROUNDING * (whole + abs(slip[0]))
     planar = not some(across | (ways == inverse_mass.SPATIAL))
-    along = slip[0] if planar else joined(slip, shape)
+    along = slip[0] if planar else join_components(slip, shape)
     tangential = W[1][1] if planar else 0.5 * (W[1][1] + W[2][2])
-    entries: dict[str, Any] = {"inverse_mass": joined(W, shape), "planar": planar}
+    entries: dict[str, Any] = {"inverse_mass": join_components(W, shape), "planar": planar}
     if every(central):
         along, entries = hypotenuse(*slip), {}
         unit = along + (along == 0.0)
@@ -429,13 +429,13 @@ def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
     if some(spin != 0.0):
         turning = turning_compliance(bodies, normal, contact["radius"])
         contact |= {"inverse_spin_mass": turning}
-    entries |= {"encounter": encounter, "frame": joined(axes, shape), "normal_spin": spin}
+    entries |= {"encounter": encounter, "frame": join_components(axes, shape), "normal_spin": spin}
     try:
         pair = Pair(normal_mass=1.0 / W[0][0], tangential_mass=1.0 / tangential, **contact)
         return Scene(None, None, encounter.friction_coefficient, speed, along, pair=pair, **entries)
     except (ValueError, ZeroDivisionError):
         try:
-            inverse_mass.check(joined(W, shape))
+            inverse_mass.check(join_components(W, shape))
         except (ValueError, FloatingPointError):
             raise _lost(bodies) from None
         raise
@@ -512,7 +512,7 @@ def seen(scene: Scene, velocity: Array) -> tuple[Any, Any]:
     return np.broadcast_to(first, scene.shape), np.broadcast_to(second, scene.shape)
 
 
-def pushed(
+def push_bodies(
     encounter: _Meeting, axes: Array, impulse: Array, couple: Real = 0.0
 ) -> dict[str, Array]:
     """Return velocities and spins after an impulse in N s on the target, and its opposite.
@@ -529,9 +529,12 @@ def pushed(
         # the impulse on this body, and its angular impulse about the centre of mass
         push = [-sense * each for each in whole]
         moment = [m - sense * couple * n for m, n in zip(cross(arm, push), frame[0], strict=True)]
-        changes = {"velocity": [each / body.mass for each in push], "spin": turned(body, moment)[0]}
+        changes = {
+            "velocity": [each / body.mass for each in push],
+            "spin": turn_body(body, moment)[0],
+        }
         for entry, change in changes.items():
             before = components(getattr(encounter, f"{name}{entry}"))
             after = [one + more for one, more in zip(before, change, strict=True)]
-            moved[f"{name}{entry}"] = joined(after, encounter.shape)
+            moved[f"{name}{entry}"] = join_components(after, encounter.shape)
     return moved

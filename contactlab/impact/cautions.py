@@ -85,7 +85,7 @@ def size_of_contact(scene: Scene, radius: Real) -> float:
         _, t1, t2 = rows(axes)
         largest = minor * gap_of(encounter, t1, t2).most
     arms = encounter.contact, encounter.target_contact
-    for body, arm in zip(named(scene).values(), arms, strict=True):
+    for body, arm in zip(name_bodies(scene).values(), arms, strict=True):
         if isinstance(body, RigidBody):
             least = np.minimum(np.abs(body.curvature_radius), np.abs(body.crossing))
             length = np.linalg.norm(arm, axis=-1)
@@ -97,7 +97,7 @@ def size_of_contact(scene: Scene, radius: Real) -> float:
 
 def path_cautions(scene: Scene, deepest: float, *, plastic: bool) -> tuple[str, ...]:
     """Return the cautions of bodies that are pressed together by ``deepest`` m."""
-    if not (named(scene) and deepest > 0.0):
+    if not (name_bodies(scene) and deepest > 0.0):
         return ()
     ratio: Any = np.sqrt(deepest / scene.pair.radius)
     one, other = semi_axes(scene.pair)
@@ -112,7 +112,7 @@ def rigid_bodies(scene: Scene) -> tuple[str, ...]:
         return ()
     from contactlab.impact.rigid_body import RigidBody  # spheres need none of this
 
-    bodies = [body for body in named(scene).values() if isinstance(body, RigidBody)]
+    bodies = [body for body in name_bodies(scene).values() if isinstance(body, RigidBody)]
     if not bodies:
         return ()
     shortest = _least(hertz_scales(scene).duration)
@@ -143,7 +143,7 @@ def yielding(scene: Scene, peak: Real | None = None) -> tuple[str, ...]:
     """
     stresses: dict[str, Any] = {
         name: body.material.yield_stress
-        for name, body in named(scene).items()
+        for name, body in name_bodies(scene).items()
         if body.material.yield_stress is not None
     }
     if not stresses:
@@ -172,7 +172,7 @@ def yield_unknown(scene: Scene) -> tuple[str, Any, Real]:
     The words are empty if all bodies have one.
     """
     where: dict[str, Any] = {}
-    for name, body in named(scene).items():
+    for name, body in name_bodies(scene).items():
         stress = body.material.yield_stress
         missing = np.asarray(True if stress is None else np.isnan(stress))
         if missing.any():
@@ -215,7 +215,7 @@ def tabor_caution(
     )
 
 
-def named(scene: Scene) -> dict[str, Any]:
+def name_bodies(scene: Scene) -> dict[str, Any]:
     """Return the bodies of a scene by the name of their argument; none of a scene of numbers.
 
     A batch with targets of several kinds has no target.
@@ -231,7 +231,7 @@ def named(scene: Scene) -> dict[str, Any]:
 def unit_slips(scene: Scene) -> list[str]:
     """Return one sentence for each number of ``scene`` that is probably in another unit."""
     slips = []
-    for name, body in named(scene).items():
+    for name, body in name_bodies(scene).items():
         density, modulus = body.material.density, _least(body.material.shear_modulus)
         radius = _most(body.radius) if isinstance(body, Sphere) else 0.0
         if radius >= LARGE_RADIUS:
@@ -290,7 +290,7 @@ def _like_radians(scene: Scene) -> bool:
 
 def unlikely(scene: Scene) -> list[str]:
     """Return one sentence for each number of ``scene`` that few contacts have."""
-    bodies = named(scene)
+    bodies = name_bodies(scene)
     if not bodies:
         return []
     from contactlab.impact.body_cautions import shells  # numbers without bodies need none of this

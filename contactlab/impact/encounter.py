@@ -26,7 +26,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.arrays import every
 from contactlab.numeric.checks import NON_NEGATIVE, first_of, instance, quantity, refuse
-from contactlab.numeric.names import arguments_stated
+from contactlab.numeric.names import state_arguments
 from contactlab.numeric.types import Array, Index, Numbers, Real
 from contactlab.numeric.vectors import (
     LEAST,
@@ -53,7 +53,7 @@ _DIMENSIONS = attrgetter(*(f"{name}.ndim" for name in GIVEN))
 _pair_of = lru_cache(maxsize=16)(Pair.of)
 
 
-@arguments_stated
+@state_arguments
 @attrs.frozen(init=False)
 class Encounter:
     """Two bodies at first touch, or a batch of such pairs, by vectors in SI units.

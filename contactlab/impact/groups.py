@@ -94,7 +94,7 @@ def entries(
     pair["tangential_mass"] = 0.5 * kappa / mean
     if squared is None or not (in_space or np.any(drag)):
         return scene | {"tangential_velocity": incidence * mu / kappa, "pair": Pair(**pair)}
-    slip, W = _scaled(mu, kappa, cross, incidence, inertia, drag, in_space)
+    slip, W = _scale(mu, kappa, cross, incidence, inertia, drag, in_space)
     return scene | {
         "tangential_velocity": slip,
         "pair": Pair(**pair),
@@ -165,7 +165,7 @@ def _friction_and_stiffness(
     return plain(np.sqrt(squared * kappa)), kappa
 
 
-def _scaled(
+def _scale(
     mu: Real, kappa: Real, cross: Real, psi1: Real, chi: Real, lam: Real, in_space: bool
 ) -> tuple[Any, Array]:
     """Return slip velocity and inverse mass in units with v1 = R = C = 1/W_nn = 1."""

@@ -9,7 +9,7 @@ import numpy as np
 from contactlab.numeric.arrays import chosen, every, quotient
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array, Real, Rows, Vector
-from contactlab.numeric.vectors import hypotenuse, rows, solved, square_root
+from contactlab.numeric.vectors import hypotenuse, rows, solve_tensor, square_root
 
 #: Smallest over largest eigenvalue of an inverse mass, scaled to ones on the diagonal, that is
 #: told from zero.
@@ -25,7 +25,7 @@ CENTRAL, PLANAR, SPATIAL = 0, 1, 2
 
 def check(inverse: Array) -> None:
     """Refuse a W that is not positive definite."""
-    if every(_well_conditioned(rows(inverse))):
+    if every(_is_definite(rows(inverse))):
         return
     with np.errstate(all="ignore"):
         diagonal = np.sqrt(np.einsum("...ii->...i", inverse))
@@ -36,7 +36,7 @@ def check(inverse: Array) -> None:
 
 
 @np.errstate(all="ignore")
-def _well_conditioned(tensor: Rows) -> Any:
+def _is_definite(tensor: Rows) -> Any:
     """Return where W is positive definite without a look at its eigenvalues, which takes longer."""
     x: Any  # checkers know no type of abs of a number or an array
     y: Any
@@ -83,7 +83,7 @@ def ways(tensor: Rows, speed: Real, slip: Vector, cross_stiffness_ratio: Real = 
 
 def impulse(inverse: Array, change: Vector) -> tuple[Any, Any, Any]:
     """Return the impulse on the target in N s that makes a change of velocity, by components."""
-    p, q, r = solved(rows(inverse), change)
+    p, q, r = solve_tensor(rows(inverse), change)
     return -p, -q, -r
 
 

@@ -12,7 +12,7 @@ from contactlab.impact.bodies import Pair, size_ratio
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.arrays import chosen, quotient
 from contactlab.numeric.types import Array, Real
-from contactlab.numeric.vectors import components, dot, entry, hypotenuse, joined, rows
+from contactlab.numeric.vectors import components, dot, entry, hypotenuse, join_components, rows
 
 #: Groups of theory §14, where friction changes the approach.
 COUPLED = ("lam", "eta", "rho")
@@ -150,13 +150,15 @@ class Motions:
         if not self.planar:
             along = components(inverse_mass.unit_slip(self.slip_velocity))
             mass = 1.0 / inverse_mass.along(rows(self.inverse_mass), *along)
-            pair = batch.changed(pair, tangential_mass=batch.locked(mass))
+            pair = batch.change_entries(pair, tangential_mass=batch.lock_arrays(mass))
         slip = batch.spread(slip_speed(self) if not self.planar else self.slip_velocity, self.shape)
         return self._with(tangential_velocity=slip, pair=pair, inverse_mass=None, planar=True)
 
     def _with(self, **entries: object) -> Self:
         """Return this scene with other entries, of numbers that were checked before."""
-        return batch.changed(self, **{name: batch.locked(each) for name, each in entries.items()})
+        return batch.change_entries(
+            self, **{name: batch.lock_arrays(each) for name, each in entries.items()}
+        )
 
     def _ways(self) -> Any:
         """Return the way in which each impact is solved."""
@@ -171,14 +173,16 @@ class Motions:
         if way == inverse_mass.SPATIAL or self.planar:
             return self
         W: Any = self.inverse_mass
-        pair = batch.changed(self.pair, tangential_mass=batch.locked(1.0 / entry(W, 1, 1)))
+        pair = batch.change_entries(
+            self.pair, tangential_mass=batch.lock_arrays(1.0 / entry(W, 1, 1))
+        )
         slip = batch.spread(self.slip_velocity[..., 0], self.shape)
         return self._with(tangential_velocity=slip, pair=pair, planar=True)
 
     @property
     def velocity(self) -> Array:
         """Approach and slip at first touch along n, t1 and t2, shape (..., 3), in m/s."""
-        return joined(self._components(self.normal_speed, self.slip_velocity), self.shape)
+        return join_components(self._components(self.normal_speed, self.slip_velocity), self.shape)
 
     def _components(self, approach: Real, slip: Any) -> tuple[Any, Any, Any]:
         """Return rates along n and slip velocities as components along n, t1 and t2."""
@@ -371,9 +375,9 @@ def impulse(scene: Motions, rate: Real, change: Real) -> Array:
     if scene.inverse_mass is None:
         push = scene.pair.normal_mass * (scene.normal_speed - rate)
         drag = -scene.pair.tangential_mass * change
-        return joined((push, drag, 0.0), scene.shape)
+        return join_components((push, drag, 0.0), scene.shape)
     moved = scene._components(rate - scene.normal_speed, change)
-    return joined(inverse_mass.impulse(scene.inverse_mass, moved), scene.shape)
+    return join_components(inverse_mass.impulse(scene.inverse_mass, moved), scene.shape)
 
 
 def energies(scene: Motions, rate: Real, change: Real) -> tuple[Any, Any, Any]:

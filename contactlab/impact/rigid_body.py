@@ -22,7 +22,7 @@ from contactlab.numeric.checks import (
     real,
     refuse,
 )
-from contactlab.numeric.names import arguments_stated
+from contactlab.numeric.names import state_arguments
 from contactlab.numeric.types import Array, Either, Index, Numbers, Real
 from contactlab.numeric.vectors import components, dot
 
@@ -100,14 +100,14 @@ def _flat(value: object) -> Any:
     return np.isinf(array) if known else False
 
 
-def _curved(default: object = attrs.NOTHING) -> Any:
+def _curvature_field(default: object = attrs.NOTHING) -> Any:
     """Return an attrs field for a radius of curvature."""
     converter = attrs.Converter(_radius, takes_field=True)
     metadata = {"unit": "m", "range": CURVED.sentence}
     return attrs.field(default=default, converter=converter, eq=key, metadata=metadata)
 
 
-@arguments_stated
+@state_arguments
 @attrs.frozen(kw_only=True, init=False)
 class RigidBody:
     """A body of any shape that is elastic at its contact only.
@@ -155,10 +155,10 @@ class RigidBody:
     material: Material = instance(
         Material, remedy="make one, Material(...), or by its name: Material.named('steel')"
     )
-    curvature_radius: Either = _curved()
+    curvature_radius: Either = _curvature_field()
     principal: Any = _array("kg m²", (3,))
     axes: Any = _array("1", (3, 3))
-    cross_radius: Either = _curved(default=None)
+    cross_radius: Either = _curvature_field(default=None)
     curvature_axis: Any = _array("1", (3,))
     bending_period: Either = quantity("s", rule=POSITIVE, default=None, unknown=True)
     #: Inertia about the centre of mass, in kg m², shape (..., 3, 3), whatever was given.

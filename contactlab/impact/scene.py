@@ -26,7 +26,7 @@ from contactlab.numeric.checks import (
     refuse,
     whole,
 )
-from contactlab.numeric.names import arguments_stated
+from contactlab.numeric.names import state_arguments
 from contactlab.numeric.types import Array, Numbers, Real
 from contactlab.numeric.vectors import entry, over
 
@@ -51,10 +51,10 @@ def _tensors(value: Numbers | None) -> Array | None:
         return None
     if type(value) is not np.ndarray or value.dtype != np.float64:
         value = real("inverse_mass", value, remedy="in 1/kg, shape (..., 3, 3)", empty=True)
-    return np.asarray(batch.locked(np.array(value, dtype=np.float64)))
+    return np.asarray(batch.lock_arrays(np.array(value, dtype=np.float64)))
 
 
-@arguments_stated
+@state_arguments
 @attrs.frozen(init=False)
 class Scene(Batches):
     """One oblique impact, or a batch of them, in SI units.
@@ -193,7 +193,7 @@ class Scene(Batches):
         if 0 in shape:
             raise refuse("shape", shape, "a scene must hold at least one impact")
         object.__setattr__(self, "shape", shape)
-        index = batch.locked(np.arange(math.prod(shape)).reshape(shape)) if shape else 0
+        index = batch.lock_arrays(np.arange(math.prod(shape)).reshape(shape)) if shape else 0
         object.__setattr__(self, "_index", index)
         if self.inverse_mass is not None:
             self._check_inverse_mass()
@@ -226,7 +226,7 @@ class Scene(Batches):
             given = np.asarray(getattr(self, name))
             if given.shape[-len(trailing) :] != trailing:
                 raise refuse(f"{name}.shape", given.shape, f"must end with {trailing}")
-            object.__setattr__(self, name, batch.locked(over(given, (*self.shape, *trailing))))
+            object.__setattr__(self, name, batch.lock_arrays(over(given, (*self.shape, *trailing))))
         W: Any = self.inverse_mass
         inverse_mass.check(W)
         normal, along, across = (entry(W, k, k) for k in range(3))
@@ -234,8 +234,8 @@ class Scene(Batches):
         masses = {"normal_mass": 1.0 / normal, "tangential_mass": 1.0 / tangential}
         if not self.shape and [getattr(self.pair, name) for name in masses] == [*masses.values()]:
             return  # as of any two bodies
-        masses = {name: batch.locked(mass) for name, mass in masses.items()}
-        object.__setattr__(self, "pair", batch.changed(self.pair, **masses))
+        masses = {name: batch.lock_arrays(mass) for name, mass in masses.items()}
+        object.__setattr__(self, "pair", batch.change_entries(self.pair, **masses))
 
     def numbers(self) -> dict[str, Real]:
         """Return every number of the scene and of its pair, by name."""

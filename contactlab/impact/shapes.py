@@ -18,7 +18,7 @@ import numpy as np
 
 from contactlab.impact.material import Material
 from contactlab.impact.rigid_body import RigidBody
-from contactlab.numeric.arrays import locked
+from contactlab.numeric.arrays import lock_arrays
 from contactlab.numeric.checks import POSITIVE, real, refuse
 from contactlab.numeric.names import SHAPES, function_told
 from contactlab.numeric.types import Array, Numbers, Real
@@ -57,7 +57,7 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(f"shapes has no attribute {name!r}; {told}it has {', '.join(__all__)}")
 
 
-def _posed(one: Maker) -> Maker:
+def _pose_each(one: Maker) -> Maker:
     """Return a function of one pose as one of many."""
 
     @functools.wraps(one)
@@ -81,14 +81,12 @@ def _posed(one: Maker) -> Maker:
                 made.append(one(**given | {name: array[index] for name, array in each.items()}))
             except ValueError as error:
                 raise ValueError(f"pose {', '.join(map(str, index))}: {error}") from None
-        return _stacked(made, shape)
+        return _stack(made, shape)
 
     return posed  # type: ignore[return-value]
 
 
-def _stacked(
-    made: list[tuple[RigidBody, Array]], shape: tuple[int, ...]
-) -> tuple[RigidBody, Array]:
+def _stack(made: list[tuple[RigidBody, Array]], shape: tuple[int, ...]) -> tuple[RigidBody, Array]:
     """Return poses of one body as a batch, with their contacts."""
     bodies = RigidBody.alike([body for body, _ in made])
     columns: dict[str, Any] = {
@@ -104,7 +102,7 @@ def _stacked(
 
 
 @function_told
-@_posed
+@_pose_each
 def rod(
     *,
     length: float,
@@ -160,7 +158,7 @@ def rod(
         rule = "contact on the sharp edge of the dome: no curvature"
         raise refuse("normal", outward, rule, "tilt the rod less, or take a smaller end_radius")
     contact = radius * outward if side else along * (0.5 * length - end) + end * outward
-    volume, lengthwise, across = _revolved(length, radius, end, dome)
+    volume, lengthwise, across = _revolve(length, radius, end, dome)
     mass = _mass(mass, material, volume)
     density: Any = mass / volume
     inner: Any = 0.0
@@ -179,7 +177,7 @@ def rod(
 
 
 @function_told
-@_posed
+@_pose_each
 def disc(
     *,
     radius: float,
@@ -240,7 +238,7 @@ def disc(
         contact, lengthwise = (radius - rim) * aside + straight * along + rim * outward, rim
     around = float(contact @ aside) / cosine
     tangent = (outward * sine - along) / cosine  # along the side, across the rim
-    volume, own, across = _rimmed(radius, straight, rim)
+    volume, own, across = _round_rim(radius, straight, rim)
     mass = _mass(mass, material, volume)
     body = RigidBody(
         mass=mass,
@@ -253,7 +251,7 @@ def disc(
 
 
 @function_told
-@_posed
+@_pose_each
 def box(
     *,
     sides: Numbers,
@@ -317,7 +315,7 @@ def box(
         contact = np.sign(across) * (0.5 * edges - corner) + corner * across
         contact = contact + crown * (outward - across)
         curvature = _two(crown, corner, turn @ direction)
-    volume, squares = _rounded(0.5 * edges - corner, corner)
+    volume, squares = _round_box(0.5 * edges - corner, corner)
     mass = _mass(mass, material, volume)
     gyration = float(edges.min()) / math.sqrt(12.0)
     body = RigidBody(
@@ -332,7 +330,7 @@ def box(
 
 
 @function_told
-@_posed
+@_pose_each
 def ellipsoid(
     *,
     semi_axes: Numbers,
@@ -399,7 +397,7 @@ def _bending(
     return 2.0 * math.pi * length * length / (number * speed)
 
 
-def _rounded(half: Array, r: float) -> tuple[float, Array]:
+def _round_box(half: Array, r: float) -> tuple[float, Array]:
     """Return volume, and mean squares of x, y, z, of all points within r of a box.
 
     ``half`` are the half-lengths of that inner box. The parts are the box itself, slabs on its
@@ -421,10 +419,10 @@ def _rounded(half: Array, r: float) -> tuple[float, Array]:
 def _gauss(count: int) -> tuple[Array, Array]:
     """Return points and weights of Gauss's rule on [-1, 1]."""
     points, weights = np.polynomial.legendre.leggauss(count)
-    return locked(points), locked(weights)
+    return lock_arrays(points), lock_arrays(weights)
 
 
-def _revolved(length: float, radius: float, end: float, dome: float) -> tuple[float, float, float]:
+def _revolve(length: float, radius: float, end: float, dome: float) -> tuple[float, float, float]:
     """Return volume, and moments over mass along and across the axis, of a domed cylinder."""
     # r² is of second degree in z on each part: three Gauss points integrate r⁴ and z² r² exactly.
     points, weights = _gauss(3)
@@ -438,7 +436,7 @@ def _revolved(length: float, radius: float, end: float, dome: float) -> tuple[fl
     return volume, lengthwise, 0.5 * lengthwise + math.pi * float(share @ (z * z * square)) / volume
 
 
-def _rimmed(radius: float, straight: float, rim: float) -> tuple[float, float, float]:
+def _round_rim(radius: float, straight: float, rim: float) -> tuple[float, float, float]:
     """Return volume, and moments over mass along and across the axis, of a rounded disc."""
     points, weights = _gauss(RIM_POINTS)
     angle = 0.25 * math.pi * (1.0 + points)

@@ -31,7 +31,7 @@ def keep_freed_memory() -> None:
     np.empty(RELEASED)
 
 
-def locked(value: Tree) -> Tree:
+def lock_arrays(value: Tree) -> Tree:
     """Return ``value``; an array is made read-only."""
     if isinstance(value, np.ndarray):
         value.setflags(write=False)
@@ -50,7 +50,7 @@ def common_shape(shapes: Mapping[str, tuple[int, ...]], *, what: str, remedy: st
         raise ValueError(f"{what} of {named} must broadcast to one; {remedy}") from None
 
 
-def stacked(items: Sequence[Any]) -> Any:
+def stack_trees(items: Sequence[Any]) -> Any:
     """Return one tree; leaves that differ become arrays of shape (items,)."""
     first = items[0]
     if all(item is first for item in items):
@@ -66,7 +66,7 @@ def stacked(items: Sequence[Any]) -> Any:
         names = {field.alias: field.name for field in attrs.fields(type(first)) if field.init}
         return type(first)(
             **{
-                alias: stacked([getattr(item, name) for item in items])
+                alias: stack_trees([getattr(item, name) for item in items])
                 for alias, name in names.items()
             }
         )
@@ -83,7 +83,7 @@ def taken(tree: Any, shape: tuple[int, ...], part: Index) -> Any:
     if isinstance(tree, np.ndarray):
         spread = tree.shape != shape and tree.ndim <= len(shape)
         numbers = (np.broadcast_to(tree, shape) if spread else tree)[part]
-        return numbers.item() if isinstance(numbers, np.generic) else locked(numbers)
+        return numbers.item() if isinstance(numbers, np.generic) else lock_arrays(numbers)
     if isinstance(tree, float):
         return tree
     if attrs.has(type(tree)):
@@ -97,7 +97,7 @@ def taken(tree: Any, shape: tuple[int, ...], part: Index) -> Any:
     return tree
 
 
-def changed(tree: Tree, **entries: object) -> Tree:
+def change_entries(tree: Tree, **entries: object) -> Tree:
     """Return a copy of a tree with other entries, none of which is checked again."""
     kind: Any = type(tree)
     copy: Tree = object.__new__(kind)
@@ -136,7 +136,7 @@ def equal(one: Any, other: Any) -> bool:
     return bool(one == other or (one != one and other != other))
 
 
-def merged(
+def merge_parts(
     parts: Sequence[tuple[slice | Mask, ArrayLike]],
     shape: tuple[int, ...],
     kind: type | np.dtype[np.generic] = float,
@@ -199,7 +199,7 @@ def plain(value: Real) -> Any:
     return value if getattr(value, "ndim", 0) else float(value)
 
 
-def shaped(values: AnyArray, shape: tuple[int, ...]) -> Any:
+def shape_as(values: AnyArray, shape: tuple[int, ...]) -> Any:
     """Return numbers of shape (items,) in the shape of the batch, or that of one impact."""
     return values.reshape(shape) if shape else values.item()
 
@@ -214,7 +214,7 @@ def greater(one: Real, other: float) -> Any:
     return max(one, other) if isinstance(one, float) else np.maximum(one, other)
 
 
-def filled(value: object, shape: tuple[int, ...]) -> Any:
+def spread_object(value: object, shape: tuple[int, ...]) -> Any:
     """Return ``value`` for one impact, or an object array of ``shape`` filled with it."""
     return np.full(shape, value, dtype=object) if shape else value
 

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, TypeVar
 import attrs
 import numpy as np
 
-from contactlab.numeric.labels import misplaced
+from contactlab.numeric.labels import forbid_position
 from contactlab.numeric.taken import Taken
 from contactlab.numeric.types import Array, Numbers, Places, Real
 
@@ -84,10 +84,10 @@ def of_kind(
     for kind, told in (meant or {}).items():
         if isinstance(value, kind):
             remedy = told.format(value=value)
-    raise refuse(argument, value, rule or f"must be {_named(kinds)}", remedy)
+    raise refuse(argument, value, rule or f"must be {_name_kinds(kinds)}", remedy)
 
 
-def _named(kinds: tuple[type, ...]) -> str:
+def _name_kinds(kinds: tuple[type, ...]) -> str:
     """Return "a HalfSpace or a Sphere"."""
     names = (kind.__name__ for kind in kinds)
     return " or ".join(f"{'an' if name[0] in 'AEIOU' else 'a'} {name}" for name in names)
@@ -156,7 +156,7 @@ def derived(name: str, value: object, remedy: str, **given: object) -> Real:
 def check_place(argument: str, value: object) -> None:
     """Refuse an array whose labels, unit or mask would be lost, or that has no numbers yet."""
     try:
-        why = misplaced(value)
+        why = forbid_position(value)
     except TypeError as error:  # of sparse tensors
         raise refuse(argument, value, f"cannot be read by NumPy: {error}") from error
     if why:
@@ -168,7 +168,7 @@ def first_of(where: Places) -> str:
     return f" (the first of {len(where)} has index {where[0].tolist()})" if where.shape[1] else ""
 
 
-def paired(first: str, second: str, values: tuple[Real, Real]) -> tuple[Any, Any]:
+def pair_up(first: str, second: str, values: tuple[Real, Real]) -> tuple[Any, Any]:
     """Return two quantities as arrays of one shape, or refuse shapes that do not broadcast."""
     if np.ndim(values[0]) and np.shape(values[0]) == np.shape(values[1]):
         return values  # broadcasting is slower than this comparison
@@ -201,7 +201,9 @@ def unit_remedy(unit: str) -> str:
     return "it has no unit" if unit == "1" else f"give it in {unit}"
 
 
-def _checked(value: Numbers | None, owner: object, field: attrs.Attribute[object]) -> Real | None:
+def _check_field(
+    value: Numbers | None, owner: object, field: attrs.Attribute[object]
+) -> Real | None:
     """Return the checked value of a field of ``owner``, the object that is being made."""
     if value is None and field.default is None:
         return None
@@ -280,7 +282,7 @@ def quantity(
     return attrs.field(
         default=default,
         **keywords,
-        converter=attrs.Converter(_checked, takes_self=True, takes_field=True),
+        converter=attrs.Converter(_check_field, takes_self=True, takes_field=True),
         eq=key,
         metadata={
             "unit": unit,
@@ -294,7 +296,7 @@ def quantity(
 
 def instance(*kinds: type, remedy: str = "", optional: bool = False, **field: Any) -> Any:
     """Return an attrs field that accepts objects of the classes ``kinds``; None too if optional."""
-    rule = f"must be {_named(kinds)}"
+    rule = f"must be {_name_kinds(kinds)}"
 
     def validate(_: object, field: attrs.Attribute[object], value: object) -> None:
         if not (isinstance(value, kinds) or (optional and value is None)):

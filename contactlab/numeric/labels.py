@@ -60,12 +60,12 @@ def numbers_of(value: Any) -> Any:
         return None
 
 
-def numbered(index: Sized) -> bool:
+def counts_rows(index: Sized) -> bool:
     """Return whether an index of pandas counts 0, 1, 2, ...: then position and label are one."""
     return bool(np.array_equal(np.asarray(index), np.arange(len(index))))
 
 
-def misplaced(value: Any) -> tuple[str, str] | None:
+def forbid_position(value: Any) -> tuple[str, str] | None:
     """Return why ``value`` must not be read by position, and the remedy; None for other values.
 
     A ``DataArray`` without dimensions is a number, and so is an entry of one. A ``Series`` whose
@@ -81,7 +81,7 @@ def misplaced(value: Any) -> tuple[str, str] | None:
     if library == "pandas":
         if value.ndim > 1:
             return OF_COLUMNS
-        if not numbered(value.index):
+        if not counts_rows(value.index):
             rule = "has an index other than 0, 1, 2, ..., but arrays are paired by position here"
             return rule, "give numbers in the order that is meant: .to_numpy()"
     if library in ("jax", "torch") and numbers_of(value) is None:

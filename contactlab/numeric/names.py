@@ -94,7 +94,7 @@ def arguments_told(made: Class) -> Class:
     return _telling(made, vars(made)["__init__"])
 
 
-def arguments_stated(made: Class) -> Class:
+def state_arguments(made: Class) -> Class:
     """Return a class of ``arguments_told`` whose ``__init__`` states arguments only.
 
     Type checkers and readers see that method, attrs takes the arguments: no checker sees what the

@@ -60,21 +60,21 @@ def attempt(
     spread = np.broadcast_to(width, begin.shape).reshape(-1)
     end = flat
     for stage, weights in enumerate(tableau.stages):
-        values = flat + spread * _summed(weights, slopes)
+        values = flat + spread * _sum(weights, slopes)
         slopes[stage] = slope(values.reshape(begin.shape)).reshape(-1)
         if stage == count - 1:
             end = values
     scale = tolerance * (1.0 + np.maximum(np.abs(flat), np.abs(end)))
     fifth, third = (
-        np.square(_summed(each, slopes) / scale).reshape(begin.shape).sum(axis=0)
+        np.square(_sum(each, slopes) / scale).reshape(begin.shape).sum(axis=0)
         for each in (tableau.fifth, tableau.third)
     )
     squared = fifth + LOWER * third
     error = width * fifth / np.sqrt(np.where(squared > 0.0, squared, 1.0))
     gained, first, last = end - flat, spread * slopes[0], spread * slopes[count - 1]
     parts = [gained, first - gained, 2.0 * gained - first - last]
-    parts += [spread * _summed(weights, slopes) for weights in tableau.dense]
-    course = flat + _summed(_basis(points.tobytes()), np.array(parts)[:, None])
+    parts += [spread * _sum(weights, slopes) for weights in tableau.dense]
+    course = flat + _sum(_basis(points.tobytes()), np.array(parts)[:, None])
     return Attempt(np.where(np.isnan(squared), np.nan, error), course.reshape(-1, *begin.shape))
 
 
@@ -178,7 +178,7 @@ def _plain() -> _Plain:
     return _Plain(stages[1:count], stages[count:], *ends)
 
 
-def _summed(weights: Array, values: Array) -> Array:
+def _sum(weights: Array, values: Array) -> Array:
     """Return the weighted sum along the first axis.
 
     The order of summation does not depend on the number of systems. In a product of matrices the

@@ -30,13 +30,13 @@ def vector(unit: str, *, default: object = attrs.NOTHING) -> Any:
     return attrs.field(
         default=default,
         kw_only=True,
-        converter=attrs.Converter(_checked, takes_field=True),
+        converter=attrs.Converter(_check_vectors, takes_field=True),
         eq=key,
         metadata={"unit": unit},
     )
 
 
-def _checked(value: Numbers, field: attrs.Attribute[object]) -> Array:
+def _check_vectors(value: Numbers, field: attrs.Attribute[object]) -> Array:
     """Return vectors, shape (..., 3), as a read-only copy."""
     if value is NOTHING:
         return ZERO
@@ -93,13 +93,13 @@ def components(vectors: Array) -> tuple[Any, ...]:
     return tuple(np.ascontiguousarray(np.moveaxis(vectors, -1, 0)))
 
 
-def joined(components: Vector | Rows, shape: tuple[int, ...]) -> Array:
+def join_components(components: Vector | Rows, shape: tuple[int, ...]) -> Array:
     """Return vectors of a batch ``shape`` by their components, or tensors by their rows."""
     if not shape:
         return np.array(components)
     parts: Any = components
     if isinstance(components[0], Sequence):
-        return np.stack([joined(row, shape) for row in parts], axis=len(shape))
+        return np.stack([join_components(row, shape) for row in parts], axis=len(shape))
     return np.stack([np.broadcast_to(each, shape) for each in parts], axis=-1)
 
 
@@ -120,7 +120,7 @@ def dot(one: Vector, other: Vector) -> Any:
     return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
 
 
-def solved(tensor: Rows, vector: Vector) -> tuple[Any, Any, Any]:
+def solve_tensor(tensor: Rows, vector: Vector) -> tuple[Any, Any, Any]:
     """Return A⁻¹ b, A symmetric (the mean with Aᵀ) and positive definite: L D Lᵀ needs no pivot."""
     (a, p, q), (b, c, r), (d, e, f) = tensor
     b, d, e = 0.5 * (b + p), 0.5 * (d + q), 0.5 * (e + r)

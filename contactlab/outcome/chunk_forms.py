@@ -13,7 +13,7 @@ from typing import IO, Any, NamedTuple
 import numpy as np
 
 from contactlab.numeric.types import AnyArray
-from contactlab.outcome.frames import needed
+from contactlab.outcome.frames import import_optional
 
 COLUMN_OF_STATUS = "status"
 #: Compression of columns of Parquet; no checksum covers the word of a file about it.
@@ -207,7 +207,7 @@ class _ParquetColumns:
 
 def _arrow() -> tuple[Any, Any]:
     """Return the modules ``pyarrow`` and ``pyarrow.parquet``."""
-    return needed("pyarrow", "Parquet"), importlib.import_module("pyarrow.parquet")
+    return import_optional("pyarrow", "Parquet"), importlib.import_module("pyarrow.parquet")
 
 
 NPZ = Form("npz", 1, "sweep.json", "finished.json", False, _write_npz, _read_npz)

@@ -218,7 +218,7 @@ class _Quantities(Mapping[str, Column]):
 QUANTITIES = _Quantities()
 
 
-def quantity_named(name: str, *, where: str = "quantity") -> Column:
+def find_quantity(name: str, *, where: str = "quantity") -> Column:
     """Return a column of numbers by name: ``"rebound_angle"``, or ``"rebound_angle_deg"``.
 
     The components of a vector have a place behind: ``"psi2_1"``.

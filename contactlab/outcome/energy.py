@@ -127,7 +127,7 @@ def books(
     )
 
 
-def powered(motion: Motion, normal: NormalMotion) -> Motion:
+def judge_energy(motion: Motion, normal: NormalMotion) -> Motion:
     """Return ``motion`` with status ``UNBALANCED`` where the normal law alone makes energy.
 
     ``normal`` is the motion without friction; its error is small beside that of steps.
@@ -143,7 +143,7 @@ def powered(motion: Motion, normal: NormalMotion) -> Motion:
     return motion.failing(faster, Status.UNBALANCED, _sentences(sentence, parting / speed))
 
 
-def balanced(
+def judge_books(
     motion: Motion,
     scene: Scene,
     bound: Real,
@@ -169,10 +169,10 @@ def balanced(
         and _balances(motion, scene, bound, alone, gain)
     ):
         return motion, 0.0
-    return _with_unbalanced(motion, scene, np.maximum(bound, cancels), alone, gain)
+    return _mark_imbalance(motion, scene, np.maximum(bound, cancels), alone, gain)
 
 
-def contradicted(
+def raise_errors(
     columns: PlanColumns, scene: Scene, off: Real, bound: Real, cancels: float
 ) -> PlanColumns:
     """Return the columns of a plan with errors as large as books are off beyond a law's bound.
@@ -193,7 +193,7 @@ def contradicted(
 
 
 def _balances(motion: Motion, scene: Scene, bound: Real, alone: Mask, gain: Real) -> bool:
-    """Return whether the books of one impact balance: ``_with_unbalanced`` in a few floats.
+    """Return whether the books of one impact balance: ``_mark_imbalance`` in a few floats.
 
     A spin about the normal that does not change the energy has no part in them.
     """
@@ -218,7 +218,7 @@ def _balances(motion: Motion, scene: Scene, bound: Real, alone: Mask, gain: Real
 
 
 @np.errstate(all="ignore")
-def _with_unbalanced(
+def _mark_imbalance(
     motion: Motion, scene: Scene, bound: Real, alone: Mask, gain: Real
 ) -> tuple[Motion, Real]:
     """Return ``motion`` with the status of each impact whose books do not balance, and how far.

@@ -26,8 +26,8 @@ class WithLaws(WithScene, Protocol):
 
 def to_dataframe(result: WithLaws) -> Any:
     """Return a ``pandas.DataFrame``, one row for each impact: ``ImpactResult.to_dataframe``."""
-    pandas = needed("pandas", "to_dataframe")
-    columns, axes, units = _labelled(result)
+    pandas = import_optional("pandas", "to_dataframe")
+    columns, axes, units = _label_columns(result)
     if axes:
         index = pandas.MultiIndex.from_product(list(axes.values()), names=list(axes))
     else:
@@ -42,8 +42,8 @@ def to_xarray(result: WithLaws) -> Any:
 
     A batch that is not a grid has the dimension ``impact``, or ``impact_0``, ``impact_1``, ...
     """
-    xarray = needed("xarray", "to_xarray")
-    columns, axes, units = _labelled(result)
+    xarray = import_optional("xarray", "to_xarray")
+    columns, axes, units = _label_columns(result)
     dimensions, shape = tuple(axes), tuple(map(np.size, axes.values()))
     if not axes:
         shape = result.scene.shape
@@ -60,7 +60,7 @@ def to_xarray(result: WithLaws) -> Any:
     )
 
 
-def _labelled(result: WithLaws) -> tuple[dict[str, Any], dict[str, Any], dict[str, str]]:
+def _label_columns(result: WithLaws) -> tuple[dict[str, Any], dict[str, Any], dict[str, str]]:
     """Return the columns that a scene defines, of its shape, the axes of a grid, and all units."""
     scene = result.scene
     axes = dict(scene.axes)
@@ -77,7 +77,7 @@ def _labelled(result: WithLaws) -> tuple[dict[str, Any], dict[str, Any], dict[st
     return columns, axes, units
 
 
-def needed(module: str, method: str) -> Any:
+def import_optional(module: str, method: str) -> Any:
     """Return an optional module, or raise ``ImportError`` with the command that installs it."""
     try:
         return importlib.import_module(module)

@@ -15,7 +15,7 @@ from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential_motion import TangentialMotion
 from contactlab.contracts.whole_impact import WholeImpact
-from contactlab.numeric.arrays import are_zeros, chosen, finite, locked, spread, zeros
+from contactlab.numeric.arrays import are_zeros, chosen, finite, lock_arrays, spread, zeros
 from contactlab.numeric.types import Array, Either, Real
 
 #: Entries of ``Motion`` by the name of their source in a normal motion.
@@ -61,7 +61,7 @@ class Motion(TangentialMotion):
     def turned(self, along: Array) -> Self:
         """Return the motion with its slip along unit vectors of the tangent plane, (..., 2)."""
         change = np.asarray(self.slip_velocity_change)[..., None] * along
-        return attrs.evolve(self, slip_velocity_change=locked(change))
+        return attrs.evolve(self, slip_velocity_change=lock_arrays(change))
 
     @classmethod
     def along(
@@ -102,21 +102,23 @@ class Motion(TangentialMotion):
         entries: dict[str, Any] = {name: getattr(normal, source) for name, source in ENDS.items()}
         entries |= {"exchange": 0.0, "compressions": 1.0}
         if tangential.normal is not None:
-            entries |= _coupled(normal, tangential, entries)
+            entries |= _gather_ends(normal, tangential, entries)
         entries["friction_work"] = tangential.friction_work
         entries["shear_loss"] = tangential.shear_loss
         change, turned = tangential.slip_velocity_change, tangential.normal_spin_change
         return cls(
-            normal_spin_change=zeros(shape) if are_zeros(turned) else locked(spread(turned, shape)),
-            **{name: locked(spread(value, shape)) for name, value in entries.items()},
-            slip_velocity_change=locked(spread(change, (*shape, *axes))),
-            status=locked(tangential.status),
-            detail=locked(tangential.detail),
+            normal_spin_change=zeros(shape)
+            if are_zeros(turned)
+            else lock_arrays(spread(turned, shape)),
+            **{name: lock_arrays(spread(value, shape)) for name, value in entries.items()},
+            slip_velocity_change=lock_arrays(spread(change, (*shape, *axes))),
+            status=lock_arrays(tangential.status),
+            detail=lock_arrays(tangential.detail),
             counters=tangential.counters,
         )
 
 
-def _coupled(
+def _gather_ends(
     normal: NormalMotion, tangential: TangentialMotion | WholeImpact, entries: Mapping[str, Real]
 ) -> Mapping[str, Real]:
     """Return the entries of the normal motion that came of the friction, and the exchange."""
@@ -190,5 +192,5 @@ def without_failures(motion: Motion) -> Motion:
         value = np.asarray(getattr(motion, name))
         trailing = value.shape[len(shape) :]
         kept = np.where(good.reshape((*shape, *(1 for _ in trailing))), value, math.nan)
-        numbers[name] = locked(spread(kept, (*shape, *trailing)))
+        numbers[name] = lock_arrays(spread(kept, (*shape, *trailing)))
     return attrs.evolve(motion, **numbers)

@@ -12,7 +12,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.numeric.arrays import consecutive, every, merged, share, some, taken
+from contactlab.numeric.arrays import consecutive, every, merge_parts, share, some, taken
 from contactlab.numeric.types import Index, Real
 from contactlab.outcome.columns import json_value
 
@@ -92,11 +92,11 @@ class PlanColumns(NamedTuple):
             numbers = [reasons.index(reason) for reason in part.reasons]
             codes.append((where, np.array([*numbers, UNKNOWN, ENDLESS, MARCHED])[part.code]))
         errors = (
-            merged([(where, getattr(part, name)) for where, part in parts], shape)
+            merge_parts([(where, getattr(part, name)) for where, part in parts], shape)
             for name in ("psi2_error", "restitution_error")
         )
         psi2_error, restitution_error = errors
-        return cls(merged(codes, shape, np.int16), psi2_error, reasons, restitution_error)
+        return cls(merge_parts(codes, shape, np.int16), psi2_error, reasons, restitution_error)
 
     def take(self, part: Index) -> PlanColumns:
         """Return the columns of some impacts of a batch."""
@@ -298,11 +298,11 @@ class Plan:
         """Return the plan of a batch of ``shape`` from places and the plans of parts."""
         columns = PlanColumns.merged([(where, plan.columns) for where, plan in parts], shape)
         said = ([(where, getattr(plan, kind)) for where, plan in parts] for kind in KINDS)
-        words: Any = tuple(_merged(clauses, shape) for clauses in said)
+        words: Any = tuple(_merge_clauses(clauses, shape) for clauses in said)
         return cls(columns, words)
 
 
-def _merged(parts: Parts[Clauses], shape: tuple[int, ...]) -> Clauses:
+def _merge_clauses(parts: Parts[Clauses], shape: tuple[int, ...]) -> Clauses:
     """Return the clauses of all parts; those of the same text and code are one."""
     same: dict[tuple[str, str], Clause] = {}
     for place, clauses in parts:

@@ -213,9 +213,9 @@ class ImpactResult(Answer, Generic[Each]):
         encounter, axes = self.scene.encounter, self.scene.frame
         if axes is None:
             return None
-        from contactlab.impact.body_contact import pushed  # spheres need none of this
+        from contactlab.impact.body_contact import push_bodies  # spheres need none of this
 
-        return pushed(encounter, axes, self.impulse, self.couple)[name]
+        return push_bodies(encounter, axes, self.impulse, self.couple)[name]
 
     @property
     def rebound_spin(self) -> Each | Any:

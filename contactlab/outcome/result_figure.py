@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from contactlab.impact.scene import entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array, Places, Real
-from contactlab.outcome.columns import quantity_named, unit_in
+from contactlab.outcome.columns import find_quantity, unit_in
 from contactlab.outcome.history import WithHistory, scaled_forces
 from contactlab.outcome.history_figure import on_axes
 from contactlab.outcome.plan import Plan
@@ -143,12 +143,12 @@ def _path(axes: Axes, result: Drawn) -> Axes:
 def _quantities(axes: Axes, result: Drawn, x: str, y: str) -> Axes:
     """Draw one quantity of a batch over another: a curve, or points if abscissas repeat."""
     scene = result.scene
-    up = quantity_named(y, where="y")
+    up = find_quantity(y, where="y")
     ordinate = up.of(result).ravel()
     if x in scene.varied:
         abscissa, unit = np.ravel(scene.varied[x]), entry_unit(x)
     else:
-        across = quantity_named(x, where="x")
+        across = find_quantity(x, where="x")
         abscissa, unit = across.of(result).ravel(), unit_in(across.unit, scene)
     for where, name, values in (("x", x, abscissa), ("y", y, ordinate)):
         if np.isnan(values).all():

@@ -111,9 +111,9 @@ def _range(value: Real) -> str:
 def sections(result: ImpactResult) -> list[Section]:
     """Return velocities, contact and energy of one impact, without undefined rows."""
     return [
-        _defined(result, ["", "before", "after", "unit"], _velocities(result)),
-        _defined(result, ["contact", "value", "unit"], _contact(result)),
-        _defined(result, ["energy", "value", "unit"], _energy(result)),
+        _drop_gaps(result, ["", "before", "after", "unit"], _velocities(result)),
+        _drop_gaps(result, ["contact", "value", "unit"], _contact(result)),
+        _drop_gaps(result, ["energy", "value", "unit"], _energy(result)),
     ]
 
 
@@ -198,7 +198,7 @@ def heading(name: str, unit: str) -> str:
     return name if unit == "1" else f"{name} ({unit})"
 
 
-def _defined(result: ImpactResult, headings: list[str], rows: list[Row]) -> Section:
+def _drop_gaps(result: ImpactResult, headings: list[str], rows: list[Row]) -> Section:
     """Return a section without undefined rows; the unit is 1 if the scene has no bodies."""
     shown = []
     for *cells, unit in rows:

@@ -22,7 +22,7 @@ def table(headings: Sequence[str], rows: Sequence[Sequence[object]], *, digits: 
     head = [[heading] for heading in headings]
     if sum(_widths([head, *body])) + 2 * len(head) > WIDTH:
         narrow = _widths(body) if body else [0] * len(head)
-        head = [_folded(heading, width) for heading, width in zip(headings, narrow, strict=True)]
+        head = [_fold(heading, width) for heading, width in zip(headings, narrow, strict=True)]
         if body and texts[-1]:
             room = max(WIDTH - sum(_widths([head, *body])[:-1]) - 2 * len(head), LEAST_TEXT)
             for row in body:
@@ -54,7 +54,7 @@ def _widths(rows: Sequence[Sequence[Sequence[str]]]) -> list[int]:
     ]
 
 
-def _folded(heading: str, width: int) -> list[str]:
+def _fold(heading: str, width: int) -> list[str]:
     """Return a heading in lines about as wide as its column, split at underscores and blanks."""
     words = re.findall(r"[^_ ]+_?|_", heading)
     lines: list[str] = []

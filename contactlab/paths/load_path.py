@@ -18,12 +18,12 @@ from contactlab.contracts.tangential import SteppedTangentialLaw, TangentialLaw
 from contactlab.impact.cautions import of_ellipse, path_cautions
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import locked
+from contactlab.numeric.arrays import lock_arrays
 from contactlab.numeric.checks import Rule, of_kind, real, refuse
 from contactlab.numeric.taken import of_taken
 from contactlab.numeric.types import Array, Numbers
 from contactlab.outcome.answer import Answer
-from contactlab.paths.path_steps import Followed, Points, followed
+from contactlab.paths.path_steps import Followed, Points, follow_path
 from contactlab.registry import composition
 from contactlab.registry.acceptance import accept
 from contactlab.registry.law_words import name_of
@@ -186,15 +186,15 @@ def load_path(
     of_kind("scene", scene, Scene, remedy="make one: Scene(...)")
     laws = _laws(scene, normal, tangential)
     points, origin, scene = _path(scene, approach, displacement, time)
-    columns, states, status, detail = _followed(laws, scene, points)
+    columns, states, status, detail = _follow_parts(laws, scene, points)
     return LoadPath(
         scene=scene,
         normal=laws[0],
         tangential=laws[1],
-        time=locked(points.time + origin),
-        approach=locked(points.approach),
+        time=lock_arrays(points.time + origin),
+        approach=lock_arrays(points.approach),
         displacement=points.displacement,
-        **{name: locked(column) for name, column in columns.items()},
+        **{name: lock_arrays(column) for name, column in columns.items()},
         status=status,
         detail=detail,
         states=states,
@@ -261,18 +261,18 @@ def _path(
     return Points(np.broadcast_to(even, depth.shape), depth, moved), 0.0 * step, scene
 
 
-def _followed(
+def _follow_parts(
     laws: tuple[NormalLaw, SteppedTangentialLaw], scene: Scene, points: Points
 ) -> Followed:
     """Return what the laws answer; in a batch a law that raises costs the paths that raise only."""
     try:
-        return followed(*laws, scene, points)
+        return follow_path(*laws, scene, points)
     except faults.LawFaultError as fault:
         if not scene.shape:
             nothing = np.full(points.time.shape, math.nan)
             return Followed(dict.fromkeys(COLUMNS, nothing), (), fault.status, fault.detail)
     each = {
-        place: _followed(
+        place: _follow_parts(
             laws, scene.take(place), Points(*(column[(slice(None), *place)] for column in points))
         )
         for place in np.ndindex(scene.shape)

@@ -16,7 +16,7 @@ from contactlab.contracts.sampled_motion import SampledMotion
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import Increment, Sampled, SteppedTangentialLaw
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import locked, plain
+from contactlab.numeric.arrays import lock_arrays, plain
 from contactlab.numeric.types import Array, Real
 
 
@@ -45,7 +45,7 @@ class Followed(NamedTuple):
     detail: str
 
 
-def advanced(
+def advance_steps(
     law: SteppedTangentialLaw,
     state: Any,
     before: NormalContact,
@@ -66,7 +66,7 @@ def advanced(
     return answers, tuple(states)
 
 
-def followed(
+def follow_path(
     normal: NormalLaw, tangential: SteppedTangentialLaw, scene: Scene, points: Points
 ) -> Followed:
     """Return what the laws answer at the points of a path.
@@ -77,7 +77,7 @@ def followed(
         If a law raises, or its answer is malformed.
     """
     rate = points.moved(points.approach, 0.0)[1]
-    contacts = _pressed(normal, scene, points, rate)
+    contacts = _press(normal, scene, points, rate)
     sampled = NormalContact(*(_column(rows, scene.shape) for rows in zip(*contacts, strict=True)))
     radius, load = sampled.radius, sampled.friction_load
     with np.errstate(invalid="ignore"):
@@ -88,9 +88,9 @@ def followed(
         normal, scene, time=points.time, approach=points.approach, rate=rate, contact=sampled
     )
     with faults.blaming(tangential) as blamed:
-        nothing = NormalContact(*(locked(0.0 * entry) for entry in contacts[0]))
+        nothing = NormalContact(*(lock_arrays(0.0 * entry) for entry in contacts[0]))
         state = tangential.start(scene, motion)
-        answers, states = advanced(
+        answers, states = advance_steps(
             tangential, state, nothing, _steps(points, rate, contacts, blamed)
         )
     force, work, settled = (_column(rows, scene.shape) for rows in zip(*answers, strict=True))
@@ -101,20 +101,20 @@ def followed(
         "friction_force": force,
         "friction_work": np.cumsum(work, axis=0),
     }
-    status, detail = _judged((normal, tangential), columns, settled == 0.0)
+    status, detail = _judge((normal, tangential), columns, settled == 0.0)
     return Followed(columns, states, status, detail)
 
 
-def _pressed(normal: NormalLaw, scene: Scene, points: Points, rates: Array) -> list[NormalContact]:
+def _press(normal: NormalLaw, scene: Scene, points: Points, rates: Array) -> list[NormalContact]:
     """Return the normal contact at each point."""
     contacts = []
     with faults.blaming(normal) as blamed:
         state = normal.start(scene)
         rows = zip(_rows(points.approach), _rows(rates), strict=True)
         for blamed.step, (approach, rate) in enumerate(rows, 1):
-            contact, state = normal.respond(state, locked(approach), locked(rate))
+            contact, state = normal.respond(state, lock_arrays(approach), lock_arrays(rate))
             complete = judges.judge_contact(normal, contact, scene.shape, blamed.step)
-            contacts.append(NormalContact(*(locked(plain(entry)) for entry in complete)))
+            contacts.append(NormalContact(*(lock_arrays(plain(entry)) for entry in complete)))
     return contacts
 
 
@@ -132,11 +132,11 @@ def _steps(
         sampled = (
             Sampled(place[0], place[1], speed, 0.0 * speed, 0.0 * speed) if np.any(time) else None
         )
-        moved_by = locked(by), locked(speed)
+        moved_by = lock_arrays(by), lock_arrays(speed)
         yield Increment(*moved_by, after.friction_load, 0.0 * time, time, sampled), after
 
 
-def _judged(
+def _judge(
     laws: tuple[Law, Law], columns: dict[str, Array], unsettled: NDArray[np.bool_]
 ) -> tuple[Any, str]:
     """Return statuses and the sentence of the first failure; what follows a failure is NaN."""

@@ -153,7 +153,7 @@ FURTHER = {"options": ("contactlab_scene_file",)}
 
 
 @contextlib.contextmanager
-def guarded(source: str, failed: str, *, silent: bool = True) -> Iterator[None]:
+def guard(source: str, failed: str, *, silent: bool = True) -> Iterator[None]:
     """Keep a plug-in from ending the program or printing to stdout, which a program may read."""
     try:
         # sys.stdout belongs to all threads: what is asked in every run leaves it alone

@@ -65,7 +65,7 @@ def by_name(infos: list[PluginInfo]) -> dict[str, list[PluginInfo]]:
     return offers
 
 
-def described(found: Iterable[tuple[str, str, str, str]]) -> list[PluginInfo]:
+def describe_offers(found: Iterable[tuple[str, str, str, str]]) -> list[PluginInfo]:
     """Return what entry points offer, with what is blocked and which of one name is meant."""
     blocking = blocked_names()
     infos = [PluginInfo(*each, blocks(blocking, *each[:2])) for each in found]

@@ -18,10 +18,15 @@ from contactlab.registration.hooks import (
     REMEDIES,
     REMEDY,
     PluginError,
-    guarded,
+    guard,
     short,
 )
-from contactlab.registration.installed import PluginWarning, described, entry_points, path_times
+from contactlab.registration.installed import (
+    PluginWarning,
+    describe_offers,
+    entry_points,
+    path_times,
+)
 from contactlab.registration.names import (
     ALL_KINDS,
     BLOCK_VARIABLE,
@@ -88,7 +93,7 @@ class Manager(pluggy.PluginManager):
                 del self._infos[name]
                 if self.has_plugin(name):
                     self.unregister(name=name)
-        everything = described(self._found)
+        everything = describe_offers(self._found)
         self._warn_of_unknown(everything)
         infos = [info for info in everything if not kinds or info.kind in kinds]
         return sorted(
@@ -168,7 +173,7 @@ class Manager(pluggy.PluginManager):
         """
         from importlib import metadata
 
-        with guarded(info.source, "could not be imported"):
+        with guard(info.source, "could not be imported"):
             plugin = metadata.EntryPoint(info.name, info.module, PROJECT).load()
         name = f"{info.distribution}:{info.module}"
         known = self.get_plugin(name)
@@ -214,7 +219,7 @@ class Manager(pluggy.PluginManager):
         if info.kind in KINDS and not isinstance(plugin, ModuleType):
             return plugin
         others = [each for each in self.get_plugins() if each is not plugin]
-        with guarded(info.source, f"raised when asked for its {hook.rpartition('_')[2]}"):
+        with guard(info.source, f"raised when asked for its {hook.rpartition('_')[2]}"):
             return self.subset_hook_caller(hook, others)(name=info.name, **arguments)
 
     def load(self, kind: str, *, only: str = "", again: bool = True) -> None:
@@ -252,7 +257,7 @@ class Manager(pluggy.PluginManager):
         found: list[Told] = []
         for info, caller in self._asked(HOOKS[kind]):
             try:
-                with guarded(info.source, f"raised when asked for its {kind}", silent=silent):
+                with guard(info.source, f"raised when asked for its {kind}", silent=silent):
                     found += [
                         Told(info, item) for answer in caller(**arguments) for item in answer or ()
                     ]
@@ -310,7 +315,7 @@ def _hooks(kind: str) -> Iterator[str]:
 
 def commands(only: str | None = None) -> dict[str, PluginInfo]:
     """Return the subcommands by name, all or those of one distribution."""
-    infos = MANAGER.installed(COMMAND) if only is None else described(entry_points(only))
+    infos = MANAGER.installed(COMMAND) if only is None else describe_offers(entry_points(only))
     usable = [info for info in infos if info.kind == COMMAND and info.usable]
     return dict(sorted((short_name(info.known_as), info) for info in usable))
 

@@ -55,7 +55,7 @@ def seen_from(folder: Path, name: str, *, trusted: bool) -> str:
     return Untrusted(name) if is_place(name) and not trusted else name
 
 
-def parted(name: str) -> tuple[str, str]:
+def split_name(name: str) -> tuple[str, str]:
     """Return distribution and plain name: ``("my-laws", "normal.hertz")``; "" if there is none."""
     if is_place(name):
         return "", name
@@ -65,12 +65,12 @@ def parted(name: str) -> tuple[str, str]:
 
 def kind_of(name: str) -> str:
     """Return the part of a name before its dot, without the distribution: ``"normal"``."""
-    return parted(name)[1].partition(".")[0]
+    return split_name(name)[1].partition(".")[0]
 
 
 def full_name(kind: str, name: str) -> str:
     """Return a name with its kind: ``"my-laws:normal.hertz"`` for ``"my-laws:hertz"``."""
-    distribution, plain = parted(name)
+    distribution, plain = split_name(name)
     if is_place(name) or plain.startswith(f"{kind}."):
         return name
     return f"{distribution}:{kind}.{plain}" if distribution else f"{kind}.{plain}"
@@ -78,7 +78,7 @@ def full_name(kind: str, name: str) -> str:
 
 def short_name(name: str) -> str:
     """Return a name without its kind: ``"my-laws:hertz"`` for ``"my-laws:normal.hertz"``."""
-    distribution, plain = parted(name)
+    distribution, plain = split_name(name)
     kind, _, short = plain.partition(".")
     if is_place(name) or kind not in ALL_KINDS or not short:
         return name
@@ -94,7 +94,7 @@ def same_distribution(first: str, second: str) -> bool:
 def blocks(entries: set[str], name: str, distribution: str) -> bool:
     """Return True if entries of ``CONTACTLAB_BLOCK_PLUGINS`` block a plug-in of a distribution."""
     for entry in entries:
-        origin, plain = parted(entry)
+        origin, plain = split_name(entry)
         if entry == name or same_distribution(entry, distribution):
             return True
         if plain == name and same_distribution(origin, distribution):

@@ -61,5 +61,7 @@ def accept(law: Law, scene: Scene) -> None:
     except ValueError:
         raise
     except Exception as error:
-        told = f"{law_kind(law)} = {type(law).__name__}: its accept raised {faults.raised(error)}"
+        told = (
+            f"{law_kind(law)} = {type(law).__name__}: its accept raised {faults.tell_error(error)}"
+        )
         raise ValueError(told) from error

@@ -143,9 +143,9 @@ def _completed(given: Mapping[str, Law]) -> Laws:
     third = named.get("integrator")
     second = named.get("tangential")
     if second is None:
-        _, second = _preferred("tangential", first, after=() if third is None else (third,))
+        _, second = _prefer("tangential", first, after=() if third is None else (third,))
     if third is None:
-        _, third = _preferred("integrator", first, second)
+        _, third = _prefer("integrator", first, second)
     return Laws(first, second, third, frozenset(named))
 
 
@@ -155,14 +155,14 @@ def check(laws: Laws) -> None:
         raise ValueError(complaint + _would_fit(laws))
 
 
-def preferred(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> str:
+def prefer_law(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> str:
     """Return the name of the first law in ``PREFERRED`` that fits, or of the first installed."""
     # ``before`` are the laws in front of this kind, ``after`` is a named integrator.
-    return _preferred(kind, *before, after=after)[0]
+    return _prefer(kind, *before, after=after)[0]
 
 
-def _preferred(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> tuple[str, Any]:
-    """Return the preferred law with its name; arguments as in ``preferred``."""
+def _prefer(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> tuple[str, Any]:
+    """Return the preferred law with its name; arguments as in ``prefer_law``."""
     installed: list[tuple[str, Any]] = []
     which = kind
     if kind == "tangential" and "elastic_hertz" in claims(before[0]):
@@ -194,7 +194,7 @@ def _refuse_rigid(
     """Refuse an integrator beside which no friction law is left but one of rigid bodies."""
     for name, tangential in elastic:
         if _fits(normal, tangential):
-            runs, _ = _preferred("integrator", normal, tangential)
+            runs, _ = _prefer("integrator", normal, tangential)
             rule = f"beside {_name(normal)} it runs rigid friction only, which is not taken unnamed"
             remedy = f"take integrator={runs!r} (with {name}), or name tangential={rigid!r}"
             raise refuse("integrator", _named(integrator), rule, remedy)
@@ -275,7 +275,7 @@ def _usual(kind: str, others: Mapping[str, Law]) -> str:
     made = _completed(others)
     after = (others["integrator"],) if "integrator" in others and kind == "tangential" else ()
     before = (made.normal,) if kind == "tangential" else (made.normal, made.tangential)
-    return _preferred(kind, *before, after=after)[0]
+    return _prefer(kind, *before, after=after)[0]
 
 
 def _candidates(kind: str) -> Iterator[tuple[str, Any]]:

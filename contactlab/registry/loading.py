@@ -17,7 +17,7 @@ from contactlab.contracts.law import Law, law_kind
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
 from contactlab.outcome.files import stamp
-from contactlab.registration.hooks import PluginError, guarded
+from contactlab.registration.hooks import PluginError, guard
 from contactlab.registration.manager import MANAGER
 from contactlab.registration.names import FILE, PluginInfo, Untrusted
 from contactlab.registry.law_classes import unfit
@@ -39,7 +39,7 @@ def law_class(info: PluginInfo) -> type[Law]:
     """
     with np.errstate():  # a plug-in does not change numpy's settings
         law = MANAGER.ask(info)
-    return checked(law, info.kind, info.source)
+    return check_class(law, info.kind, info.source)
 
 
 def law_at(place: str) -> type[Law]:
@@ -69,12 +69,12 @@ def law_at(place: str) -> type[Law]:
         except OSError as error:
             remedy = f"the path begins in {Path.cwd()}" if not path.is_absolute() else ""
             raise refuse("name", place, f"{where}: {error.strerror}", remedy) from None
-        with np.errstate(), guarded(repr(place), "could not be loaded"):
+        with np.errstate(), guard(repr(place), "could not be loaded"):
             module = _module(str(path.resolve()))
     else:
         with (
             np.errstate(),
-            guarded(repr(place), "could not be imported (a file is named by its path, x.py)"),
+            guard(repr(place), "could not be imported (a file is named by its path, x.py)"),
         ):
             module = import_module(where)
     law = getattr(module, title, None)
@@ -83,7 +83,7 @@ def law_at(place: str) -> type[Law]:
         remedy = f"{nearest(title, laws)}{where} has {', '.join(laws) or 'no law'}"
         rule = f"{title} is no law" if title else "the class is missing"
         raise refuse("name", place, rule, remedy)
-    return checked(law, law_kind(law), repr(place))
+    return check_class(law, law_kind(law), repr(place))
 
 
 def _module(path: str) -> ModuleType:
@@ -108,7 +108,7 @@ def _module(path: str) -> ModuleType:
     for title, law in _laws(module).items():
         own = f"{law_kind(law)}.{Path(path).name}:{title}"
         IN_FILES[law] = PluginInfo(own, FILE, checksum(content), path, False)
-        copyreg.pickle(law, _reduced)
+        copyreg.pickle(law, _reduce)
     LOADED[path] = now, module
     return module
 
@@ -143,7 +143,7 @@ def _is_law(value: object) -> TypeGuard[type[Law]]:
     return isinstance(value, type) and issubclass(value, Law) and hasattr(value, "_kind")
 
 
-def _reduced(law: Law) -> tuple[Any, ...]:
+def _reduce(law: Law) -> tuple[Any, ...]:
     """Return what ``pickle`` writes of a law in a file: path, class and parameters."""
     return _blank, (IN_FILES[type(law)].known_as,), law.__reduce_ex__(2)[2]
 
@@ -154,7 +154,7 @@ def _blank(place: str) -> Law:
     return law.__new__(law)
 
 
-def checked(law: object, kind: str, source: str) -> type[Law]:
+def check_class(law: object, kind: str, source: str) -> type[Law]:
     """Return ``law``, or raise PluginError unless it is a law's class of right kind and version."""
     if not _is_law(law):
         raise PluginError(f"{source} returned {law!r}, which is not the class of a law")

@@ -27,10 +27,10 @@ from contactlab.registration.names import (
     clash,
     is_place,
     meant,
-    parted,
     same_distribution,
+    split_name,
 )
-from contactlab.registry.loading import IN_FILES, checked, law_at, law_class
+from contactlab.registry.loading import IN_FILES, check_class, law_at, law_class
 
 __all__ = [
     "BLOCK_VARIABLE", "KINDS", "REGISTRY", "PluginError", "PluginInfo", "PluginWarning", "Registry",
@@ -77,7 +77,7 @@ class Registry:
         found = {}
         for name, law in MANAGER.laws.items():
             own = PluginInfo(name, HERE, "", law.__module__, blocks(blocking, name, HERE))
-            found[own.qualified] = (checked(law, own.kind, own.source), own)
+            found[own.qualified] = (check_class(law, own.kind, own.source), own)
         return found
 
     def names(self, kind: str | None = None) -> list[str]:
@@ -107,7 +107,7 @@ class Registry:
                 f"{law_kind(found)}.{name}", "not installed", "", found.__module__, False
             )
             return IN_FILES.get(found, info)
-        distribution, plain = parted(name)
+        distribution, plain = split_name(name)
         installed = self.installed()
         matches = [info for info in installed if info.name == name] or [
             info
@@ -203,7 +203,7 @@ class Registry:
 
     def _unknown(self, name: str) -> ValueError:
         """Return the refusal of a name that is not installed, with the nearest installed name."""
-        distribution, plain = parted(str(name))
+        distribution, plain = split_name(str(name))
         kind, _, short = plain.rpartition(".")
         names = self.names(kind if kind in KINDS else None)
         offered = [info.qualified for info in self.installed() if info.name == plain]

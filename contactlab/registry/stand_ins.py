@@ -10,7 +10,7 @@ from contactlab.registration.names import KINDS
 from contactlab.registry.composition import RIGID, TOGETHER, Laws, misfit
 
 
-def coupled(laws: Laws, part: Scene) -> Laws:
+def stand_in(laws: Laws, part: Scene) -> Laws:
     """Return the laws of impacts in which friction changes the approach.
 
     Where a law that nobody named has no answer, another stands in for it.

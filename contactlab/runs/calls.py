@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import attrs
 
-from contactlab.numeric.arrays import locked
+from contactlab.numeric.arrays import lock_arrays
 from contactlab.numeric.checks import refuse
 from contactlab.outcome.chunk_forms import Chunk
 from contactlab.registration.hooks import short
@@ -36,7 +36,7 @@ class Calls:
 
     def send(self, part: Part) -> None:
         """Send a part, which ``next`` answers."""
-        future = self._submitted(part)
+        future = self._submit(part)
         self._waiting[future] = part
         future.add_done_callback(self._finished.put)
 
@@ -48,14 +48,14 @@ class Calls:
 
     def alone(self, part: Part) -> Piece | Exception:
         """Return the piece of a part as soon as it is solved, or what the executor raised."""
-        return self._answer(self._submitted(part), part)
+        return self._answer(self._submit(part), part)
 
     def cancel(self) -> None:
         """Give up the parts that were not answered."""
         for future in self._waiting:
             future.cancel()
 
-    def _submitted(self, part: Part) -> Future[Reply]:
+    def _submit(self, part: Part) -> Future[Reply]:
         """Return the future of a reply; the future holds the error of a broken executor."""
         chunk, scene, block = part
         try:
@@ -116,7 +116,7 @@ class Reply(NamedTuple):
 def reply(sent: bytes, part: bytes, chunk: Chunk, block: int) -> Reply:
     """Return the reply to a chunk, from pickled laws and the pickled scene of the chunk."""
     try:
-        laws, scene = pickle.loads(sent), _locked(pickle.loads(part))
+        laws, scene = pickle.loads(sent), _lock(pickle.loads(part))
     except Exception as error:
         rule = f"executor: its workers cannot load the laws: {short(error)}"
         remedy = f"install them there too, and {MODULE_REMEDY}"
@@ -127,9 +127,9 @@ def reply(sent: bytes, part: bytes, chunk: Chunk, block: int) -> Reply:
         return Reply(None, {}, error)
 
 
-def _locked(tree: Any) -> Any:
+def _lock(tree: Any) -> Any:
     """Return a tree with its arrays read-only: pickling loses that flag."""
     if attrs.has(type(tree)):
         for field in attrs.fields(type(tree)):
-            _locked(getattr(tree, field.name))
-    return locked(tree)
+            _lock(getattr(tree, field.name))
+    return lock_arrays(tree)

@@ -15,7 +15,7 @@ from contactlab.impact import kinetics
 from contactlab.outcome.chunk_forms import Chunk
 from contactlab.registration.hooks import short
 from contactlab.runs.calls import Calls
-from contactlab.runs.pieces import Part, Piece, unsolved
+from contactlab.runs.pieces import Part, Piece, leave_open
 
 #: Processes that may end before the rest is given up: each takes a second to start.
 MOST_ENDS = 64
@@ -72,7 +72,7 @@ class Rescue:
         """Return the piece of a part that the same sweep tries again."""
         started = self.calls.answered or self._pool is not None
         remedy = "" if started else f"; {MAIN_REMEDY}"
-        return unsolved(
+        return leave_open(
             part.chunk, kinetics.slip_axes(part.scene), Status.WORKER_DIED, short(error) + remedy
         )
 

@@ -66,7 +66,7 @@ def solve_chunk(laws: Laws, scene: Scene, chunk: Chunk, block: int) -> Piece:
     return Piece(chunk, *joined, computer())
 
 
-def unsolved(chunk: Chunk, axes: tuple[int, ...], status: Status, detail: str = "") -> Piece:
+def leave_open(chunk: Chunk, axes: tuple[int, ...], status: Status, detail: str = "") -> Piece:
     """Return the piece of a chunk without answers: every impact has ``status``.
 
     ``axes`` are the scene's ``slip_axes``.

@@ -166,9 +166,9 @@ class Simulation:
         result = _result(ways, scene, plan, motion, started, kept)
         if not estimate_error:
             return result
-        from contactlab.solve.error_estimate import estimated  # needed for an estimate only
+        from contactlab.solve.error_estimate import estimate_errors  # needed for an estimate only
 
-        psi2, restitution = estimated(laws, result)
+        psi2, restitution = estimate_errors(laws, result)
         return attrs.evolve(
             result, psi2_error_estimate=psi2, restitution_error_estimate=restitution
         )

@@ -19,7 +19,7 @@ from contactlab.outcome.chunk_forms import Chunk
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import PlanColumns
 from contactlab.registry.composition import Laws
-from contactlab.runs.pieces import Part, Piece, solve_chunk, unsolved
+from contactlab.runs.pieces import Part, Piece, leave_open, solve_chunk
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -90,7 +90,7 @@ def swept(
                 kept.keep(finished[-1])  # which may have been on its way to the disk
             gaps = _gaps(finished, size)
             finished += [
-                unsolved(gap, kinetics.slip_axes(scene), Status.INTERRUPTED) for gap in gaps
+                leave_open(gap, kinetics.slip_axes(scene), Status.INTERRUPTED) for gap in gaps
             ]
         finally:
             pieces.close()

@@ -43,7 +43,7 @@ def pieces_of(
     unsent = iter(parts)
     with Rescue(calls) as rescue:
         try:
-            while lost := (yield from _answered(calls, unsent, ahead)):
+            while lost := (yield from _answer_until_lost(calls, unsent, ahead)):
                 again = yield from rescue.solve(lost)
                 unsent = itertools.chain(again, unsent)
         finally:
@@ -56,7 +56,7 @@ def _runs_in(pool: ThreadPoolExecutor) -> bool:
         return threading.current_thread() in pool._threads
 
 
-def _answered(
+def _answer_until_lost(
     calls: Calls, unsent: Iterator[Part], ahead: int | None
 ) -> Generator[Piece, None, list[Lost]]:
     """Yield pieces until the executor loses a part; return the lost ones, in order."""

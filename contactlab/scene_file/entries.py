@@ -80,7 +80,7 @@ def entry_path(name: str, *, where: str = "") -> str:
     return ENTRIES[name]
 
 
-def replaced(
+def replace_entry(
     document: Mapping[str, object], path: str, value: object, *, within: str = ""
 ) -> dict[str, object]:
     """Return a copy of ``document``, the table at ``within``, with ``value`` at a dotted path."""
@@ -90,7 +90,7 @@ def replaced(
     place = within + key
     rule, remedy = "must be a table", f"write it under [{place}]"
     inner = of_kind(place, document.get(key, {}), Mapping, rule=rule, remedy=remedy)
-    return {**document, key: replaced(inner, rest, value, within=f"{place}.")}
+    return {**document, key: replace_entry(inner, rest, value, within=f"{place}.")}
 
 
 def with_materials(tables: Mapping[str, object]) -> dict[str, object]:
@@ -102,7 +102,7 @@ def with_materials(tables: Mapping[str, object]) -> dict[str, object]:
         if isinstance(name, str):
             path = f"{body}.material"
             try:
-                completed = replaced(completed, path, materials.entry(name).numbers())
+                completed = replace_entry(completed, path, materials.entry(name).numbers())
             except ValueError as error:
                 raise ValueError(f"{path}: {error}") from None
     return completed

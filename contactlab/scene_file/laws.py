@@ -19,16 +19,16 @@ from contactlab.registration.names import (
     full_name,
     is_place,
     kind_of,
-    parted,
     seen_from,
     short_name,
+    split_name,
 )
 from contactlab.registry import composition
 from contactlab.registry.registry import REGISTRY, PluginError
 from contactlab.runs.owners import options as options_of_laws
 from contactlab.runs.owners import takes_restitution
 from contactlab.runs.simulation import Simulation
-from contactlab.scene_file.table import Table, flattened, nearest_of
+from contactlab.scene_file.table import Table, flatten, nearest_of
 from contactlab.solve.solve import ways
 
 #: e = 1 - c v^(1/5) in words without blanks.
@@ -76,7 +76,7 @@ class LawChoice:
         for path, value in settings.items():
             owner, _, option = path.rpartition(".")
             if complaint := _complaint(path):
-                near = "" if owner else nearest(path, self._offered())
+                near = "" if owner else nearest(path, self._list_options())
                 if not (owner or near) and (found := _laws_with(path)):
                     raise ValueError(f"{path}: {found}")
                 raise ValueError(f"{complaint}; {near}".rstrip("; "))
@@ -140,7 +140,7 @@ class LawChoice:
         named = () if self.integrator is None else (choice.made("integrator"),)
         for kind in ("tangential", "integrator"):
             if getattr(choice, kind) is None:
-                name = composition.preferred(kind, *made, after=named)
+                name = composition.prefer_law(kind, *made, after=named)
                 choice = choice.choose(**{kind: name})
             made.append(choice.made(kind))
         return choice
@@ -167,7 +167,7 @@ class LawChoice:
         laws = (own.made("normal"), own.made("tangential"), own.made("integrator"))
         return default if composition.misfit(*laws) else own
 
-    def _offered(self) -> list[str]:
+    def _list_options(self) -> list[str]:
         """Return the options of the three laws: ``"tangential.annuli"``."""
         choice = self.resolved()
         laws = {kind: type(choice.made(kind)) for kind in KINDS}
@@ -250,7 +250,7 @@ def _laws_with(option: str) -> str:
 
 def same_law(one: str, other: str) -> bool:
     """Return whether two full names, with or without a distribution, mean the same law."""
-    if one == other or parted(one)[1] != parted(other)[1]:
+    if one == other or split_name(one)[1] != split_name(other)[1]:
         return one == other
     return REGISTRY.info(one) == REGISTRY.info(other)
 
@@ -294,7 +294,7 @@ def read_laws(content: object, folder: Path, *, allow_code: bool) -> LawChoice:
     raw = table.content["options"]
     if not isinstance(raw, Mapping):
         raise ValueError(f"simulation.options: must be a table; {OPTION_REMEDY}")
-    options = flattened(raw)
+    options = flatten(raw)
     for path in options:
         if complaint := _complaint(path):
             raise ValueError(f"simulation.options.{complaint}")

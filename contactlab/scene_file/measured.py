@@ -10,7 +10,7 @@ import numpy as np
 
 from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.types import Array, Real
-from contactlab.outcome.columns import quantity_named
+from contactlab.outcome.columns import find_quantity
 from contactlab.scene_file.entries import entry_path
 from contactlab.scene_file.table import Table
 
@@ -71,7 +71,7 @@ def _series(content: object, path: str) -> Measured:
     """Return one series; messages name ``path``."""
     table = Table(content, path, known=KEYS)
     quantity = table.text("quantity", remedy="name a quantity of the result")
-    quantity_named(quantity, where=table.at("quantity"))
+    find_quantity(quantity, where=table.at("quantity"))
     against = table.text("against", remedy="name the entry that was varied, such as angle_deg")
     entry_path(against, where=f"{table.at('against')} = ")
     if table.has("readings") == table.has("x", "values"):

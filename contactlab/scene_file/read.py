@@ -23,7 +23,7 @@ from contactlab.scene_file.entries import (
     POLAR,
     entry_path,
     named_materials,
-    replaced,
+    replace_entry,
     with_materials,
     without_rivals,
 )
@@ -178,7 +178,7 @@ def _scene_with(
     """Return scene and encounter of the tables with some entries replaced."""
     for name, values in entries.items():
         path = entry_path(name)
-        tables = replaced(tables, path, real(path, values))
+        tables = replace_entry(tables, path, real(path, values))
     return build_scene(tables)
 
 
@@ -201,7 +201,7 @@ def _with_defaults(
         section, _, key = path.partition(".")
         table = completed.get(section, {})
         if isinstance(table, Mapping) and key not in table:
-            completed = replaced(completed, path, value)
+            completed = replace_entry(completed, path, value)
     return completed
 
 

@@ -15,7 +15,7 @@ from contactlab.impact.grid import product
 from contactlab.numeric.checks import of_kind, whole
 from contactlab.numeric.types import Array
 from contactlab.scene_file.entries import entry_path
-from contactlab.scene_file.table import Table, flattened, number_list
+from contactlab.scene_file.table import Table, flatten, number_list
 
 RANGE_KEYS = ("start", "stop", "count")
 #: Key that requests every combination.
@@ -47,7 +47,7 @@ def read_sweep(content: object) -> Sweep:
     varied: dict[str, Array] = {}
     paths: dict[str, str] = {}
     entries = {key: table[key] for key in table if key != PRODUCT}
-    for name, value in flattened(entries, leaf=_is_range).items():
+    for name, value in flatten(entries, leaf=_is_range).items():
         path = entry_path(name, where="sweep.")
         if path in paths:
             raise ValueError(f"sweep: {paths[path]} and {name} are the same entry; leave out one")

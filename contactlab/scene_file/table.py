@@ -129,7 +129,7 @@ def number_list(path: str, value: object, *, remedy: str) -> Array:
     return array
 
 
-def flattened(
+def flatten(
     content: Mapping[str, object],
     prefix: str = "",
     *,
@@ -142,7 +142,7 @@ def flattened(
     values: dict[str, Any] = {}
     for key, value in content.items():
         if isinstance(value, Mapping) and not leaf(value):
-            values |= flattened(value, f"{prefix}{key}.", leaf=leaf)
+            values |= flatten(value, f"{prefix}{key}.", leaf=leaf)
         else:
             values[prefix + key] = value
     return values

@@ -17,14 +17,14 @@ from contactlab.contracts.status import Status, succeeded
 from contactlab.contracts.tangential import Errors, TangentialLaw
 from contactlab.contracts.tangential_motion import Observer, Sample, TangentialMotion
 from contactlab.contracts.whole_impact import WholeImpact
-from contactlab.numeric.arrays import locked
+from contactlab.numeric.arrays import lock_arrays
 from contactlab.numeric.checks import shown
 from contactlab.numeric.types import Real
 
 Mask = NDArray[np.bool_]
 
 #: The mask of a single impact: NumPy takes longer to make one than to say what it says.
-ONE: Mask = locked(np.array(True))
+ONE: Mask = lock_arrays(np.array(True))
 #: Instants in the history of an impact that is not marched.
 INSTANTS = 201
 
@@ -60,27 +60,27 @@ def answers(
             return []
         for answer in tangential.whole_impacts(scene, normal):
             if answer.where and (always or not _falls_short(answer, history, largest_error)):
-                return [Answered(ONE, _checked(answer, tangential, shape))]
+                return [Answered(ONE, _check_answer(answer, tangential, shape))]
         if always:
-            raise _unanswered(tangential)
+            raise _complain_of_gaps(tangential)
         return []
-    left = separated(normal)
+    left = separates(normal)
     given = []
     for answer in tangential.whole_impacts(scene, normal):
         where = left & np.broadcast_to(answer.where, shape)
         if not always:
             where &= np.logical_not(_falls_short(answer, history, largest_error))
         if where.any():
-            given.append(Answered(where, _checked(answer, tangential, shape)))
+            given.append(Answered(where, _check_answer(answer, tangential, shape)))
             left &= ~where
     if always and left.any():
-        raise _unanswered(tangential)
+        raise _complain_of_gaps(tangential)
     if history and left.any():
         return []
     return given
 
 
-def separated(normal: NormalMotion) -> Any:
+def separates(normal: NormalMotion) -> Any:
     """Return the impacts that the normal motion ends: a bool, or of a batch a new array."""
     shape = normal.scene.shape
     if not shape:
@@ -150,7 +150,7 @@ def _falls_short(answer: WholeImpact, history: bool | str, largest_error: Real) 
     return (history and answer.course is None) or answer.psi2_error > largest_error
 
 
-def _checked(answer: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) -> WholeImpact:
+def _check_answer(answer: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) -> WholeImpact:
     """Return an answer that is made of real numbers.
 
     Raises
@@ -159,7 +159,7 @@ def _checked(answer: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) ->
         If it is not.
     """
     for entry in (answer.slip_velocity_change, answer.friction_work, answer.normal_spin_change):
-        if faults.malformed(entry, shape):
+        if faults.is_malformed(entry, shape):
             sentence = faults.sentence(law, f"the answer {shown(entry)} to a whole impact", 1)
             raise faults.LawFaultError(Status.MALFORMED, sentence)
     if not (type(answer.psi2_error) is float and answer.psi2_error >= 0.0):
@@ -167,7 +167,7 @@ def _checked(answer: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) ->
     return answer
 
 
-def _unanswered(law: TangentialLaw) -> faults.LawFaultError:
+def _complain_of_gaps(law: TangentialLaw) -> faults.LawFaultError:
     """Return the error of a whole-impact law that leaves impacts without an answer."""
     sentence = faults.sentence(law, "no answer to some impacts, and no other way to run them", 1)
     return faults.LawFaultError(Status.MALFORMED, sentence)
@@ -184,7 +184,7 @@ def check_motion(
         raise TypeError(f"gave {shown(motion)}, not a TangentialMotion")
     for name, own in ("slip_velocity_change", axes), ("friction_work", ()), ("shear_loss", ()):
         value, whole = getattr(motion, name), (*shape, *own)
-        if not (type(value) is float and not whole) and faults.malformed(value, whole):
+        if not (type(value) is float and not whole) and faults.is_malformed(value, whole):
             raise TypeError(f"{name} = {shown(value)}: must be real, of shape {whole}")
     if not _of_each(motion.status, shape):
         raise TypeError(f"status = {shown(motion.status)}: must be a Status for each impact")

@@ -24,7 +24,7 @@ from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import ENDLESS, MARCHED, Clause, PlanColumns
 from contactlab.registry import stand_ins
 from contactlab.registry.composition import Laws
-from contactlab.solve.answers import Mask, check_motion, separated
+from contactlab.solve.answers import Mask, check_motion, separates
 from contactlab.solve.failed_motion import FailedMotion
 from contactlab.solve.normal_motion import normal_or_failed
 from contactlab.solve.way import ONE_BY_ONE, WHOLE, Masks, Prepared, Way, ask, halves
@@ -66,7 +66,7 @@ class Coupled(Way):
     @classmethod
     def of(cls, where: Index, scene: Scene, laws: Laws) -> Self:
         """Return the way of such impacts, by laws that have an answer to them."""
-        return cls(where, scene, stand_ins.coupled(laws, scene))
+        return cls(where, scene, stand_ins.stand_in(laws, scene))
 
     def prepare(self, history: bool | str) -> Prepared:
         """Return the approach without friction and columns of the plan, or raise LawFaultError."""
@@ -82,7 +82,7 @@ class Coupled(Way):
         """Return the columns of the plan: who answers, and the declared errors."""
         scene, laws = self.scene, self.laws
         law, integrator = laws.capability.coupled, laws.integrator
-        code = chosen(separated(normal), MARCHED if law is None else 0, ENDLESS)
+        code = chosen(separates(normal), MARCHED if law is None else 0, ENDLESS)
         errors: object
         if type(normal) is FailedMotion:  # no law is asked about an approach that is not known
             errors = Errors()
@@ -101,12 +101,12 @@ class Coupled(Way):
             return Motion.nothing(
                 scene.shape, normal.status, normal.detail, axes=kinetics.slip_axes(scene)
             )
-        motion = self._ended_as_alone(self._answered(normal, recorder), normal)
+        motion = self._ended_as_alone(self._answer(normal, recorder), normal)
         if recorder is None and scene.shape not in ((), (1,)):
             return self._apart(motion)
         return motion
 
-    def _answered(self, normal: NormalMotion, observer: Observer | None) -> Motion:
+    def _answer(self, normal: NormalMotion, observer: Observer | None) -> Motion:
         """Return the motion that law or integrator answers, or raise LawFaultError."""
         scene, laws, able = self.scene, self.laws, self.laws.capability
         blamed = laws.integrator if able.coupled is None else able.coupled
@@ -126,7 +126,7 @@ class Coupled(Way):
 
     def _ended_as_alone(self, motion: Motion, normal: NormalMotion) -> Motion:
         """Return a motion whose impacts without an end have the status of the approach alone."""
-        ended = separated(normal)
+        ended = separates(normal)
         if every(ended):
             return motion
         lost = np.isin(np.asarray(motion.status, dtype=object), np.array(WITHOUT_END, dtype=object))

@@ -22,7 +22,7 @@ from contactlab.numeric.types import Array, Index, Mask, Real
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import ENDLESS, MARCHED, PlanColumns, Reason
-from contactlab.solve.answers import Answered, answers, check_motion, separated, show
+from contactlab.solve.answers import Answered, answers, check_motion, separates, show
 from contactlab.solve.normal_motion import normal_or_failed
 from contactlab.solve.way import ONE_BY_ONE, Prepared, Way, halves
 
@@ -91,11 +91,11 @@ class Decoupled(Way):
         """
         shape = normal.scene.shape
         if not shape:
-            code: Any = MARCHED if separated(normal) else ENDLESS
+            code: Any = MARCHED if separates(normal) else ENDLESS
             marched: Any = code == MARCHED and not answered
             code = 0 if answered else code
         else:
-            code = np.where(separated(normal), MARCHED, ENDLESS)
+            code = np.where(separates(normal), MARCHED, ENDLESS)
             for place, one in enumerate(answered):
                 code[one.where] = place
             marched = code == MARCHED
@@ -148,7 +148,7 @@ class Decoupled(Way):
             if not answered:
                 return TangentialMotion.nothing((), normal.status, normal.detail)
             return answered[0].answer
-        motion = _joined(normal, answered)
+        motion = _join_answers(normal, answered)
         if not some(marched):
             return motion
         parts = [(np.ones(shape, dtype=bool), motion), (marched, self._march(normal.take(marched)))]
@@ -171,7 +171,7 @@ class Decoupled(Way):
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # a plug-in may not end the process
-            sentence = faults.sentence(laws.integrator, faults.raised(error), 1)
+            sentence = faults.sentence(laws.integrator, faults.tell_error(error), 1)
             motion = TangentialMotion.nothing(shape, Status.LAW_RAISED, sentence)
         if not shape or observer is not None or succeeded(motion.status):
             return motion
@@ -185,7 +185,7 @@ class Decoupled(Way):
         return TangentialMotion.joined([part(each) for each in parts], shape)
 
 
-def _joined(normal: NormalMotion, answered: list[Answered]) -> TangentialMotion:
+def _join_answers(normal: NormalMotion, answered: list[Answered]) -> TangentialMotion:
     """Return the tangential motion of a batch by its whole-impact answers, NaN elsewhere."""
     shape = normal.scene.shape
     change, work = np.full((2, *shape), math.nan)

@@ -34,7 +34,7 @@ TOLERANCE = 4.0
 LEFT = 0.5, 1.0
 
 
-def estimated(laws: Laws, result: ImpactResult) -> tuple[Real, Real]:
+def estimate_errors(laws: Laws, result: ImpactResult) -> tuple[Real, Real]:
     """Return the estimated numerical errors of psi2 and of the normal restitution of a result.
 
     Both have the scene's shape. In space the error of psi2 is the length of a vector.

@@ -44,7 +44,10 @@ class FailedMotion(_UnknownMotion):
     def __init__(self, law: Law, scene: Scene, status: Status, detail: str) -> None:
         super().__init__(law, scene)
         shape = scene.shape
-        self.status, self.detail = batch.filled(status, shape), batch.filled(detail, shape)
+        self.status, self.detail = (
+            batch.spread_object(status, shape),
+            batch.spread_object(detail, shape),
+        )
 
     def take(self, part: Index) -> FailedMotion:
         """Return the motion of some impacts."""

@@ -71,10 +71,10 @@ def _open(law: NormalLaw, scene: Scene) -> NormalMotion:
     if table is not None:
         return SolvedMotion(law, scene, table)
     with np.errstate(all="ignore"):
-        return _solved(law, scene)
+        return _solve(law, scene)
 
 
-def _solved(law: NormalLaw, scene: Scene) -> SolvedMotion:
+def _solve(law: NormalLaw, scene: Scene) -> SolvedMotion:
     """Return the motion solved in steps: of one impact in plain numbers, many times as fast."""
     if scene.shape:
         from contactlab.solve.motion_solver import Solver
@@ -101,7 +101,7 @@ def _common(law: NormalLaw, scene: Scene) -> MotionTable | None:
         return None
     try:
         with np.errstate(all="ignore"):
-            solved = _solved(law, batches.unnumbered(single))
+            solved = _solve(law, batches.unnumbered(single))
     except faults.LawFaultError as fault:
         if isinstance(fault.__cause__, NoIndexError):
             return None

@@ -131,7 +131,7 @@ def _words(
     advice = "" if asked_for.estimate else ADVICE
     for what, error in way.errors(columns).items():
         computed += _error_clauses(what, error, masks.ended, advice)
-    left_out = _not_marched(columns, masks)
+    left_out = _say_why_whole(columns, masks)
     if _loses_in_pressure_alone(way):
         name = name_of(used.tangential)
         left_out.append(Clause(f"loss in shear: {name} has none beside this law", masks.known))
@@ -253,7 +253,7 @@ class _AfterRun:
         return normal_motion(self.law, self.scene)
 
 
-def _not_marched(columns: PlanColumns, masks: Masks) -> list[Clause]:
+def _say_why_whole(columns: PlanColumns, masks: Masks) -> list[Clause]:
     """Return why impacts are not marched, and whose books check nothing."""
     march = "march of the tangential motion"
     clauses = [

@@ -13,7 +13,7 @@ from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import flat, locked
+from contactlab.numeric.arrays import flat, lock_arrays
 from contactlab.numeric.checks import shown
 from contactlab.numeric.types import Array, Real
 
@@ -89,7 +89,7 @@ class ScaledNormalLaw:
 
     def _answer(self, scaled: Array) -> tuple[NormalContact, Any]:
         """Return contact and new state at scaled values."""
-        approach, rate = (locked(each.reshape(self.shape)) for each in self.in_si(scaled))
+        approach, rate = (lock_arrays(each.reshape(self.shape)) for each in self.in_si(scaled))
         return self.respond(approach, rate)
 
     def respond(self, approach: Real, rate: Real) -> tuple[NormalContact, Any]:
@@ -102,9 +102,9 @@ class ScaledNormalLaw:
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # a plug-in may not end the process
-            raise self.fault(Status.LAW_RAISED, faults.raised(error)) from error
+            raise self.fault(Status.LAW_RAISED, faults.tell_error(error)) from error
         for entry in contact:
-            if type(entry) not in PLAIN and faults.malformed(entry, self.shape):
+            if type(entry) not in PLAIN and faults.is_malformed(entry, self.shape):
                 raise self.fault(Status.MALFORMED, f"the answer {shown(entry)}")
         return contact, state
 

@@ -15,7 +15,7 @@ from contactlab.contracts.motion import NormalMotion, NormalSample
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
-from contactlab.numeric.arrays import shaped
+from contactlab.numeric.arrays import shape_as
 from contactlab.numeric.lobatto import lobatto, rows
 from contactlab.numeric.types import Array, Index, Real
 
@@ -105,7 +105,7 @@ class MotionTable:
 
     def shaped(self, values: Array) -> Any:
         """Return values of shape (items,) in the shape of the batch, or as a plain number."""
-        return shaped(values, self.shape)
+        return shape_as(values, self.shape)
 
 
 def _rising(fraction: Array, width: Array, steps: Array) -> Array:
@@ -190,8 +190,8 @@ class SolvedMotion(NormalMotion):
         self.maximum_force = table.shaped(table.largest[:, FORCE]) * unit.force
         largest = _radius(table.largest[:, RADIUS_SQUARED])
         self.maximum_radius = table.shaped(largest) * unit.radius
-        self.status = batch.filled(table.shaped(table.status), scene.shape)
-        self.detail = batch.filled(table.shaped(table.detail), scene.shape)
+        self.status = batch.spread_object(table.shaped(table.status), scene.shape)
+        self.detail = batch.spread_object(table.shaped(table.detail), scene.shape)
 
     @property
     def shared(self) -> dict[Any, Any] | None:

@@ -54,7 +54,7 @@ def refuse_march(way: Way, *, history: bool) -> None:
     elif history:
         why = "with a history"
         remedy += ", or no history"
-    elif some(np.isfinite(rate) & _unanswered(way)):
+    elif some(np.isfinite(rate) & _find_gaps(way)):
         why = f"under {type(laws.tangential).__name__}, which follows the impact"
         springs = RESTITUTION["tangential"]
         if short_name(REGISTRY.short_name(laws.tangential)) != springs:
@@ -71,7 +71,7 @@ def refusal(rate: Real, scene: Scene, why: str, remedy: str) -> ValueError:
     return refuse("restitution", first, f"must be from {LEAST_RESTITUTION} {why}", remedy)
 
 
-def _unanswered(way: Way) -> Mask:
+def _find_gaps(way: Way) -> Mask:
     """Return the impacts without a whole-impact answer; none of a law that fails."""
     try:
         prepared = way.prepare(False)

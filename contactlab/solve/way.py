@@ -22,7 +22,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import consecutive
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array, Real
-from contactlab.outcome.energy import balanced, contradicted, powered
+from contactlab.outcome.energy import judge_books, judge_energy, raise_errors
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion, sound
 from contactlab.outcome.plan import ENDLESS, MARCHED, UNKNOWN, Clause, PlanColumns, Reason
@@ -161,12 +161,12 @@ class Way(Entries, ABC):
         # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
         bound = prepared.books_bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
         few = self.both or type(prepared.normal) is UnfollowedMotion  # isinstance is slow
-        motion = powered(sound(motion, together=few), prepared.normal)
+        motion = judge_energy(sound(motion, together=few), prepared.normal)
         error = prepared.columns.restitution_error
-        motion, off = balanced(
+        motion, off = judge_books(
             motion, scene, bound, self.cancels, together=self.both, restitution_error=error
         )
-        return contradicted(prepared.columns, scene, off, bound, self.cancels), motion
+        return raise_errors(prepared.columns, scene, off, bound, self.cancels), motion
 
     def solve_parts(self, places: list[slice]) -> tuple[PlanColumns, Motion]:
         """Return columns and motion of a batch that is solved in consecutive parts."""
@@ -200,7 +200,7 @@ def ask(law: Law, question: Callable[..., tuple[str, ...]], *about: object) -> l
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # the numbers are sound without; a plug-in ends no process
-        return [f"cautions of {name_of(law)}: not known, {faults.raised(error)}"]
+        return [f"cautions of {name_of(law)}: not known, {faults.tell_error(error)}"]
 
 
 def blocks(size: int, block: int) -> list[slice]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from contactlab.contracts.status import Status
 from contactlab.numeric.types import Array
-from contactlab.outcome.columns import QUANTITIES, quantity_named
+from contactlab.outcome.columns import QUANTITIES, find_quantity
 from contactlab.outcome.result import ImpactResult
 from contactlab.scene_file import Measured
 
@@ -124,4 +124,4 @@ class Agreement:
 def values_of(quantity: str, result: ImpactResult) -> Array:
     """Return a quantity of a result, with NaN for impacts that failed."""
     good = np.asarray(result.status, dtype=object) == Status.SUCCESS
-    return np.where(good, quantity_named(quantity).of(result), np.nan)
+    return np.where(good, find_quantity(quantity).of(result), np.nan)

@@ -17,7 +17,7 @@ from contactlab.registration.names import KINDS, full_name, is_place, kind_of, s
 from contactlab.registry.composition import DEFAULT_NORMAL
 from contactlab.registry.registry import REGISTRY, PluginError
 from contactlab.runs.simulation import Simulation
-from contactlab.study.posed import posed
+from contactlab.study.posed import pose
 from contactlab.testing.load_paths import scene as ball
 
 #: psi1 and chi of the scenes: every regime of theory §2 but slip throughout, which every law
@@ -100,7 +100,7 @@ class Method:
             elif law is not None:
                 options["tangential"][law] = max(round(value**-0.5) // per_part, LEAST_PARTS)
             if all(
-                _accepted(full_name(kind, getattr(self, kind)), options[kind]) for kind in options
+                accepts(full_name(kind, getattr(self, kind)), options[kind]) for kind in options
             ):
                 ladder.append(options)
         if not quick:
@@ -184,7 +184,7 @@ def methods(laws: Iterable[str] | None = None) -> list[Method]:
         _law(kind, named[kind][-1])  # raises if the law is not installed
     fitting: list[Method] = []
     for normal in named["normal"] or [DEFAULT_NORMAL]:
-        for tangential in named["tangential"] or _installed("tangential"):
+        for tangential in named["tangential"] or _list_names("tangential"):
             of_law = _fitting(normal, tangential, named)
             if not of_law and named["tangential"]:
                 integrators = ", ".join(named["integrator"])
@@ -210,7 +210,7 @@ def _fitting(normal: str, tangential: str, named: dict[str, list[str]]) -> list[
             return []
         fitting = [
             Method(tangential=tangential, integrator=integrator, normal=normal)
-            for integrator in named["integrator"] or _installed("integrator")
+            for integrator in named["integrator"] or _list_names("integrator")
             if _fits(normal, tangential, integrator)
         ]
         return fitting[:1] if whole else fitting  # all integrators give the same answer
@@ -220,7 +220,7 @@ def _fitting(normal: str, tangential: str, named: dict[str, list[str]]) -> list[
         return []
 
 
-def _installed(kind: str) -> list[str]:
+def _list_names(kind: str) -> list[str]:
     return [short_name(name) for name in REGISTRY.names(kind)]
 
 
@@ -238,14 +238,14 @@ def _makes_no_force(tangential: str) -> bool:
         return False
     try:
         simulation = Simulation(tangential=tangential)
-        scene = posed(Scene.nondimensional(psi1=1.0, chi=1.0), simulation.laws)
+        scene = pose(Scene.nondimensional(psi1=1.0, chi=1.0), simulation.laws)
         result = simulation.run(scene)
     except ValueError:
         return False
     return bool(result.psi_change == 0.0)
 
 
-def _accepted(name: str, options: Mapping[str, object]) -> bool:
+def accepts(name: str, options: Mapping[str, object]) -> bool:
     """Return whether a law accepts the options; a resolution may be too coarse."""
     try:
         REGISTRY.create(name, **options)

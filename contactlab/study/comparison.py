@@ -16,9 +16,9 @@ from contactlab.numeric.types import Array, Real
 from contactlab.outcome.result import ImpactResult
 from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import SceneFile
-from contactlab.solve.error_estimate import estimated
+from contactlab.solve.error_estimate import estimate_errors
 from contactlab.study.agreement import Agreement, LawRun, values_of
-from contactlab.study.interrupts import uninterrupted
+from contactlab.study.interrupts import require_all
 from contactlab.study.side_by_side import default_quantities, describe
 
 #: Repeats of a short run. The least time counts, which other load of the machine disturbs least.
@@ -106,7 +106,7 @@ class Comparison:
             change = np.asarray(result.motion.slip_velocity_change)
             error = np.multiply.outer(error, np.ones(kinetics.slip_axes(result.scene)))
         ends = [
-            values_of(quantity, _shifted(result, change + sign * error)) for sign in (1.0, -1.0)
+            values_of(quantity, _shift_slip(result, change + sign * error)) for sign in (1.0, -1.0)
         ]
         return np.array(0.5 * np.abs(ends[0] - ends[1]))
 
@@ -169,8 +169,8 @@ def compare(
             answers: list[ImpactResult] = []
             for job in (None, *series):
                 if job is None:
-                    run = _timed(name, simulation, single, history=history and not single.shape)
-                    run = _estimated(run, simulation) if estimate_error else run
+                    run = _time(name, simulation, single, history=history and not single.shape)
+                    run = _estimate(run, simulation) if estimate_error else run
                 else:
                     assert file is not None
                     answers.append(_run(simulation, file.scene_at(**job.entries)))
@@ -190,14 +190,14 @@ def compare(
     )
     return Comparison(
         scene=single,
-        varied=file.varied if file else _varied(single),
+        varied=file.varied if file else _find_entries(single),
         runs=tuple(runs),
         agreements=agreements,
         interrupted=interrupted,
     )
 
 
-def _varied(scene: Scene) -> dict[str, Array]:
+def _find_entries(scene: Scene) -> dict[str, Array]:
     """Return the entries of a scene file that vary over a batch: one entry, or a grid's axes."""
     if not scene.shape:
         return {}
@@ -218,13 +218,13 @@ def _varied(scene: Scene) -> dict[str, Array]:
     return {"psi1": np.array(np.broadcast_to(psi1, scene.shape))}
 
 
-def _shifted(result: ImpactResult, change: Array) -> ImpactResult:
+def _shift_slip(result: ImpactResult, change: Array) -> ImpactResult:
     """Return a result with another change of slip velocity."""
     return attrs.evolve(result, motion=attrs.evolve(result.motion, slip_velocity_change=change))
 
 
-def _estimated(run: LawRun, simulation: Simulation) -> LawRun:
-    psi2, restitution = estimated(simulation.laws, run.result)
+def _estimate(run: LawRun, simulation: Simulation) -> LawRun:
+    psi2, restitution = estimate_errors(simulation.laws, run.result)
     result = attrs.evolve(
         run.result, psi2_error_estimate=psi2, restitution_error_estimate=restitution
     )
@@ -241,10 +241,10 @@ def _failure(name: str, result: ImpactResult) -> str:
 
 
 def _run(simulation: Simulation, scene: Scene) -> ImpactResult:
-    return uninterrupted(simulation.sweep(scene)) if scene.shape else simulation.run(scene)
+    return require_all(simulation.sweep(scene)) if scene.shape else simulation.run(scene)
 
 
-def _timed(name: str, simulation: Simulation, scene: Scene, *, history: bool) -> LawRun:
+def _time(name: str, simulation: Simulation, scene: Scene, *, history: bool) -> LawRun:
     """Return the result of one simulation, and its least run time per impact."""
     result = _run(simulation, scene)  # the first run also imports, compiles and fills caches
     times = [result.run_time]

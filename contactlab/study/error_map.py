@@ -16,7 +16,7 @@ from contactlab.registry.composition import DEFAULT_NORMAL, STEPPED, exact, fixe
 from contactlab.registry.registry import REGISTRY
 from contactlab.runs.simulation import Simulation
 from contactlab.study.bench_methods import Method
-from contactlab.study.posed import posed
+from contactlab.study.posed import pose
 from contactlab.study.stability_cases import INCIDENCES
 from contactlab.study.stability_references import REFERENCE_TOLERANCES, converges
 
@@ -84,7 +84,7 @@ def error_map(method: Method, *, quick: bool = False) -> ErrorMap:
     steps, chis = (QUICK_STEPS, QUICK_CHIS) if quick else (STEPS, CHIS)
     psi1, chi = (each.ravel() for each in np.meshgrid(INCIDENCES, chis, indexing="ij"))
     law = REGISTRY.create(full_name("tangential", method.tangential))
-    scene = posed(Scene.nondimensional(psi1=psi1, chi=chi), (law,))
+    scene = pose(Scene.nondimensional(psi1=psi1, chi=chi), (law,))
     limit = _psi2(_limit(law), scene)
     rows = []
     for count in steps:

@@ -18,7 +18,7 @@ from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import SceneFile, read_scene
 from contactlab.study.agreement import Agreement, LawRun
 from contactlab.study.comparison import Comparison
-from contactlab.study.interrupts import uninterrupted
+from contactlab.study.interrupts import require_all
 from contactlab.study.validation import Finding
 
 
@@ -58,7 +58,7 @@ class Source:
 E_T = "tangential_restitution"
 
 
-def _damped(restitution: float) -> dict[str, dict[str, float]]:
+def _damp(restitution: float) -> dict[str, dict[str, float]]:
     """Return normal laws: elastic, and damped to the loss that was measured."""
     loss = {"restitution": restitution}
     return {DEFAULT_NORMAL: {}, "tsuji": loss, "viscoelastic": loss}
@@ -69,14 +69,14 @@ SOURCES = (
     Source(
         name="kharaz2001",
         kind="experiment",
-        normals=_damped(0.98),
+        normals=_damp(0.98),
         bounds={
             (E_T, "fronts"): 0.015,
             (E_T, "springs, tsuji restitution=0.98"): 0.015,
             (E_T, "springs, viscoelastic restitution=0.98"): 0.015,
         },
     ),
-    Source(name="superball", kind="experiment", normals=_damped(0.9)),
+    Source(name="superball", kind="experiment", normals=_damp(0.9)),
     Source(name="finite-elements", kind="finite elements", bounds={("psi2", "fronts"): 0.06}),
     Source(name="codes-test4-oxide", kind="other codes", bounds={(E_T, "mindlin_cap"): 0.006}),
     Source(name="codes-test4-alloy", kind="other codes", bounds={(E_T, "mindlin_cap"): 0.006}),
@@ -161,13 +161,13 @@ def _evidence(source: Source, *, curves: bool) -> Evidence:
     for measured in file.measured:
         scene = file.scene_at(**{measured.against: measured.x})
         results = {
-            name: uninterrupted(simulation.sweep(scene)) for name, simulation in simulations.items()
+            name: require_all(simulation.sweep(scene)) for name, simulation in simulations.items()
         }
         agreements.append(Agreement(measured=measured, results=results))
     runs = [
         LawRun(
             name=name,
-            result=uninterrupted(simulation.sweep(file.scene)),
+            result=require_all(simulation.sweep(file.scene)),
             run_time_per_impact=float("nan"),
         )
         for name, simulation in simulations.items()

@@ -8,7 +8,7 @@ from contactlab.contracts.status import Status
 from contactlab.outcome.result import ImpactResult
 
 
-def uninterrupted(result: ImpactResult) -> ImpactResult:
+def require_all(result: ImpactResult) -> ImpactResult:
     """Return ``result`` unchanged, unless Ctrl-C interrupted the sweep.
 
     An interrupted sweep returns the impacts that are done. A study would count the others as

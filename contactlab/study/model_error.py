@@ -18,7 +18,7 @@ from contactlab.numeric.types import Array
 from contactlab.registration.names import full_name
 from contactlab.registry.registry import REGISTRY
 from contactlab.runs.simulation import Simulation
-from contactlab.study.posed import posed
+from contactlab.study.posed import pose
 from contactlab.study.stability_references import continuum, converges, reference_for
 
 #: Numerical error of any answer, over the range of psi2.
@@ -68,7 +68,7 @@ def model_error(law: str, chis: Sequence[float], incidences: Sequence[float]) ->
 def _error(law: TangentialLaw, psi1: float, chi: float) -> float:
     """Return the model error of one impact, over the range of psi2; NaN without exact answer."""
     laws = Simulation(tangential=law).laws
-    scene, normal = posed(Scene.nondimensional(psi1=psi1, chi=chi), laws), laws.normal
+    scene, normal = pose(Scene.nondimensional(psi1=psi1, chi=chi), laws), laws.normal
     exact, own = continuum(scene, law), reference_for(law, normal)(scene, law)
     unit, width, _ = range_of(scene)
     uncertain = 0.0

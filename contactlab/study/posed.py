@@ -17,7 +17,7 @@ def need_units(laws: Iterable[Law]) -> bool:
     return any(map(in_units, laws))
 
 
-def posed(scene: Scene, laws: Iterable[Law]) -> Scene:
+def pose(scene: Scene, laws: Iterable[Law]) -> Scene:
     """Return a scene of groups that the laws accept: a ball like one of steel if they need units.
 
     psi1, chi, lam and eta stay as they are, and so does the friction coefficient.

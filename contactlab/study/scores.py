@@ -23,7 +23,7 @@ from contactlab.registry.registry import REGISTRY, PluginError
 from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import LawChoice, Measured, SceneFile
 from contactlab.study.comparison import Comparison
-from contactlab.study.side_by_side import wrapped
+from contactlab.study.side_by_side import wrap
 
 #: Scores below this are rounding errors and shown as 0.
 ZERO = 1e-12
@@ -82,7 +82,7 @@ def candidates(laws: LawChoice) -> Candidates:
     has the integrator chosen if that runs the law, else the preferred one.
     """
     normal = attrs.evolve(laws, normal=laws.normal or composition.DEFAULT_NORMAL).made("normal")
-    first = composition.preferred("tangential", normal)
+    first = composition.prefer_law("tangential", normal)
     names = [short_name(name) for name in REGISTRY.names("tangential")]
     simulations: dict[str, Simulation] = {}
     left_out: dict[str, str] = {}
@@ -266,8 +266,8 @@ def describe_scores(scores: Sequence[Score], comparison: Comparison, file: Scene
         "nothing: over the energy at the start. Force from load alone: what pressing adds to a "
         "sheared contact, over mu P_max; a dash for laws that are not stepped. Time: in the sweep."
     )
-    parts = [part for part in (file.title, wrapped(file.citation)) if part]
-    return "\n\n".join([*parts, table(headings, rows), wrapped(notes)])
+    parts = [part for part in (file.title, wrap(file.citation)) if part]
+    return "\n\n".join([*parts, table(headings, rows), wrap(notes)])
 
 
 def _short(value: str | float) -> str:

@@ -14,8 +14,8 @@ from contactlab.outcome.columns import (
     COMPARISON_TABLE,
     columns_of,
     components,
+    find_quantity,
     foreign,
-    quantity_named,
 )
 from contactlab.outcome.tables import IN_SPACE, heading, number, time
 from contactlab.outcome.text_table import table
@@ -78,7 +78,7 @@ def default_quantities(comparison: Compared) -> list[str]:
 
 def describe(comparison: Compared, quantities: Sequence[str], file: SceneFile | None = None) -> str:
     """Return a file's title, tables, agreement with measured values, cautions and cost."""
-    parts = [file.title, wrapped(file.citation)] if file else []
+    parts = [file.title, wrap(file.citation)] if file else []
     by_quantity: dict[str, list[Agreement]] = {name: [] for name in quantities}
     for agreement in comparison.agreements:
         by_quantity.setdefault(agreement.measured.quantity, []).append(agreement)
@@ -101,7 +101,7 @@ def _one_impact(comparison: Compared, quantities: Sequence[str]) -> str:
     """Return the quantities of one impact under all laws, a row each; of many laws a column."""
     first, *others = comparison.names
     if len(comparison.names) > MOST_COLUMNS:
-        units = {name: quantity_named(name).unit_in(comparison.scene) for name in quantities}
+        units = {name: find_quantity(name).unit_in(comparison.scene) for name in quantities}
         headings = ["law", *(heading(name, unit) for name, unit in units.items())]
         rows = [
             [law, *(float(comparison.values(name, law)) for name in quantities)]
@@ -113,7 +113,7 @@ def _one_impact(comparison: Compared, quantities: Sequence[str]) -> str:
     for name in quantities:
         values = [float(comparison.values(name, law)) for law in comparison.names]
         differences = [float(comparison.difference(name, law)) for law in others]
-        rows.append([name, *values, *differences, quantity_named(name).unit_in(comparison.scene)])
+        rows.append([name, *values, *differences, find_quantity(name).unit_in(comparison.scene)])
     return table(headings, rows)
 
 
@@ -125,7 +125,7 @@ def _over_sweep(comparison: Compared, quantity: str) -> str:
     columns = [np.asarray(values) for values in comparison.varied.values()]
     columns += [comparison.values(quantity, law) for law in comparison.names]
     columns += [comparison.difference(quantity, law) for law in others]
-    unit = quantity_named(quantity).unit_in(comparison.scene)
+    unit = find_quantity(quantity).unit_in(comparison.scene)
     return f"{heading(quantity, unit)}:\n{table(headings, np.transpose(columns).tolist())}"
 
 
@@ -191,6 +191,6 @@ def _with_unit(entry: str) -> str:
     return entry if unit in ("1", "deg") else f"{entry} ({unit})"
 
 
-def wrapped(text: str) -> str:
+def wrap(text: str) -> str:
     """Return a text in lines of 96 characters."""
     return textwrap.fill(" ".join(text.split()), width=96)

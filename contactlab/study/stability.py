@@ -105,7 +105,7 @@ def stability(
     # A budget cuts all methods alike: family by family, and within a family by work. Model errors
     # come after the map, which has cached the costly exact answers.
     jobs: list[Callable[[], Outcome | ModelError | None]] = [
-        partial(judge if work(case) <= largest else _skipped, case)
+        partial(judge if work(case) <= largest else _skip, case)
         for case in sorted(listed, key=lambda case: (case.family == MAP, case.family, work(case)))
     ]
     jobs += [
@@ -148,6 +148,6 @@ def work(case: Cell) -> float:
     return steps * (1.0 + float(max(parts.values(), default=0.0)) ** 2 / 1e4)
 
 
-def _skipped(case: Cell) -> Outcome:
+def _skip(case: Cell) -> Outcome:
     """Return the outcome of a case that is too much work."""
     return Outcome.of(case, SKIPPED, note="too much work")

@@ -21,7 +21,7 @@ from contactlab.registration.names import full_name, short_name
 from contactlab.registry.composition import DEFAULT_NORMAL, misfit
 from contactlab.registry.registry import REGISTRY, PluginError
 from contactlab.study.bench_methods import Method, Options
-from contactlab.study.stability_coupled import coupled_scenes, tried_coupled
+from contactlab.study.stability_coupled import coupled_scenes, tries_bodies
 
 #: A solid sphere of Poisson's ratio 0.3: the paper's own case.
 CHI = 49 / 34
@@ -111,7 +111,7 @@ def cases(method: Method, *, quick: bool = False) -> Iterator[Cell]:
             yield _case(method, scene, {"integrator": {"steps": steps}})
     for normal in other_normal_laws(method):
         yield from _under(method, normal, quick=quick)
-    if tried_coupled(method):
+    if tries_bodies(method):
         for label, make in coupled_scenes(quick=quick):
             yield _case(method, Case("eccentric", label, make), {})
     if method.whole:

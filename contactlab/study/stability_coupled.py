@@ -67,7 +67,7 @@ def rod(angle: float, friction: float, slip: float, *, kappa: float) -> Scene:
     return Scene(None, None, friction, 1.0, slip, pair=pair, inverse_mass=W)
 
 
-def tried_coupled(method: Method) -> bool:
+def tries_bodies(method: Method) -> bool:
     """Return whether the method answers coupled impacts, by partial slip or as rigid bodies."""
     simulation = method.simulation({"tangential": {}, "integrator": {}})
     law = simulation.tangential

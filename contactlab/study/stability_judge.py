@@ -18,9 +18,9 @@ from contactlab.outcome.result import ImpactResult
 from contactlab.registry import composition
 from contactlab.registry.registry import PluginError
 from contactlab.runs.simulation import Simulation
-from contactlab.solve.error_estimate import estimated
+from contactlab.solve.error_estimate import estimate_errors
 from contactlab.solve.solved_motion import ACCURACY
-from contactlab.study.posed import posed
+from contactlab.study.posed import pose
 from contactlab.study.stability_cases import Cell
 from contactlab.study.stability_coupled import RIGID_DISTANCE, STIFF, distance
 from contactlab.study.stability_references import (
@@ -129,11 +129,11 @@ def judge_run(
         Returns the exact change of slip velocity in m/s, or None if there is none; by default
         ``reference_for`` the laws.
     """
-    scene = posed(scene, simulation.laws)
+    scene = pose(scene, simulation.laws)
     before = time.perf_counter()
     try:
         with np.errstate(all="ignore"):
-            result: Any = simulation.run(scene) if case.planned else marched(simulation, scene)
+            result: Any = simulation.run(scene) if case.planned else march_impact(simulation, scene)
     except Exception as error:
         # Any exception is an outcome, and the report goes on. A planned run turns an exception of
         # the integrator into a status; a march does not.
@@ -160,7 +160,7 @@ def judge_run(
     return Outcome.of(case, outcome, error=off, bound=bound, note=note, run_time_s=took)
 
 
-def marched(simulation: Simulation, scene: Scene) -> ImpactResult:
+def march_impact(simulation: Simulation, scene: Scene) -> ImpactResult:
     """Return the result of an impact marched by the integrator, without whole-impact answers."""
     law, integrator = simulation.tangential, simulation.integrator
     normal = simulation.normal_motion(scene)
@@ -186,7 +186,7 @@ def _of_spheres(
     undeclared = np.isnan(bound)
     wrong = _wrong(simulation, result, excess, bound := UNDECLARED if undeclared else bound)
     if wrong and undeclared:
-        estimate = float(np.asarray(estimated(simulation.laws, result)[0])) * unit / width
+        estimate = float(np.asarray(estimate_errors(simulation.laws, result)[0])) * unit / width
         bound = min(max(bound, ESTIMATED * estimate), LARGEST_SHARE)
         wrong = _wrong(simulation, result, excess, bound)
     return float(error), bound, wrong

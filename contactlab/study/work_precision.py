@@ -23,8 +23,8 @@ from contactlab.registry import composition
 from contactlab.runs.simulation import Simulation
 from contactlab.study.bench_methods import Method, Options, scenes
 from contactlab.study.benchmark import ALIKE, ROUNDING, Benchmark, Row
-from contactlab.study.interrupts import uninterrupted
-from contactlab.study.posed import need_units, posed
+from contactlab.study.interrupts import require_all
+from contactlab.study.posed import need_units, pose
 from contactlab.study.stability_references import converges, reference_for
 
 #: Tolerance of the exact answers: finer than the default, which is measured too.
@@ -126,7 +126,7 @@ def _limit(method: Method) -> tuple[str, str, bool]:
     if "elastic_hertz" in laws.capability.normal_claims:
         return method.normal, "", sized
     own = converges(composition.law("tangential", method.tangential))
-    other = method.tangential if own else composition.preferred("tangential", normal)
+    other = method.tangential if own else composition.prefer_law("tangential", normal)
     return method.normal, other, sized
 
 
@@ -316,8 +316,8 @@ def _swept_scenes(size: int = SWEEP) -> Scene:
 def _sweep_time(simulation: Simulation, alone: float) -> float:
     """Return the least time per impact of a sweep of solid spheres; ``alone`` is one's, in s."""
     size = int(np.clip(SWEEP_BUDGET / alone, FEWEST, SWEEP))
-    batch = posed(_swept_scenes(size), simulation.laws)
-    return _least(lambda: uninterrupted(simulation.sweep(batch)), repeats=2) / size
+    batch = pose(_swept_scenes(size), simulation.laws)
+    return _least(lambda: require_all(simulation.sweep(batch)), repeats=2) / size
 
 
 def _order(rows: list[Row]) -> float:

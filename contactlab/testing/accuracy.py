@@ -11,7 +11,7 @@ from contactlab.contracts import ClosedFormNormalLaw, Integrator
 from contactlab.runs.simulation import Simulation
 from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing.check import apply_if, check, hold, within
-from contactlab.testing.integrators import CHI, marched, marched_impact
+from contactlab.testing.integrators import CHI, march_alone, marched_impact
 from contactlab.testing.laws import DampedHertz, PressedSpring, Slider, SlidingForEver, Yielding
 from contactlab.testing.load_paths import scene
 from contactlab.testing.ways import at_resolution, fitting
@@ -132,7 +132,7 @@ def books_by(integrator: Integrator) -> None:
 def _imbalance(simulation: Simulation, psi1: float) -> float:
     """Return the imbalance of the energy books, over the energy of psi1 or of psi = 1."""
     impact: Any = scene(psi1, CHI)
-    motion = marched(simulation, impact)
+    motion = march_alone(simulation, impact)
     change, unit = impact.psi(motion.slip_velocity_change), impact.pair.tangential_mass
     work = motion.friction_work * impact.psi_scale**2 / unit
     return float(abs(change * (psi1 + 0.5 * change) + work) / (0.5 * max(psi1, 1.0) ** 2))

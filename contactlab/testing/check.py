@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from contactlab.contracts import Law, TangentialMotion, claims
 from contactlab.contracts.status import Status
-from contactlab.testing.limits import SECONDS, OutOfTimeError, limited
+from contactlab.testing.limits import SECONDS, OutOfTimeError, limit_time
 
 Function: TypeAlias = Callable[[Any], None]
 
@@ -86,7 +86,7 @@ class Check:
         ----------
         law : Law
         seconds : float
-            Time limit of the check; see ``contactlab.testing.limits.limited``.
+            Time limit of the check; see ``contactlab.testing.limits.limit_time``.
 
         Raises
         ------
@@ -98,7 +98,7 @@ class Check:
             If the check runs out of time.
         """
         try:
-            with np.errstate(all="ignore"), limited(self.name, law, seconds):
+            with np.errstate(all="ignore"), limit_time(self.name, law, seconds):
                 self.function(law)
         except OutOfTimeError as stopped:
             raise CheckStoppedError(str(stopped)) from None

@@ -63,7 +63,7 @@ def _attributes(value: object) -> Iterator[str]:
                 yield name
 
 
-def well_formed(value: object, shape: tuple[int, ...]) -> bool:
+def has_numbers(value: object, shape: tuple[int, ...]) -> bool:
     """Return whether ``value`` holds real numbers of ``shape`` (floats, or an array of them)."""
     array = np.asarray(value)
     return array.dtype.kind in "fiu" and array.shape == shape

@@ -45,7 +45,7 @@ def declared_error(law: TangentialLaw) -> None:
     for way in ways(law):
         for chi, psi1 in itertools.product(CHI, ANGLES):
             impact = scene(psi1, chi)
-            declared = _declared(way, impact)
+            declared = _declare(way, impact)
             if math.isnan(declared):
                 continue
             better, source = _better(way, impact)
@@ -61,7 +61,7 @@ def declared_error(law: TangentialLaw) -> None:
     apply_if(tried, "It declares no psi2_error, or nothing is finer to compare it with.")
 
 
-def _declared(way: Way, impact: Scene) -> float:
+def _declare(way: Way, impact: Scene) -> float:
     """Return the declared error of psi2; NaN if none is declared."""
     normal = normal_motion(way.normal, impact)
     if way.integrator is None:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from contactlab.contracts import NormalContact, SteppedTangentialLaw
-from contactlab.numeric.arrays import locked
+from contactlab.numeric.arrays import lock_arrays
 from contactlab.testing.check import GROWS, check, hold, within, worst
 from contactlab.testing.load_paths import (
     STEPS_TO_KNOT,
@@ -155,11 +155,14 @@ def non_finite(law: SteppedTangentialLaw) -> None:
 def _non_finite_in_a_batch(law: SteppedTangentialLaw) -> None:
     """Hold that NaN as the slip of one contact of a batch is refused, or gives NaN only there."""
     bench = Bench.of((3,))
-    before = bench.contact(locked(np.full(3, 0.7)))
+    before = bench.contact(lock_arrays(np.full(3, 0.7)))
     slip = np.array([0.1, 0.2, 0.3])
-    state, increment = bench.start(law), bench.increment(locked(slip), before, bench.time / 16.0)
+    state, increment = (
+        bench.start(law),
+        bench.increment(lock_arrays(slip), before, bench.time / 16.0),
+    )
     spoiled = np.where([False, True, False], math.nan, slip)
-    nan_increment = bench.increment(locked(spoiled), before, bench.time / 16.0)
+    nan_increment = bench.increment(lock_arrays(spoiled), before, bench.time / 16.0)
     sound, _ = law.advance(state, increment, before, before)
     try:
         response, _ = law.advance(state, nan_increment, before, before)

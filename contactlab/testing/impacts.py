@@ -21,7 +21,7 @@ from contactlab.testing.check import CHANGES, GROWS, WHOLE, apply_if, check, hol
 from contactlab.testing.compare import same
 from contactlab.testing.load_paths import FRICTION, bodies, scene
 from contactlab.testing.units import ODD_UNITS, in_units
-from contactlab.testing.ways import ROUNDING, Way, allowed, course, meet, ways, ways_of_bodies
+from contactlab.testing.ways import ROUNDING, Way, bound_error, course, meet, ways, ways_of_bodies
 
 #: Entries of a motion.
 ENTRIES = (*TangentialMotion.numbers(), "status", "detail")
@@ -88,7 +88,7 @@ def impact_units(law: TangentialLaw) -> None:
 def impact_bounds(law: TangentialLaw) -> None:
     """|psi2| is at most |psi1|, and psi changes by at most 4 chi (theory §7)."""
     for way, psi1, chi, change, _ in met(law):
-        room = allowed(way)
+        room = bound_error(way)
         after = psi1 + change
         within(
             abs(after),
@@ -130,7 +130,7 @@ def impact_coulomb_limit(law: TangentialLaw) -> None:
             over = float(np.max(np.abs(history.tangential_force) - limit)) / largest
             within(
                 over,
-                allowed(way),
+                bound_error(way),
                 f"psi1 = {psi1}, chi = {chi}: abs(F) exceeds mu P by {over:.2g} of mu P_max.",
             )
     apply_if(followed, "Its whole-impact answers have no course, and so no force to check.")
@@ -222,7 +222,7 @@ def impact_reference(law: TangentialLaw) -> None:
             error = abs(psi1 + meet(way, psi1, chi)[0] - psi2)
             within(
                 error,
-                1e-8 if way.exact else allowed(way),
+                1e-8 if way.exact else bound_error(way),
                 f"psi1 = {psi1}, chi = {chi}: psi2 is {error:.2g} off ({way}).",
             )
 

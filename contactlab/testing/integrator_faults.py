@@ -30,7 +30,7 @@ def faults_reported(integrator: Integrator) -> None:
         UnsettledSpring(),
         SlidingForEver(fails=True),
     )
-    _reported([*fitting(integrator, faulty, "normal.hertz")], least=1)
+    _hold_reports([*fitting(integrator, faulty, "normal.hertz")], least=1)
 
 
 @check(Integrator)
@@ -53,7 +53,7 @@ def faults_named(integrator: Integrator) -> None:
 def normal_faults_reported(integrator: Integrator) -> None:
     """A normal motion that becomes NaN gives a status, never an answer."""
     laws = (PressedSpring(), Slider(), SlidingForEver())
-    _reported([*fitting(integrator, laws, SpoiledHertz())], least=0)
+    _hold_reports([*fitting(integrator, laws, SpoiledHertz())], least=0)
 
 
 @check(Integrator)
@@ -73,7 +73,7 @@ def bounded(integrator: Integrator) -> None:
             hold(not motion.status, "A run with endless events is reported as a success.")
 
 
-def _reported(simulations: list[Simulation], *, least: int) -> None:
+def _hold_reports(simulations: list[Simulation], *, least: int) -> None:
     """Hold that each run ends with a status, a detail, and ``least`` instants of history."""
     apply_if(simulations, NONE_FIT)
     for simulation in simulations:

@@ -26,10 +26,10 @@ def marched_impact(
     simulation: Simulation, psi1: Real, recorder: Observer | None = None
 ) -> TangentialMotion:
     """Return the motion of an impact by the integrator alone, without whole-impact answers."""
-    return marched(simulation, scene(psi1, CHI), recorder)
+    return march_alone(simulation, scene(psi1, CHI), recorder)
 
 
-def marched(
+def march_alone(
     simulation: Simulation, impact: Scene, recorder: Observer | None = None
 ) -> TangentialMotion:
     """Return the motion of a scene by the integrator alone, without whole-impact answers."""

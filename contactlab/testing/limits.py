@@ -41,7 +41,7 @@ def begin(what: str) -> None:
 
 
 @contextmanager
-def limited(name: str, law: object, seconds: float = SECONDS) -> Iterator[None]:
+def limit_time(name: str, law: object, seconds: float = SECONDS) -> Iterator[None]:
     """Raise ``OutOfTimeError`` in the body after ``seconds`` of processor time.
 
     Only the main thread of a system with SIGALRM can be interrupted; elsewhere there is no limit.

@@ -18,9 +18,9 @@ from contactlab.contracts import Increment, NormalContact, NormalMotion, Stepped
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import locked
+from contactlab.numeric.arrays import lock_arrays
 from contactlab.numeric.types import Array, Real
-from contactlab.paths.path_steps import advanced
+from contactlab.paths.path_steps import advance_steps
 from contactlab.registry.registry import REGISTRY
 from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing import limits
@@ -79,7 +79,7 @@ QUANTITIES = (
 )  # fmt: skip
 
 
-def varied(quantity: str) -> Scene:
+def vary(quantity: str) -> Scene:
     """Return a batch of three central impacts of heavy bodies that differ in one quantity."""
     base = scene(0.0, HEAVY)
     factors = np.linspace(0.6, 1.6, 3)
@@ -147,15 +147,19 @@ class Bench:
     def contact(self, level: Real) -> NormalContact:
         """Return the Hertz contact at zeta = ``level``; negative levels are out of contact."""
         inside = level * (level > 0.0)
-        force = locked(self.force * inside**1.5)
-        radius, overlap = locked(self.radius * inside**0.5), locked(self.approach * level)
+        force = lock_arrays(self.force * inside**1.5)
+        radius, overlap = lock_arrays(self.radius * inside**0.5), lock_arrays(self.approach * level)
         return NormalContact(force, radius, overlap, force)
 
     def increment(self, slip: Real, after: NormalContact, duration: Real) -> Increment:
         """Return the increment of a step by ``slip``, scaled."""
-        displacement = locked(self.slip * slip)
+        displacement = lock_arrays(self.slip * slip)
         return Increment(
-            displacement, locked(displacement / duration), after.friction_load, duration, duration
+            displacement,
+            lock_arrays(displacement / duration),
+            after.friction_load,
+            duration,
+            duration,
         )
 
     @property
@@ -193,7 +197,7 @@ def continue_from(
     count : int, optional
         Number of steps of the whole path, if ``path`` is a part of it.
     """
-    duration = locked(bench.time / (count or len(path.slip)))
+    duration = lock_arrays(bench.time / (count or len(path.slip)))
     limits.begin(f"a path of {len(path.slip)} steps")
     rows = zip(_rows(path.slip), _rows(path.level), strict=True)
 
@@ -205,7 +209,7 @@ def continue_from(
             yield bench.increment(next_slip - here, after, duration), after
             here = next_slip
 
-    answers, states = advanced(law, state, bench.contact(level), steps())
+    answers, states = advance_steps(law, state, bench.contact(level), steps())
     for _, _, settled in answers:
         hold(np.all(settled), "The law found no answer on a straight load path.")
     forces = [force / bench.friction_force for force, _, _ in answers]

@@ -10,12 +10,12 @@ import numpy as np
 from contactlab.contracts import NormalContact, NormalLaw
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import locked
+from contactlab.numeric.arrays import lock_arrays
 from contactlab.numeric.types import Array, Real
 from contactlab.testing import limits
 from contactlab.testing.check import CheckFailedError, check, hold, within
-from contactlab.testing.compare import hold_read_only, same, well_formed
-from contactlab.testing.load_paths import bodies, scene, varied
+from contactlab.testing.compare import has_numbers, hold_read_only, same
+from contactlab.testing.load_paths import bodies, scene, vary
 from contactlab.testing.units import ODD_UNITS, Units, in_units
 
 #: Steps to the largest approach, which is that of a Hertz impact.
@@ -65,7 +65,7 @@ def respond(law: NormalLaw, impact: Scene, approach: Array, rate: Array) -> Arra
 
 def _rows(column: Array) -> list[Real]:
     """Return the rows of a column: floats for one impact, read-only arrays for a batch."""
-    return column.tolist() if column.ndim == 1 else [locked(row.copy()) for row in column]
+    return column.tolist() if column.ndim == 1 else [lock_arrays(row.copy()) for row in column]
 
 
 def _complete(contact: object) -> NormalContact:
@@ -86,7 +86,7 @@ def contacts(law: NormalLaw) -> None:
             for name, value in zip(ENTRIES, contact, strict=True):
                 if name == "friction_load" and value is None:
                     continue
-                if not (well_formed(value, shape) and np.all(np.isfinite(np.asarray(value)))):
+                if not (has_numbers(value, shape) and np.all(np.isfinite(np.asarray(value)))):
                     where = f"at approach {depth!s:.60}, batch shape {shape}"
                     hold(False, f"{name} = {value!r} {where}.")
 
@@ -95,7 +95,7 @@ def contacts(law: NormalLaw) -> None:
 def contacts_batch(law: NormalLaw) -> None:
     """A batch of unlike bodies gives the same as each contact alone (NormalLaw, 3)."""
     for quantity in DIFFERENT:
-        impact, approach, rate = strokes(given=varied(quantity))
+        impact, approach, rate = strokes(given=vary(quantity))
         words = f"of a batch that differs in {quantity} only"
         _alike(law, impact, approach[::SPARSE], rate[::SPARSE], words)
     impact, approach, rate = strokes(bodies=bodies(3))

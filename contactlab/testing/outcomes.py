@@ -17,7 +17,7 @@ from contactlab.testing.check import (
     CheckStoppedError,
     NotApplicableError,
 )
-from contactlab.testing.limits import MOST_TIMEOUTS, SECONDS, OutOfTimeError, limited
+from contactlab.testing.limits import MOST_TIMEOUTS, SECONDS, OutOfTimeError, limit_time
 
 #: Last line of a report with failures.
 REMEDY = (
@@ -62,12 +62,12 @@ def checks_for(law: Law | str) -> list[Check]:
     return [check for check in CHECKS if check.applies_to(made)]
 
 
-def claimed(law: Law, check: Check) -> bool:
+def applies(law: Law, check: Check) -> bool:
     """Return whether ``check`` applies to ``law`` by its claim; see ``Check.claim``."""
-    return check.claim is None or check.claim in claims(law) or check.name in expected(law)
+    return check.claim is None or check.claim in claims(law) or check.name in expected_to_fail(law)
 
 
-def expected(law: Law) -> dict[str, str]:
+def expected_to_fail(law: Law) -> dict[str, str]:
     """Return the checks that ``law`` expects to fail, with its reasons."""
     return dict(getattr(law, "expected_failures", {}))
 
@@ -82,9 +82,9 @@ def outcome(law: Law, check: Check, *, seconds: float = SECONDS) -> Outcome:
     seconds : float
         Time limit of the check, in s.
     """
-    if not claimed(law, check):
+    if not applies(law, check):
         return Outcome(check.name, Verdict.NOT_CLAIMED, f"The law does not offer {check.claim!r}.")
-    reason = expected(law).get(check.name)
+    reason = expected_to_fail(law).get(check.name)
     try:
         check(law, seconds=seconds)
     except CheckStoppedError as stopped:
@@ -128,7 +128,7 @@ def examine(
         If the law cannot be imported and made in that time.
     """
     try:
-        with limited("loading", law, seconds):
+        with limit_time("loading", law, seconds):
             made = made_law(law)
     except OutOfTimeError:
         rule = f"its module or its class did not return within {seconds:g} s of computing"

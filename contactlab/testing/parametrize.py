@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from contactlab.contracts import Law
-from contactlab.testing.outcomes import checks_for, claimed, expected, made_law
+from contactlab.testing.outcomes import applies, checks_for, expected_to_fail, made_law
 
 
 def parametrize_with_checks(laws: Sequence[Law | str]) -> Any:
@@ -32,9 +32,9 @@ def parametrize_with_checks(laws: Sequence[Law | str]) -> Any:
         law = made_law(law_or_name)
         name = law_or_name if isinstance(law_or_name, str) else type(law).__name__
         for check in checks_for(law):
-            if not claimed(law, check):
+            if not applies(law, check):
                 continue
-            reason = expected(law).get(check.name)
+            reason = expected_to_fail(law).get(check.name)
             marks = []
             if reason is not None:
                 marks = [pytest.mark.xfail(reason=reason, strict=True)]

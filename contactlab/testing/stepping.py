@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from contactlab.contracts import SteppedTangentialLaw
-from contactlab.numeric.arrays import locked
+from contactlab.numeric.arrays import lock_arrays
 from contactlab.numeric.types import Array, Real
 from contactlab.registry.registry import REGISTRY
 from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing.check import check, hold, within, worst
-from contactlab.testing.compare import hold_read_only, same, well_formed
+from contactlab.testing.compare import has_numbers, hold_read_only, same
 from contactlab.testing.load_paths import (
     QUANTITIES,
     Bench,
@@ -21,7 +21,7 @@ from contactlab.testing.load_paths import (
     continue_from,
     drive,
     straight,
-    varied,
+    vary,
     wandering,
 )
 
@@ -40,7 +40,7 @@ def answers(law: SteppedTangentialLaw) -> None:
         for step in range(len(path.slip)):
             next_slip, level = _row(path.slip, step), _row(path.level, step)
             after = bench.contact(level)
-            increment = bench.increment(next_slip - slip, after, locked(bench.time / 100.0))
+            increment = bench.increment(next_slip - slip, after, lock_arrays(bench.time / 100.0))
             answer = law.advance(state, increment, before, after)
             where = f"at step {step + 1} of a batch of shape {shape}"
             hold(
@@ -50,7 +50,7 @@ def answers(law: SteppedTangentialLaw) -> None:
             response, state = answer
             for name in ("force", "friction_work"):
                 value = getattr(response, name, None)
-                good = well_formed(value, shape) and np.all(np.isfinite(np.asarray(value)))
+                good = has_numbers(value, shape) and np.all(np.isfinite(np.asarray(value)))
                 hold(good, f"{name} = {_short(value)} {where}.")
             before, slip = after, next_slip
 
@@ -60,7 +60,7 @@ def batch(law: SteppedTangentialLaw) -> None:
     """A batch of unlike bodies gives the same as each contact alone (Integrator, 5)."""
     short = wandering(2, knots=4, steps=8)
     for quantity in QUANTITIES:
-        various = Bench.along(normal_motion(REGISTRY.create("normal.hertz"), varied(quantity)))
+        various = Bench.along(normal_motion(REGISTRY.create("normal.hertz"), vary(quantity)))
         _alike(law, various, [short] * 3, f"of a batch that differs in {quantity} only")
     paths = [wandering(seed, knots=8) for seed in (2, 3, 4, 5)]
     _alike(law, Bench.of((4,)), paths, "of a batch")
@@ -94,7 +94,7 @@ def _pure(law: SteppedTangentialLaw, shape: tuple[int, ...], *, knots: int) -> N
     """Hold that steps tried and discarded change nothing, for one contact or a batch."""
     bench, path = Bench.of(shape), _spread(wandering(6, knots=knots), shape)
     before, slip, state = bench.contact(0.0 * path.level[0]), 0.0 * path.slip[0], bench.start(law)
-    duration = locked(bench.time / len(path.slip))
+    duration = lock_arrays(bench.time / len(path.slip))
     of_batch = f" of a batch of shape {shape}" if shape else ""
     for step in range(len(path.slip)):
         next_slip, level = _row(path.slip, step), _row(path.level, step)

@@ -86,7 +86,7 @@ def tension(law: SteppedTangentialLaw) -> None:
         pulled = bench.contact(0.5)
         load = share * pulled.force
         pulled = pulled._replace(force=-0.3 * pulled.force, friction_load=load)
-        forward, reversed_force = (_pulled(law, bench, pulled, sense) for sense in (1.0, -1.0))
+        forward, reversed_force = (_pull(law, bench, pulled, sense) for sense in (1.0, -1.0))
         limit = load / bench.force
         over = worst(forward) - limit
         within(
@@ -101,7 +101,7 @@ def tension(law: SteppedTangentialLaw) -> None:
         )
 
 
-def _pulled(law: SteppedTangentialLaw, bench: Bench, pulled: NormalContact, sense: float) -> Array:
+def _pull(law: SteppedTangentialLaw, bench: Bench, pulled: NormalContact, sense: float) -> Array:
     """Return the scaled forces of a sheared contact that comes under tension and is moved on."""
     pressed = drive(law, bench, straight((0.0, 0.7), (0.4 * sense, 0.7), steps=8)).state
     state, before, forces = pressed, bench.contact(0.7), []

@@ -6,7 +6,7 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import CausalTangentialLaw, SteppedTangentialLaw, claims
-from contactlab.numeric.arrays import locked
+from contactlab.numeric.arrays import lock_arrays
 from contactlab.numeric.types import Array
 from contactlab.registry.registry import REGISTRY
 from contactlab.solve.normal_motion import normal_motion
@@ -195,15 +195,15 @@ def drive_vectors(law: CausalTangentialLaw, bench: Bench, path: Path) -> Answers
     """Return the answers of ``law`` to slips of shape (K, 2); forces have the shape (K, ..., 2)."""
     limits.begin(f"a path of {len(path.slip)} vectors")
     state = law.begin(bench.scene, bench.normal, vectors=True)
-    unit, duration = np.asarray(bench.slip)[..., None], locked(bench.time / len(path.slip))
+    unit, duration = np.asarray(bench.slip)[..., None], lock_arrays(bench.time / len(path.slip))
     before, here = bench.contact(0.0), np.zeros(2)
     forces, works = [], []
     for slip, level in zip(path.slip, path.level.tolist(), strict=True):
         after = bench.contact(level)
         limits.DOING.steps += 1
-        moved = locked(unit * (slip - here))
+        moved = lock_arrays(unit * (slip - here))
         increment = bench.increment(0.0, after, duration)._replace(
-            displacement=moved, velocity=locked(moved / np.asarray(duration)[..., None])
+            displacement=moved, velocity=lock_arrays(moved / np.asarray(duration)[..., None])
         )
         response, state = law.advance(state, increment, before, after)
         force = np.asarray(response.force)

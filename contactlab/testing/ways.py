@@ -90,12 +90,12 @@ class Way(NamedTuple):
         motion: TangentialMotion
         limits.begin(f"an impact, {_which(impact)} ({self})")
         if self.bodies:
-            motion = _together(self, _coupled(impact), recorder)
+            motion = _together(self, _couple(impact), recorder)
         elif self.integrator is None:
             motion = Simulation(normal=self.normal, tangential=self.law).run(impact).motion
         else:
             normal = normal_motion(self.normal, impact)
-            _followed(self, normal, impact)
+            _bound_steps(self, normal, impact)
             motion = self.integrator.integrate(impact, normal, self.law, recorder)
         hold_success(motion, f"{_which(impact)}: {{}} ({self})")
         unit = impact.pair.tangential_mass / np.square(impact.psi_scale)
@@ -103,7 +103,7 @@ class Way(NamedTuple):
         return Solved(change, motion, motion.friction_work / unit)
 
 
-def _coupled(impact: Scene) -> Scene:
+def _couple(impact: Scene) -> Scene:
     """Return an impact with an inverse mass that hardly couples; the mirror image of its mirror."""
     pair, shape = impact.pair, impact.shape
     W = np.zeros((*shape, 3, 3))
@@ -125,7 +125,7 @@ def _together(way: Way, impact: Scene, recorder: Observer | None) -> TangentialM
     return way.integrator.integrate_coupled(impact, normal, way.law, recorder)
 
 
-def _followed(way: Way, normal: NormalMotion, impact: Scene) -> None:
+def _bound_steps(way: Way, normal: NormalMotion, impact: Scene) -> None:
     """Hold that the stiffness of the law needs at most ``MOST_STEPS`` steps."""
     assert way.integrator is not None
     if not isinstance(way.law, SteppedTangentialLaw):
@@ -267,7 +267,7 @@ def course(way: Way, psi1: float, chi: float) -> tuple[History, TangentialMotion
     return recorder.history(), motion
 
 
-def allowed(way: Way) -> float:
+def bound_error(way: Way) -> float:
     """Return the bound of the error of psi, by the law and by the integrator."""
     if way.integrator is None:
         return ROUNDING

@@ -15,7 +15,7 @@ from contactlab.numeric.types import Real
 from contactlab.registry.registry import REGISTRY
 from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing.check import NotApplicableError, apply_if, check, hold, within
-from contactlab.testing.compare import well_formed
+from contactlab.testing.compare import has_numbers
 from contactlab.testing.impacts import CHI, PSI1
 from contactlab.testing.laws import DampedHertz
 from contactlab.testing.load_paths import scene, slack
@@ -23,7 +23,7 @@ from contactlab.testing.ways import (
     INTEGRATION,
     ROUNDING,
     Way,
-    allowed,
+    bound_error,
     course,
     ways,
     whole_answers,
@@ -74,7 +74,7 @@ def whole_impacts(law: TangentialLaw) -> None:
     for way, each in itertools.product(marches, answered):
         psi1, chi, impact, _, answer = each
         change = way.run(impact).change
-        room, unit = allowed(way), impact.pair.tangential_mass / impact.psi_scale**2
+        room, unit = bound_error(way), impact.pair.tangential_mass / impact.psi_scale**2
         error = abs(change - impact.psi(float(np.asarray(answer.slip_velocity_change))))
         within(
             error, room * 4.0 * chi, f"{each}: psi2 is {error:.2g} off the law's own run ({way})."
@@ -134,7 +134,7 @@ def whole_impact_form(law: TangentialLaw) -> None:
         energy = 0.5 * mass * max(abs(slip), 1.0 / float(impact.psi_scale)) ** 2
         for name in ("slip_velocity_change", "friction_work"):
             value = getattr(answer, name)
-            good = well_formed(value, ()) and np.isfinite(value)
+            good = has_numbers(value, ()) and np.isfinite(value)
             hold(good, f"{each}: {name} = {value!r}.")
         change, work = float(answer.slip_velocity_change), float(answer.friction_work)
         hold(work >= -ROUNDING * energy, f"{each}: the friction work is {work:.2g} J.")

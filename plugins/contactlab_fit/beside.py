@@ -20,7 +20,7 @@ from contactlab.scene_file.entries import (
     POLAR,
     STRUCK_KEYS,
     entry_path,
-    replaced,
+    replace_entry,
     without_rivals,
 )
 from contactlab.scene_file.measured import Measured
@@ -208,7 +208,7 @@ def _relative(file: SceneFile, table: Measurements) -> SceneFile:
     tables: Mapping[str, Any] = without_rivals(file.tables, table.given)
     for name, values in table.given.items():
         same = float(values[0]) if not np.ptp(values) else float(np.mean(values))
-        tables = replaced(tables, entry_path(name), same)
+        tables = replace_entry(tables, entry_path(name), same)
     return attrs.evolve(file, tables=tables)
 
 

@@ -83,7 +83,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     shared.add_file(parser, "--csv", ".csv", words="write the residuals")
     shared.add_json(parser, "tables")
     shared.add_progress(parser)
-    return shared.checked(execute)
+    return shared.check_outputs_first(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

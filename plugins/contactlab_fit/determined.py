@@ -109,7 +109,7 @@ def check_determined(problem: Problem, values: Array) -> None:
     lengths = np.sqrt(np.sum(effects**2, axis=0) / len(effects))
     for place, parameter in enumerate(parameters):
         if lengths[place] < NO_EFFECT and not _turns(problem, values, place):
-            raise _undetermined(
+            raise _refuse_free(
                 problem.model, values, [place], f"no measured number depends on {parameter.name}"
             )
     unit = effects / np.sqrt(np.sum(effects**2, axis=0))
@@ -118,7 +118,7 @@ def check_determined(problem: Problem, values: Array) -> None:
         places = np.flatnonzero(np.abs(turned[-1]) > 0.1).tolist()
         names = " and ".join(parameters[place].name for place in places)
         reason = f"a change of {names} together leaves every measured number as it is"
-        raise _undetermined(problem.model, values, places, reason)
+        raise _refuse_free(problem.model, values, places, reason)
 
 
 def _turns(problem: Problem, values: Array, place: int) -> bool:
@@ -141,7 +141,7 @@ def check_precise(problem: Problem, values: Array, ends: Spread) -> None:
             reason = (
                 f"the measured numbers hardly depend on {parameter.name}: {value:.3g} ± {reach:.2g}"
             )
-            raise _undetermined(problem.model, values, [place], reason)
+            raise _refuse_free(problem.model, values, [place], reason)
 
 
 def check_single(problem: Problem, minima: list[Array], ends: Spread) -> None:
@@ -187,10 +187,10 @@ def _with_ends(parameters: tuple[Parameter, ...], values: Array, ends: Spread) -
     )
 
 
-def _undetermined(model: Model, values: Array, places: list[int], reason: str) -> ValueError:
+def _refuse_free(model: Model, values: Array, places: list[int], reason: str) -> ValueError:
     """Return the refusal of the parameters at ``places``, with the reason and a remedy."""
     names = " and ".join(model.parameters[place].name for place in places)
-    remedy = " ".join(dict.fromkeys(_advised(model, values, place) for place in places))
+    remedy = " ".join(dict.fromkeys(_advise(model, values, place) for place in places))
     return ValueError(f"the data do not determine {names}: {reason}; {remedy}")
 
 
@@ -206,7 +206,7 @@ def _telling_apart(model: Model, both: Array) -> str:
     )
 
 
-def _advised(model: Model, values: Array, place: int) -> str:
+def _advise(model: Model, values: Array, place: int) -> str:
     """Return a sentence on the measurement that depends most on a parameter."""
     parameter = model.parameters[place]
     scene, x, words = _candidates(model.setup.scene)

@@ -19,7 +19,7 @@ from contactlab_fit.fit_result import Estimate
 from contactlab_fit.measurements import Measurements
 from contactlab_fit.parameters import SHEAR_LOSS
 from contactlab_fit.problem import Problem, fewer
-from contactlab_fit.slips import loosened, lossy, slips
+from contactlab_fit.slips import loosen, lossy, slips
 from contactlab_fit.unknown_friction import FRICTIONS, under
 
 #: The chance below which a pattern is reported beside outliers, which explain the residuals better.
@@ -60,7 +60,7 @@ class Diagnosis:
         return self.slips + self.others
 
 
-def diagnosed(
+def diagnose(
     problem: Problem, table: Measurements, values: Array, *, explained: bool = False
 ) -> Diagnosis:
     """Return the diagnosis of a measurement at the best values, shape (parameters,).
@@ -87,7 +87,7 @@ def _others(
     sentences: list[str] = []
     scales, seen = _seen(problem, table, values)
     if far.places and far.chance <= seen.chance:
-        sentences += outliers.described(problem, far)
+        sentences += outliers.describe_outliers(problem, far)
         if seen.chance < POSSIBLE:
             sentences.append(f"or, with every number kept, {seen.words}")
         problem, values = far.rest, far.values
@@ -103,7 +103,7 @@ def _seen(
     """Return the error of each quantity, and what scatter makes with the least chance."""
     scales = problem.scales(problem.residuals(values[None]))
     pattern = patterns.pattern(problem, values, scales, table.given)
-    common = loosened(fewer(problem)[0], table.given, values)
+    common = loosen(fewer(problem)[0], table.given, values)
     return scales, common if common.chance < SIMPLER * pattern.chance else pattern
 
 
@@ -125,7 +125,7 @@ def cautions(problem: Problem, values: Array, *, of_any_friction: bool = False) 
     if of_any_friction:
         others = [under(problem.model, each).impacts(values).cautions for each in FRICTIONS]
         said = [text for text in said if all(text in other for other in others)]
-    said += _sheared(problem)
+    said += _caution_of_shear(problem)
     if not (any(text.startswith(LEFT_OUT) for text in said) and result.scene.planar):
         return said
     if not np.all(coupling_measured(result.scene)):
@@ -149,7 +149,7 @@ def cautions(problem: Problem, values: Array, *, of_any_friction: bool = False) 
     return [*said, f"left out, the coupling of unlike bodies moves {moves_by}"]
 
 
-def _sheared(problem: Problem) -> list[str]:
+def _caution_of_shear(problem: Problem) -> list[str]:
     """Return the caution of a loss in shear that is fitted."""
     fitted = {parameter.name.rpartition(".")[2] for parameter in problem.model.parameters}
     if SHEAR_LOSS not in fitted:
@@ -161,7 +161,7 @@ def _sheared(problem: Problem) -> list[str]:
     ]
 
 
-def moved(estimates: Mapping[str, Estimate]) -> list[str]:
+def describe_outlying(estimates: Mapping[str, Estimate]) -> list[str]:
     """Return a sentence for each parameter whose robust value lies outside its interval."""
     return [
         f"a robust fit, which a few far numbers hardly move, gives {name} = {estimate.robust:.4g}, "

@@ -23,11 +23,11 @@ from contactlab_fit.beside import as_met
 from contactlab_fit.diagnosis import (
     Diagnosis,
     cautions,
-    diagnosed,
+    describe_outlying,
+    diagnose,
     end_notes,
     error_notes,
     lost,
-    moved,
     table_notes,
 )
 from contactlab_fit.fit_result import Estimate, Fit
@@ -40,12 +40,12 @@ from contactlab_fit.parameters import (
     SHEAR_LOSS,
     Setup,
     asks_for,
-    parameter_named,
+    find_parameter,
     those_of,
 )
 from contactlab_fit.plausible import restitutions, unlikely_parameters
-from contactlab_fit.problem import Problem, fewer, solved
-from contactlab_fit.slips import SOME_LOSS, assumed, slips
+from contactlab_fit.problem import Problem, fewer, solve_problem
+from contactlab_fit.slips import SOME_LOSS, slips, state_assumptions
 from contactlab_fit.taken import taken
 from contactlab_fit.unknown_friction import (
     lacks_friction,
@@ -149,7 +149,7 @@ def fit(
         table = table.only([name for name in table.measured if name not in idle])
         problem = _problem(table, scene, parameters, laws)
         values, *others = minima(problem)
-    diagnosis = diagnosed(problem, table, values, explained=bool(slipped))
+    diagnosis = diagnose(problem, table, values, explained=bool(slipped))
     try:
         determined.check_scatter(problem)
         determined.check_determined(problem, values)
@@ -165,7 +165,7 @@ def fit(
     notes = (*left_out, *slipped, *of_restitution, *outcome.notes)
     warned = (
         *cautions(problem, values, of_any_friction=unknown),
-        *(() if notes else assumed(fewer(every)[0], table.given, values, ends.reaches)),
+        *(() if notes else state_assumptions(fewer(every)[0], table.given, values, ends.reaches)),
     )
     aic = every.criterion(values)  # over all numbers, so that laws that leave some out compare
     outcome = attrs.evolve(
@@ -274,7 +274,7 @@ def _solved_again(
 ) -> Array:
     """Return the best values for the measured numbers plus ``changes``."""
     measured = {name: numbers + changes[name] for name, numbers in problem.measured.items()}
-    return solved(attrs.evolve(problem, measured=measured), values, scales)
+    return solve_problem(attrs.evolve(problem, measured=measured), values, scales)
 
 
 def _problem(
@@ -286,7 +286,7 @@ def _problem(
             "parameters", parameters, "must be a list of names", "['friction_coefficient']"
         )
     setup = Setup(scene_of(scene, table.given, len(table)), simulation)
-    fitted = tuple(parameter_named(name, setup) for name in parameters)
+    fitted = tuple(find_parameter(name, setup) for name in parameters)
     names = [parameter.name for parameter in fitted]
     if len(set(names)) < len(names):
         raise refuse("parameters", list(parameters), "names one of them twice")
@@ -349,7 +349,7 @@ def _outcome(
         notes=(
             *diagnosis.sentences,
             *unlikely_parameters(problem, intervals),
-            *(() if diagnosis.sentences else moved(estimates)),
+            *(() if diagnosis.sentences else describe_outlying(estimates)),
             *error_notes(problem, values),
             *end_notes(problem, values, freedom),
         ),

@@ -8,7 +8,7 @@ import numpy as np
 
 from contactlab.numeric.types import Array, Real
 from contactlab_fit.model import FRICTION
-from contactlab_fit.problem import Problem, fewer, grid, solved, starting
+from contactlab_fit.problem import Problem, fewer, grid, solve_problem, starting
 
 #: Relative and absolute distance below which two searches have reached the same minimum.
 SAME = 1e-3
@@ -36,9 +36,9 @@ def minima(problem: Problem, progress: Callable[[int, int], object] | None = Non
 
 def _reach(problem: Problem, few: Problem, start: Array, found: list[Array]) -> None:
     """Search from a start, and add the minimum to those found if it is another one."""
-    values = solved(few, start)
+    values = solve_problem(few, start)
     if few is not problem:
-        values = solved(problem, values)
+        values = solve_problem(problem, values)
     if not any(np.allclose(values, minimum, rtol=SAME, atol=SAME) for minimum in found):
         found.append(values)
 

@@ -17,7 +17,7 @@ from contactlab.registry.law_words import in_words
 from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import SceneFile, read_scene
 from contactlab.scene_file.entries import CARTESIAN, POLAR
-from contactlab.study.interrupts import uninterrupted
+from contactlab.study.interrupts import require_all
 from contactlab_fit import tabulated
 from contactlab_fit.parameters import RESTITUTION, Parameter, Setup
 
@@ -85,7 +85,7 @@ class Model:
 
     def _run(self, points: Array, keys: Sequence[bytes], quantities: Sequence[str]) -> None:
         """Run the impacts at some points and keep the quantities under their keys."""
-        each = self._restituted(quantities)
+        each = self._common_restitution(quantities)
         alone = [place for place, p in enumerate(self.parameters) if not (p.batched or p is each)]
         _, group = np.unique(points[:, alone], axis=0, return_inverse=True)
         group = np.reshape(group, -1)  # its shape depends on the version of numpy
@@ -102,7 +102,7 @@ class Model:
         many, count = len(points), self.setup.scene.shape[0]
         setup, restituted = (
             self.setup._replace(scene=self._times(many)),
-            self._restituted(quantities),
+            self._common_restitution(quantities),
         )
         restitution: Any = None
         for parameter, column in zip(self.parameters, points.T, strict=True):
@@ -120,10 +120,10 @@ class Model:
 
     def at_once(self, quantities: Sequence[str]) -> bool:
         """Return whether any points run in one batch: no option of a law differs in them."""
-        each = self._restituted(quantities)
+        each = self._common_restitution(quantities)
         return all(parameter.batched or parameter is each for parameter in self.parameters)
 
-    def _restituted(self, quantities: Sequence[str]) -> Parameter | None:
+    def _common_restitution(self, quantities: Sequence[str]) -> Parameter | None:
         """Return the restitution if each impact of a batch may have its own; else None."""
         if not self.tabled or CONTACT_TIME in quantities:
             return None
@@ -134,7 +134,7 @@ class Model:
         if self.tabled:
             return tabulated.impacts(setup.scene, setup.simulation)
         laws = setup.simulation or Simulation()
-        return uninterrupted(laws.sweep(setup.scene)).check()
+        return require_all(laws.sweep(setup.scene)).check()
 
     def impacts(self, values: Array) -> ImpactResult:
         """Return the impacts, shape (n,), at values of the parameters, shape (parameters,)."""

@@ -133,7 +133,7 @@ def none(problem: Problem, values: Array) -> Outliers:
     return Outliers(1.0, {}, problem, values)
 
 
-def described(problem: Problem, far: Outliers) -> list[str]:
+def describe_outliers(problem: Problem, far: Outliers) -> list[str]:
     """Return a sentence for each quantity that has outliers."""
     residuals = {
         name: problem.measured[name] - rows[0]

@@ -142,7 +142,7 @@ def in_words(parameters: Sequence[Parameter], values: Array) -> str:
     return ", ".join(f"{parameter.name} {value:.4g}" for parameter, value in pairs)
 
 
-def parameter_named(name: str, setup: Setup) -> Parameter:
+def find_parameter(name: str, setup: Setup) -> Parameter:
     """Return a parameter by name: a number of the scene, or ``kind.option`` of a law.
 
     The kind may be left out if only one law has an option of that name.

@@ -58,7 +58,7 @@ def pattern(
     weighted, jacobian = problem.linearised(values, scales)
     residuals, slopes = problem.by_quantity(weighted), problem.by_quantity(jacobian)
     own = problem.residuals(values[None])
-    ranks = _ranked(columns, len(next(iter(problem.measured.values()))))
+    ranks = _rank(columns, len(next(iter(problem.measured.values()))))
     sizes = problem.sizes()
     least = {n: (NUMERICAL * size / np.min(scales[n])) ** 2 for n, size in sizes.items()}
     tests: list[Pattern] = []
@@ -181,7 +181,7 @@ def leverage(problem: Problem, values: Array, scales: Mapping[str, Real]) -> lis
     ]
 
 
-def _ranked(columns: Mapping[str, Array], count: int) -> dict[str, Array]:
+def _rank(columns: Mapping[str, Array], count: int) -> dict[str, Array]:
     """Return the ranks of varying columns, and the order of the rows if no rank equals it."""
     ranks: dict[str, Array] = {}
     for name, values in columns.items():

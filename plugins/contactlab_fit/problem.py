@@ -187,7 +187,9 @@ def _some(starts: list[float], most: int) -> Array:
     return np.array([starts[place] for place in sorted(set(places.round().astype(int).tolist()))])
 
 
-def solved(problem: Problem, start: Array, scales: Mapping[str, Real] | None = None) -> Array:
+def solve_problem(
+    problem: Problem, start: Array, scales: Mapping[str, Real] | None = None
+) -> Array:
     """Return the best values of the parameters, shape (parameters,).
 
     Quantities without stated errors are weighted by their own residuals in rounds that begin with

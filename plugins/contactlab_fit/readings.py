@@ -92,7 +92,7 @@ def _impacts(scene: Scene, given: Collection[str]) -> Iterator[tuple[str, Scene]
     name = "angle_deg" if "angle_deg" in given else "the angle of incidence"
     for way, reread in (("in radians", np.degrees(angle)), (SURFACE, 90.0 - angle)):
         if np.all(np.abs(reread) < 90.0):
-            yield f"{name} looks as if {way}", turned(scene, np.radians(reread), given)
+            yield f"{name} looks as if {way}", turn_scene(scene, np.radians(reread), given)
     if {"normal_speed", "tangential_velocity"} <= set(given) and np.all(along > 0.0):
         words = "normal_speed and tangential_velocity look as if exchanged"
         yield words, attrs.evolve(scene, normal_speed=along, tangential_velocity=normal)
@@ -118,7 +118,7 @@ def _impacts(scene: Scene, given: Collection[str]) -> Iterator[tuple[str, Scene]
         yield f"the radius of the sphere looks as if {way}", attrs.evolve(scene, sphere=ball)
 
 
-def turned(scene: Scene, angle: Array, given: Collection[str]) -> Scene:
+def turn_scene(scene: Scene, angle: Array, given: Collection[str]) -> Scene:
     """Return impacts at other angles, in rad, with the normal speed or speed of the table."""
     normal: Any = np.asarray(scene.normal_speed)
     if "normal_speed" in given:
@@ -142,13 +142,13 @@ def _numbers(problem: Problem) -> Iterator[Reading]:
             yield Reading(f"{name} looks as if {SURFACE}", read, {})
         twin = TAKEN_FOR.get(name)
         if twin and twin not in measured:
-            read = _renamed(problem, {name: twin})
+            read = _rename(problem, {name: twin})
             yield Reading(f"{name} looks as if its numbers were those of {twin}", read, {})
     names = list(measured)
     for place, first in enumerate(names):
         for second in names[place + 1 :]:
             if QUANTITIES[first].unit == QUANTITIES[second].unit:
-                read = _renamed(problem, {first: second, second: first})
+                read = _rename(problem, {first: second, second: first})
                 yield Reading(f"{first} and {second} look as if exchanged", read, {})
     listed = " and ".join(names)
     look = "looks" if len(names) == 1 else "look"
@@ -157,8 +157,8 @@ def _numbers(problem: Problem) -> Iterator[Reading]:
     for way, step in (("low", -1), ("high", 1)):
         read = problem
         for name in names:
-            read = _with(read, name, partial(_shifted, step=step))
-        kept = {name: _shifted(_shifted(v, step), -step) for name, v in measured.items()}
+            read = _with(read, name, partial(_shift_rows, step=step))
+        kept = {name: _shift_rows(_shift_rows(v, step), -step) for name, v in measured.items()}
         yield Reading(f"{listed} {look} as if written a row too {way}", read, {}, kept)
 
 
@@ -178,14 +178,14 @@ def _with(problem: Problem, name: str, change: Callable[[Array], Array]) -> Prob
     return attrs.evolve(problem, measured={**problem.measured, name: numbers})
 
 
-def _renamed(problem: Problem, names: Mapping[str, str]) -> Problem:
+def _rename(problem: Problem, names: Mapping[str, str]) -> Problem:
     """Return the problem with quantities under other names, in the same order."""
     measured = {names.get(name, name): values for name, values in problem.measured.items()}
     errors = {names.get(name, name): values for name, values in problem.errors.items()}
     return attrs.evolve(problem, measured=measured, errors=errors)
 
 
-def _shifted(values: Array, step: int) -> Array:
+def _shift_rows(values: Array, step: int) -> Array:
     """Return numbers moved by a row; the number at the open end is NaN."""
     moved = np.roll(values, step)
     moved[-1 if step < 0 else 0] = np.nan

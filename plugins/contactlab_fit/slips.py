@@ -21,14 +21,14 @@ from contactlab_fit.parameters import (
     SHEAR_LOSS,
     Parameter,
     Setup,
+    find_parameter,
     in_words,
     laws_with,
-    parameter_named,
     those_of,
 )
 from contactlab_fit.patterns import NO_PATTERN, Pattern
-from contactlab_fit.problem import Problem, grid, solved
-from contactlab_fit.readings import Reading, readings, turned
+from contactlab_fit.problem import Problem, grid, solve_problem
+from contactlab_fit.readings import Reading, readings, turn_scene
 
 #: A mistake is reported if its correction makes residuals this many times smaller and the
 #: likelihood exp(CERTAIN/2) times greater, which chance does once in 20,000 times.
@@ -76,7 +76,7 @@ def slips(
     if set(problem.measured) - set(MEASURABLE):  # the table knows no column of a plug-in
         return [], []
     quick = _elastic(problem)
-    start = values if quick is problem else solved(quick, _first(quick))
+    start = values if quick is problem else solve_problem(quick, _first(quick))
     better = _better(quick, start, readings(quick, given))
     if quick is not problem and better:
         again = [_under(problem, read.reading) for read in better]
@@ -101,7 +101,7 @@ def _under(problem: Problem, reading: Reading) -> Reading:
 def _without(problem: Problem, values: Array, numbers: Mapping[str, Array]) -> float:
     """Return the score of the measurement with only some of its numbers."""
     fewer = attrs.evolve(problem, measured=numbers)
-    ends = (solved(fewer, start) for start in (values, _first(fewer)))
+    ends = (solve_problem(fewer, start) for start in (values, _first(fewer)))
     return min(_score(fewer, end, problem) for end in ends)
 
 
@@ -113,7 +113,7 @@ def _elastic(problem: Problem) -> Problem:
     setup = Setup(model.setup.scene, None)
     names = ["friction_coefficient"]
     names += [p.name for p in model.parameters if p.name == "stiffness_ratio"]
-    parameters = tuple(parameter_named(name, setup) for name in names)
+    parameters = tuple(find_parameter(name, setup) for name in names)
     return attrs.evolve(problem, model=Model(setup=setup, parameters=parameters))
 
 
@@ -129,7 +129,7 @@ def _better(problem: Problem, values: Array, candidates: Iterable[Reading]) -> l
         least = int(np.argmin(rough))
         if rough[least] - own > 2.0 * number * math.log(WORTH_FITTING):
             continue
-        best = solved(reading.problem, points[least])
+        best = solve_problem(reading.problem, points[least])
         score = float(_scores(reading, best[None], problem)[0])
         if score < limit:
             better.append(Read(reading, score, best))
@@ -188,10 +188,10 @@ class AngleOffset(Parameter):
         """Return the scene with corrected angles."""
         scene = setup.scene
         angle: Any = np.arctan2(scene.tangential_velocity, scene.normal_speed)
-        return setup._replace(scene=turned(scene, angle - np.radians(value), ()))
+        return setup._replace(scene=turn_scene(scene, angle - np.radians(value), ()))
 
 
-def loosened(problem: Problem, given: Collection[str], values: Array) -> Pattern:
+def loosen(problem: Problem, given: Collection[str], values: Array) -> Pattern:
     """Return the chance that scatter looks like an error common to all impacts, and a sentence.
 
     Errors that are tried are a common excess of all angles, a wrong restitution and a wrong loss
@@ -200,9 +200,9 @@ def loosened(problem: Problem, given: Collection[str], values: Array) -> Pattern
     if problem.model.setup.scene.sphere is None:
         return NO_PATTERN
     tried = (
-        _tilted(problem, given, values),
-        _restituted(problem, values),
-        _sheared(problem, values),
+        _tilt(problem, given, values),
+        _free_restitution(problem, values),
+        _free_shear_loss(problem, values),
     )
     return _better_with(problem, values, *tried)
 
@@ -211,12 +211,12 @@ def lossy(problem: Problem, values: Array) -> Pattern:
     """Return the chance that scatter looks like a wrong restitution, and a sentence on it."""
     scene, simulation = problem.model.setup
     if simulation is None or tabulated.holds(simulation):
-        return _better_with(problem, values, _restituted(problem, values))
+        return _better_with(problem, values, _free_restitution(problem, values))
     if scene.sphere is None or "elastic_hertz" not in simulation.laws.capability.normal_claims:
         return NO_PATTERN
     quick = _elastic(problem)
-    best = solved(quick, _first(quick))
-    return _better_with(quick, best, _restituted(quick, best))
+    best = solve_problem(quick, _first(quick))
+    return _better_with(quick, best, _free_restitution(quick, best))
 
 
 #: A problem with one more parameter, the last, its start, and words on the best value of that.
@@ -234,7 +234,7 @@ def _better_with(problem: Problem, values: Array, *tried: Wider) -> Pattern:
     found = []
     for wider, start, words in tried:
         if wider is not None:
-            best = solved(wider, start)
+            best = solve_problem(wider, start)
             reading = Reading(words(float(best[-1])), wider, {})
             found.append(Read(reading, _score(wider, best, problem), best))
     found.sort(key=lambda read: read.score)
@@ -259,7 +259,7 @@ def _chance(problem: Problem, values: Array, gain: float) -> float:
     return float(fdtrc(1, freedom, ratio))
 
 
-def _tilted(problem: Problem, given: Collection[str], values: Array) -> Wider:
+def _tilt(problem: Problem, given: Collection[str], values: Array) -> Wider:
     """Return the problem with a common excess of all angles; None if scatter looks as much so."""
     name = "angle_deg" if "angle_deg" in given else "the angle of incidence"
 
@@ -284,7 +284,7 @@ def _worth(problem: Problem, more: Parameter, values: Array, start: float) -> Pr
     return None if chance > WORTH_FITTING_MORE else wider
 
 
-def _sheared(problem: Problem, values: Array) -> Wider:
+def _free_shear_loss(problem: Problem, values: Array) -> Wider:
     """Return the problem with a loss in shear to fit; None if the laws have none, or it is told."""
     setup, parameters = problem.model.setup, problem.model.parameters
     own = float(getattr(setup.simulation and setup.simulation.tangential, SHEAR_LOSS, 1.0))
@@ -303,7 +303,7 @@ def _sheared(problem: Problem, values: Array) -> Wider:
     if setup.simulation is None or SHEAR_LOSS in fitted or not those_of(setup, [SHEAR_LOSS]):
         return None, values, words
     fixed, own_values = _of_the_batch(problem, values)
-    wider = _worth(fixed, parameter_named(SHEAR_LOSS, setup), own_values, own)
+    wider = _worth(fixed, find_parameter(SHEAR_LOSS, setup), own_values, own)
     return wider, np.append(own_values, own), words
 
 
@@ -325,7 +325,7 @@ def _of_law(law: str) -> str:
     return f"{SLIP_RESTITUTION} of {short_name(law)}"
 
 
-def _restituted(problem: Problem, values: Array) -> Wider:
+def _free_restitution(problem: Problem, values: Array) -> Wider:
     """Return the problem with a restitution to fit; None without a table of such impacts."""
     setup, parameters = problem.model.setup, problem.model.parameters
     laws: Any = setup.simulation or tabulated.with_loss(SOME_LOSS)
@@ -345,11 +345,13 @@ def _restituted(problem: Problem, values: Array) -> Wider:
     if f"normal.{RESTITUTION}" in names or not known:
         return None, values, words
     wider = setup._replace(simulation=laws)
-    model = Model(setup=wider, parameters=(*parameters, parameter_named(RESTITUTION, wider)))
+    model = Model(setup=wider, parameters=(*parameters, find_parameter(RESTITUTION, wider)))
     return attrs.evolve(problem, model=model), np.append(values, SOME_LOSS), words
 
 
-def assumed(problem: Problem, given: Collection[str], values: Array, reaches: Array) -> list[str]:
+def state_assumptions(
+    problem: Problem, given: Collection[str], values: Array, reaches: Array
+) -> list[str]:
     """Return sentences on what is assumed, where another value moves a parameter as much."""
     return [*_zero(problem, given, values, reaches), *_elasticity(problem, values, reaches)]
 
@@ -358,10 +360,10 @@ def _zero(problem: Problem, given: Collection[str], values: Array, reaches: Arra
     """Return a sentence on the zero of the angles if another one is likely, though not certain."""
     if problem.model.setup.scene.sphere is None or _freedom(problem, values) < SPARE:
         return []
-    wider, start, words = _tilted(problem, given, values)
+    wider, start, words = _tilt(problem, given, values)
     if wider is None:
         return []
-    best = solved(wider, start)
+    best = solve_problem(wider, start)
     own = _score(problem, values, problem)
     chance = _chance(problem, values, own - _score(wider, best, problem))
     moved = np.any(np.abs(best[:-1] - values) > reaches)
@@ -382,7 +384,7 @@ def _elasticity(problem: Problem, values: Array, reaches: Array) -> list[str]:
     """
     # where friction changes the approach a loss is followed in steps, for minutes
     quick = problem.model.setup.simulation is None and problem.model.tabled
-    wider = _restituted(problem, values)[0] if quick else None
+    wider = _free_restitution(problem, values)[0] if quick else None
     if wider is None:
         return []
     limit = _score(problem, values, problem) + EXCLUDED
@@ -391,7 +393,7 @@ def _elasticity(problem: Problem, values: Array, reaches: Array) -> list[str]:
     for restitution in LOSSES:
         laws = more.applied(wider.model.setup, restitution)
         fixed = attrs.evolve(problem, model=Model(setup=laws, parameters=tuple(parameters)))
-        best = solved(fixed, values)
+        best = solve_problem(fixed, values)
         if _score(fixed, best, problem) > limit:
             break
         if np.any(np.abs(best - values) > reaches):

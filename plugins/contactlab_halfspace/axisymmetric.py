@@ -14,7 +14,7 @@ from contactlab_halfspace.basis import basis
 from contactlab_halfspace.instants import Instants
 from contactlab_halfspace.march import Followed
 from contactlab_halfspace.rings import Rings, rings, settle
-from contactlab_halfspace.slips import begun, moved, rest
+from contactlab_halfspace.slips import begun, move_slips, rest
 
 #: Steps from one ring to the next.
 STEPS = 4
@@ -97,7 +97,7 @@ def follow_all(
         displaced = fixed - swept * (share / 3.0 + after / 6.0)
         slip = displaced[:, None] - new[:, :number] @ table.compliance[:, :number].T
         work += (((slip - slips.last) @ moments) * (0.5 * (traction + new))).sum(axis=1)
-        slips = moved(slips, slip, duration[:, None], places < number)
+        slips = move_slips(slips, slip, duration[:, None], places < number)
         change[k] = change[k - 1] - 0.5 * gain * (share + after)
         shares[k], traction = after, new
         if fields:

@@ -38,7 +38,7 @@ def changed_motion(
             scales = unit.length**2 / pair.radius, one.scene.normal_speed, unit.force
             for row, change, scale in zip(rows[1:], departures, scales, strict=True):
                 row += change * scale
-            rows = _parted(rows, len(phase) // 2)
+            rows = _part(rows, len(phase) // 2)
             passed = 0.5 * np.diff(rows[0]) * (rows[3][1:] + rows[3][:-1])
             impulses[item] = np.concatenate(([0.0], np.cumsum(passed)))
         for column, row in zip(columns, rows, strict=True):
@@ -52,7 +52,7 @@ def changed_motion(
     return motion, impulses
 
 
-def _parted(rows: list[Array], top: int) -> list[Array]:
+def _part(rows: list[Array], top: int) -> list[Array]:
     """Return time, approach, rate and force with nothing happening after the bodies parted."""
     time, approach, rate, force = (row.copy() for row in rows)
     force[approach <= 0.0] = 0.0

@@ -55,7 +55,7 @@ class Fields:
         """
         shape, angles = self._every.scene.shape, self._options.angles
         if not self._kept:
-            self._kept = [self._followed(place) for place in self._places]
+            self._kept = [self._follow_rings(place) for place in self._places]
         rings = max(len(radius) for _, radius, _, _ in self._kept)
         tables = np.full((5, *shape, angles, rings), np.nan)
         radii = np.full((*shape, rings), np.nan)
@@ -92,7 +92,7 @@ class Fields:
             "stuck": stuck & (pressed > 0.0),
         }
 
-    def _followed(self, place: tuple[int, ...]) -> tuple[Array, Array, Array, Array]:
+    def _follow_rings(self, place: tuple[int, ...]) -> tuple[Array, Array, Array, Array]:
         """Return impulses (K + 1,), radii (rings,), values (5, K + 1, angles, rings), angles."""
         # The values are traction along x and y, slip along x and y, and pressure.
         rings, angles = self._options.rings, self._options.angles

@@ -15,7 +15,7 @@ from contactlab.impact.coupling import coupling_number
 from contactlab.numeric.types import Array
 from contactlab_halfspace.axisymmetric import STEPS, follow_all
 from contactlab_halfspace.instants import Instants, instants, units
-from contactlab_halfspace.march import Followed, follow, joined
+from contactlab_halfspace.march import Followed, follow, join_impacts
 from contactlab_halfspace.modes import modes
 from contactlab_halfspace.pressure import Answering, Prescribed
 
@@ -142,8 +142,8 @@ class Group(NamedTuple):
             pressure = kind(table, path.take([item]), stiffness)
             slip, hand = signs(psi1, rim) if self.spins else (1.0, 1.0)
             motion = follow(pressure, slip * psi1, chi, abs(rim), turning, fields=fields)
-            each.append(_mirrored(motion, slip, hand) if self.spins else motion)
-        return joined(each)
+            each.append(_mirror(motion, slip, hand) if self.spins else motion)
+        return join_impacts(each)
 
 
 def signs(psi1: float, rim: float) -> tuple[float, float]:
@@ -152,7 +152,7 @@ def signs(psi1: float, rim: float) -> tuple[float, float]:
     return slip, slip * math.copysign(1.0, rim)
 
 
-def _mirrored(motion: Followed, slip: float, hand: float) -> Followed:
+def _mirror(motion: Followed, slip: float, hand: float) -> Followed:
     """Return an impact followed with positive slip and spin, with those of ``signs``."""
     # Friction is odd, and a mirror along the slip turns the spin: answers are odd to the last bit.
     parts = np.array((slip, slip * hand))[:, None, None]

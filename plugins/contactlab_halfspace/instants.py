@@ -127,7 +127,7 @@ def _phases(normal: NormalMotion, places: Array, top: int) -> Array:
         phases[[0, top, -1], 0] = 0.0, 0.5 * math.pi, math.pi
         return phases
     if isinstance(normal, ClosedFormMotion):
-        return _halved(lambda phase: _scaled_radius(normal, phase), places, top, 0.5 * math.pi)
+        return _halve(lambda phase: _scaled_radius(normal, phase), places, top, 0.5 * math.pi)
     single = not normal.scene.shape
 
     def radius(phase: Array) -> Array:
@@ -144,7 +144,7 @@ def _phases(normal: NormalMotion, places: Array, top: int) -> Array:
         inner, outer = radius(np.stack((low + third, high - third)))
         rises = inner < outer
         low, high = np.where(rises, low + third, low), np.where(rises, high, high - third)
-    return _halved(radius, places, top, 0.5 * (low + high))
+    return _halve(radius, places, top, 0.5 * (low + high))
 
 
 def _scaled_radius(normal: ClosedFormMotion, phase: Array) -> Array:
@@ -152,7 +152,7 @@ def _scaled_radius(normal: ClosedFormMotion, phase: Array) -> Array:
     return np.asarray(normal.scaled(phase[:, 0]).radius)[:, None]
 
 
-def _halved(
+def _halve(
     radius: Callable[[Array], Array], places: Array, top: int, greatest: Array | float
 ) -> Array:
     """Return the phases with radii ``places``, where the ``greatest`` is known, by halving."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from contactlab.numeric.types import Array
 from contactlab_halfspace.pressure import Answering, Prescribed
-from contactlab_halfspace.slips import begun, moved, rest
+from contactlab_halfspace.slips import begun, move_slips, rest
 from contactlab_halfspace.splitting import settle
 
 
@@ -49,7 +49,7 @@ class Followed(NamedTuple):
     spin: Array | None = None
 
 
-def joined(parts: Sequence[Followed]) -> Followed:
+def join_impacts(parts: Sequence[Followed]) -> Followed:
     """Return impacts one behind the other; fields are those of the first."""
     columns: list[Any] = [
         None if column[0] is None else np.concatenate(column, axis=-1)
@@ -121,7 +121,7 @@ def follow(
         touching = np.arange(table.count) < (0 if contact is None else contact.rings)
         if table.parts == 3:
             touching &= (new[2] > 0.0).any(axis=0)
-        slips = moved(slips, slip, duration, touching)
+        slips = move_slips(slips, slip, duration, touching)
         passed = pressure.advance(k, force)
         impulse[k] = impulse[k - 1] + passed
         change[k] = change[k - 1] - chi * passed * (shares[k - 1] + share)

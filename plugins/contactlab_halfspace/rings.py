@@ -84,7 +84,7 @@ def settle(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) ->
     largest = limit + slack
     for tried in range(MOST_TRIES):
         still, sign, wanted = stuck[left], sense[left], aim[left]
-        pulls = _divided(table, wanted, limit, still, sign)
+        pulls = _divide(table, wanted, limit, still, sign)
         slip = wanted - pulls @ table.compliance.T
         wrong = np.where(still, np.abs(pulls) > largest, slip * sign < -slack)
         if tried >= GENTLE:  # one at a time, the outermost first
@@ -99,7 +99,7 @@ def settle(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) ->
     raise RuntimeError(f"{left.size} impacts: no division into stick and slip was found")
 
 
-def _divided(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) -> Array:
+def _divide(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) -> Array:
     """Return the tractions of prescribed divisions, shape (impacts, rings)."""
     traction = np.where(stuck, 0.0, sense * limit)
     rest = aim - traction @ table.compliance.T

@@ -35,7 +35,7 @@ def begun(slip: Array) -> Slips:
     return Slips(slip, slip, slip, (0.0, 0.0), np.zeros(slip.shape[-1]))
 
 
-def moved(slips: Slips, slip: Array, duration: Real, touching: NDArray[np.bool_]) -> Slips:
+def move_slips(slips: Slips, slip: Array, duration: Real, touching: NDArray[np.bool_]) -> Slips:
     """Return the slips after a step; ``touching`` marks the rings in contact at its end."""
     # A ring out of contact forgets how fast it slipped.
     return Slips(

@@ -72,7 +72,7 @@ class _Solved(NamedTuple):
     changed: tuple[Array, Array] | None  # phases and departures of its normal motion
 
 
-def _solved(options: Options, normal: NormalMotion) -> list[_Solved]:
+def _solve(options: Options, normal: NormalMotion) -> list[_Solved]:
     """Return the impacts of a normal motion of shape () or (impacts,)."""
     solved: dict[int, _Solved] = {}
     rings, angles = options.rings, options.angles
@@ -96,7 +96,7 @@ def _solved(options: Options, normal: NormalMotion) -> list[_Solved]:
                 work = work + (work - coarse.work) * further
                 fast = np.abs(matter.rim) >= FAST * np.maximum(1.0, np.abs(matter.psi1))
                 of_slip = np.where(fast, 1.0 / (2.0**ORDER - 1.0), further)
-                share = _extrapolated(fine, coarse, of_slip)
+                share = _extrapolate(fine, coarse, of_slip)
                 if coarse.spin is not None:
                     little = np.abs(matter.rim) <= LITTLE_SPIN
                     error += np.where(little, *ANGLES_OF_SPIN) * slow
@@ -120,7 +120,7 @@ def _solved(options: Options, normal: NormalMotion) -> list[_Solved]:
     return [solved[item] for item in range(len(solved))]
 
 
-def _extrapolated(fine: Followed, coarse: Followed, further: Real) -> Array:
+def _extrapolate(fine: Followed, coarse: Followed, further: Real) -> Array:
     """Return the extrapolated shares of Coulomb's limit, at the instants of ``fine``."""
     # Instants of half the rings are every other instant of all: their share is linear between.
     between = coarse.share.repeat(2, axis=0)[:-1]
@@ -136,7 +136,7 @@ def _whole_impact(options: Options, every: NormalMotion, left: Mask) -> WholeImp
     """Return the answer in SI units of the impacts ``left``, with numbers of the batch shape."""
     shape = every.scene.shape
     normal = every.take(np.asarray(left)) if shape else every
-    solved, scene, numbers = _solved(options, normal), normal.scene, np.flatnonzero(left).tolist()
+    solved, scene, numbers = _solve(options, normal), normal.scene, np.flatnonzero(left).tolist()
     own, own_impulses = None, dict[int, Array]()
     changed = {n: each.changed for n, each in zip(numbers, solved, strict=True) if each.changed}
     if changed:

@@ -22,7 +22,7 @@ from contactlab.contracts import (
 from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import filled, spread
+from contactlab.numeric.arrays import spread, spread_object
 from contactlab.numeric.types import Real
 
 #: Bound of the imbalance of the energy books, over the energy at the start.
@@ -133,5 +133,5 @@ class Frictionless(WholeImpactTangentialLaw, CoupledTangentialLaw):
             slip_velocity_change=kinetics.tangent(scene, drag),
             friction_work=spread(0.0, scene.shape),
             normal=Ends(*entries),
-            status=filled(Status.SUCCESS, scene.shape),
+            status=spread_object(Status.SUCCESS, scene.shape),
         )

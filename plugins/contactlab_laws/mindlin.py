@@ -21,7 +21,7 @@ from contactlab.contracts import (
 )
 from contactlab.impact.cautions import OUTSIDE
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import shaped, spread
+from contactlab.numeric.arrays import shape_as, spread
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, choice, quantity
 from contactlab.numeric.types import Mask, Real
 
@@ -143,7 +143,7 @@ def moved_in_plane(
     response, own = law.advance(state.own, step, before, after)
     force = np.stack((response.force.real, response.force.imag), axis=-1).reshape(*shape, 2)
     work = np.asarray(response.friction_work)
-    return TangentialResponse(force, shaped(work, shape)), InPlane(own, shape)
+    return TangentialResponse(force, shape_as(work, shape)), InPlane(own, shape)
 
 
 def along(force: Along, slip: Along) -> Any:

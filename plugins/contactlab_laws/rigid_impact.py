@@ -15,7 +15,7 @@ import numpy as np
 from contactlab.contracts import Ends, NormalMotion, Scene, TangentialMotion
 from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
-from contactlab.numeric.arrays import filled, spread
+from contactlab.numeric.arrays import spread, spread_object
 from contactlab.numeric.types import Array
 
 #: Tolerance of Keller's equations; slip below this part of the speed has stopped. Steps chatter
@@ -41,7 +41,7 @@ def rigid_impacts(scene: Scene, normal: NormalMotion) -> TangentialMotion:
         slip_velocity_change=kinetics.tangent(scene, change),
         friction_work=number(work),
         normal=Ends(unknown, number(after[..., 0]), *3 * (unknown,), number(loss)),
-        status=filled(Status.SUCCESS, shape),
+        status=spread_object(Status.SUCCESS, shape),
     )
 
 

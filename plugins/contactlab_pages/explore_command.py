@@ -43,7 +43,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         help="(default: explore.html)",
     )  # fmt: skip
     shared.add_progress(parser)
-    return shared.checked(execute)
+    return shared.check_outputs_first(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

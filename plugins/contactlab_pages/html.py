@@ -28,7 +28,7 @@ def paragraph(text: str) -> str:
     return f"<p>{escape(text)}</p>"
 
 
-def titled(title: str, *parts: str) -> str:
+def title_section(title: str, *parts: str) -> str:
     """Return a section of a page with its heading."""
     return f"<section><h2>{escape(title)}</h2>{''.join(parts)}</section>"
 

@@ -56,12 +56,12 @@ def report_page(
     title = file.title or file.path.name
     parts = [
         html.paragraph(" ".join(file.notes.split())) if file.notes else "",
-        html.titled("The scene", scene_drawing(result), *_scene(file, result.scene)),
-        html.titled("The answer", *_answer(result, file.varied, comparison.agreements)),
-        html.titled("The laws compared", *_comparison(comparison)),
-        html.titled("The plan", html.plan(result.plan)),
-        html.titled("Sources", *map(html.paragraph, _sources(file, simulations))),
-        html.titled("How this was made", html.pairs(_provenance(file, result))),
+        html.title_section("The scene", scene_drawing(result), *_scene(file, result.scene)),
+        html.title_section("The answer", *_answer(result, file.varied, comparison.agreements)),
+        html.title_section("The laws compared", *_comparison(comparison)),
+        html.title_section("The plan", html.plan(result.plan)),
+        html.title_section("Sources", *map(html.paragraph, _sources(file, simulations))),
+        html.title_section("How this was made", html.pairs(_provenance(file, result))),
     ]
     page = resources.files("contactlab_pages").joinpath("report.html").read_text("utf-8")
     return Template(page).substitute(title=escape(title), body="\n".join(parts))
@@ -136,7 +136,7 @@ def _comparison(comparison: Comparison) -> list[str]:
             words = "Tangential force over the contact, inside friction's limit."
             parts.append(html.figure(picture, words))
     elif comparison.agreements:
-        parts += [_measured(comparison, agreement) for agreement in comparison.agreements]
+        parts += [_show_series(comparison, agreement) for agreement in comparison.agreements]
         opposite = dict.fromkeys(agreement.opposite for agreement in comparison.agreements)
         parts += [html.paragraph(f"Note: {sentence}.") for sentence in opposite if sentence]
         parts += _over_angle(comparison)
@@ -157,7 +157,7 @@ def _comparison(comparison: Comparison) -> list[str]:
     return parts
 
 
-def _measured(comparison: Comparison, agreement: Agreement) -> str:
+def _show_series(comparison: Comparison, agreement: Agreement) -> str:
     """Return picture and table of the laws beside one series of measured values."""
     name = agreement.measured.quantity
 

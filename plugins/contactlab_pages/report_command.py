@@ -40,7 +40,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     )
     shared.add_file(parser, "--out", ".html", required=True)
     shared.add_progress(parser)
-    return shared.checked(execute)
+    return shared.check_outputs_first(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:

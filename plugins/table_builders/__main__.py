@@ -41,7 +41,7 @@ def main() -> int:
 
         write()
         return 0
-    return (_elastic if asked.table == "elastic" else _restituted)(asked)
+    return (_elastic if asked.table == "elastic" else _build_restituted)(asked)
 
 
 def _options(building: argparse.ArgumentParser, verifying: argparse.ArgumentParser) -> None:
@@ -96,7 +96,7 @@ def _elastic(asked: argparse.Namespace) -> int:
     return 0 if rows[-1].largest <= asked.bound else 1
 
 
-def _restituted(asked: argparse.Namespace) -> int:
+def _build_restituted(asked: argparse.Namespace) -> int:
     from contactlab_laws.tables.restituted import SHIPPED
 
     if asked.command == "build":

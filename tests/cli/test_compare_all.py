@@ -76,7 +76,7 @@ def test_a_normal_law_leaves_out_what_does_not_fit():
     assert next(iter(found.simulations)) == "fronts"
     assert found.left_out == {}
     law = Damped()
-    assert contactlab.registry.composition.preferred("tangential", law) == "annulus"
+    assert contactlab.registry.composition.prefer_law("tangential", law) == "annulus"
 
 
 def test_without_a_scene_it_is_that_of_the_codes(run):

@@ -12,7 +12,7 @@ import pytest
 
 from contactlab.cli import progress as module
 from contactlab.cli.progress import in_words, progress
-from contactlab.cli.terminal import fitted
+from contactlab.cli.terminal import fit_terminal
 from tests.longer import longer
 
 
@@ -47,7 +47,7 @@ def begin(monkeypatch):
 @pytest.mark.parametrize("terminal", [True, False])
 def test_short_work_says_nothing(begin, terminal):
     screen, clock = begin(terminal=terminal)
-    with fitted(), progress(True, "things") as show:
+    with fit_terminal(), progress(True, "things") as show:
         clock[0] += 1.9
         show(100, 100)
     assert screen.getvalue() == ""
@@ -88,7 +88,7 @@ def test_nothing_is_shown_unasked_elsewhere_and_where_it_is_not_wanted(begin):
 
 def test_the_line_on_a_terminal_is_overwritten_and_cleared_at_the_end(begin):
     screen, clock = begin(terminal=True)
-    with fitted(), progress(None, "things") as show:
+    with fit_terminal(), progress(None, "things") as show:
         for passed, done in ((1.0, 1), (8.0, 3), (0.4, 4), (0.2, 5), (0.4, 10)):
             clock[0] += passed
             show(done, 10)
@@ -98,7 +98,7 @@ def test_the_line_on_a_terminal_is_overwritten_and_cleared_at_the_end(begin):
 
 def test_elsewhere_there_is_a_line_now_and_then_and_one_at_the_end(begin):
     screen, clock = begin(terminal=False)
-    with fitted(), progress(True, "things") as show:
+    with fit_terminal(), progress(True, "things") as show:
         for done in range(1, 101):
             clock[0] += 0.5
             show(done, 100)
@@ -114,7 +114,7 @@ def test_elsewhere_there_is_a_line_now_and_then_and_one_at_the_end(begin):
 
 def test_the_line_ends_with_an_interruption(begin):
     screen, clock = begin(terminal=True)
-    with fitted():
+    with fit_terminal():
         with contextlib.suppress(KeyboardInterrupt), progress(None, "things") as show:
             clock[0] += 5.0
             show(1, 3)
@@ -125,7 +125,7 @@ def test_the_line_ends_with_an_interruption(begin):
 
 def test_an_interruption_elsewhere_is_not_called_100_percent(begin):
     screen, clock = begin(terminal=False)
-    with fitted(), contextlib.suppress(KeyboardInterrupt), progress(True, "things") as show:
+    with fit_terminal(), contextlib.suppress(KeyboardInterrupt), progress(True, "things") as show:
         clock[0] += 5.0
         show(1, 3)
         raise KeyboardInterrupt
@@ -134,7 +134,7 @@ def test_an_interruption_elsewhere_is_not_called_100_percent(begin):
 
 def test_a_warning_clears_the_line(begin):
     screen, clock = begin(terminal=True)
-    with fitted(), progress(None, "things") as show:
+    with fit_terminal(), progress(None, "things") as show:
         clock[0] += 5.0
         show(1, 3)
         print("a warning", file=sys.stderr)

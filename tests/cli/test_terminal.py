@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import contactlab
-from contactlab.cli.terminal import Printed, fitted, fitting, safe
+from contactlab.cli.terminal import Printed, fit_terminal, fitting, safe
 from tests.longer import longer
 
 PACKAGE = Path(contactlab.__file__).parent
@@ -79,7 +79,7 @@ def test_everything_printed_goes_through_it(monkeypatch):
     out, err = (io.TextIOWrapper(io.BytesIO(), encoding="ascii", newline="") for _ in range(2))
     monkeypatch.setattr(sys, "stdout", out)
     monkeypatch.setattr(sys, "stderr", err)
-    with fitted():
+    with fit_terminal():
         print("ψ", EVIL)
         print("°", EVIL, file=sys.stderr)
         sys.stderr.writelines([EVIL])
@@ -95,7 +95,7 @@ def test_everything_printed_goes_through_it(monkeypatch):
 def test_a_program_without_streams_prints_nowhere(monkeypatch):
     monkeypatch.setattr(sys, "stdout", None)
     monkeypatch.setattr(sys, "stderr", None)
-    with fitted():
+    with fit_terminal():
         print("out")
         print("err", file=sys.stderr)
 

@@ -175,7 +175,7 @@ def test_second_derivatives_are_those_of_the_exact_law(jax):
 
     def sides(psi1, chi):
         """Return the region of each impact, and the side of the seam within SLIP_ON."""
-        here = regions.places(psi1, chi, elastic.shipped().cuts)
+        here = regions.places(psi1, chi, elastic.load_table().cuts)
         side = np.empty(psi1.size, dtype=int)
         side[here.who] = 2 * here.region + ((here.region == regions.SLIP_ON) & (here.a > 0.5))
         return side

@@ -7,7 +7,7 @@ import pytest
 
 import contactlab
 from contactlab.contracts import Status
-from contactlab.contracts.faults import LawFaultError, blaming, malformed, sentence
+from contactlab.contracts.faults import LawFaultError, blaming, is_malformed, sentence
 
 LAW = contactlab.create("tangential.coulomb")
 
@@ -46,7 +46,7 @@ LAW = contactlab.create("tangential.coulomb")
     ],
 )
 def test_answers_are_real_numbers_that_broadcast_to_the_batch(value, shape, bad):
-    assert malformed(value, shape) is bad
+    assert is_malformed(value, shape) is bad
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from contactlab.figures.stability import draw_stability, enough_steps, steps_needed
+from contactlab.figures.stability import draw_least_steps, draw_stability, enough_steps
 from contactlab.study.error_map import ErrorMap
 
 NAN = np.nan
@@ -24,7 +24,7 @@ MAPS = [
 
 
 def test_a_curve_has_the_least_steps_from_which_on_the_error_is_small():
-    axes = steps_needed(Figure().subplots(), MAPS)
+    axes = draw_least_steps(Figure().subplots(), MAPS)
     one, other, *_ = axes.lines
     np.testing.assert_array_equal(one.get_ydata(), [10.0, 100.0, NAN])
     np.testing.assert_array_equal(other.get_ydata(), [100.0, 10.0, 30.0])
@@ -33,7 +33,7 @@ def test_a_curve_has_the_least_steps_from_which_on_the_error_is_small():
 
 
 def test_steps_that_every_law_refuses_are_shaded():
-    axes = steps_needed(Figure().subplots(), MAPS)
+    axes = draw_least_steps(Figure().subplots(), MAPS)
     (shade,) = axes.collections
     heights = shade.get_paths()[0].vertices
     at = {x: heights[heights[:, 0] == x, 1].max() for x in (0.5, 4.0, 20.0)}
@@ -43,7 +43,7 @@ def test_steps_that_every_law_refuses_are_shaded():
 def test_the_line_to_take_is_above_every_law_that_reaches_its_limit():
     """At chi = 0.5 the other law needs 100 steps, 142 per root of chi: rounded up to fives, 145."""
     assert enough_steps(MAPS) == (145, ["one law"])  # which has no answer at chi = 20
-    axes = steps_needed(Figure().subplots(), MAPS)
+    axes = draw_least_steps(Figure().subplots(), MAPS)
     take = max(axes.lines[:3], key=lambda line: line.get_linewidth())
     for x, steps in zip(take.get_xdata(), take.get_ydata(), strict=True):
         assert steps == pytest.approx(145.0 * x**0.5)
@@ -56,7 +56,7 @@ def test_least_steps_of_the_map_do_not_set_the_line():
     maps = [area("easy", [[1e-3] * 3] * 3)]
     assert enough_steps(maps) == (0, [])
     assert enough_steps([]) == (0, [])
-    assert steps_needed(Figure().subplots(), maps).get_title().startswith("steps that keep")
+    assert draw_least_steps(Figure().subplots(), maps).get_title().startswith("steps that keep")
 
 
 @pytest.mark.slow

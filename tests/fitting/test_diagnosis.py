@@ -8,7 +8,7 @@ from scipy.stats import chi2
 
 from contactlab import Simulation
 from contactlab_fit import fit
-from contactlab_fit.diagnosis import error_notes, moved
+from contactlab_fit.diagnosis import describe_outlying, error_notes
 from contactlab_fit.fit_result import Estimate
 from tests.fitting.impacts import ANGLES, BODIES, restitution, scene, table
 from tests.fitting.lines import line, option
@@ -150,8 +150,8 @@ def test_a_robust_value_outside_of_its_interval_is_told():
                         robust=robust)  # fmt: skip
 
     inside = {str(robust): estimate(robust) for robust in (None, 0.5, 1.0, 1.5)}
-    assert moved(inside) == []
-    told = moved(inside | {"low": estimate(0.49), "high": estimate(1.51234)})
+    assert describe_outlying(inside) == []
+    told = describe_outlying(inside | {"low": estimate(0.49), "high": estimate(1.51234)})
     assert [re.search(r"gives (\w+ = [\d.]+), outside", text)[1] for text in told] == [
         "low = 0.49", "high = 1.512"
     ]  # fmt: skip

@@ -111,7 +111,7 @@ def told(places, *, count=12, more=None):
                 for name, values in problem.measured.items()}  # fmt: skip
     rest = Problem(model=problem.model, measured=measured, errors={})
     arrays = {name: np.array(rows) for name, rows in places.items()}
-    return outliers.described(problem, Outliers(1e-9, arrays, rest, np.array([2.0])))
+    return outliers.describe_outliers(problem, Outliers(1e-9, arrays, rest, np.array([2.0])))
 
 
 @pytest.mark.parametrize(

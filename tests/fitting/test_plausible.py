@@ -7,7 +7,7 @@ import pytest
 from contactlab import Scene
 from contactlab_fit import read_measurements
 from contactlab_fit.model import Model, scene_of
-from contactlab_fit.parameters import Setup, parameter_named
+from contactlab_fit.parameters import Setup, find_parameter
 from contactlab_fit.plausible import unlikely_numbers, unlikely_parameters
 from contactlab_fit.problem import Problem
 from tests.fitting.impacts import BODIES
@@ -21,7 +21,7 @@ def sentences(columns, *, scene=BODIES):
     table = read_measurements({"slip_restitution": np.full(count, -0.5)} | columns)
     setup = Setup(scene_of(scene, table.given, count), None)
     names = ("friction_coefficient",) if setup.scene.sphere is not None else ()
-    model = Model(setup=setup, parameters=tuple(parameter_named(name, setup) for name in names))
+    model = Model(setup=setup, parameters=tuple(find_parameter(name, setup) for name in names))
     return unlikely_numbers(Problem(model=model, measured=table.measured, errors={}), table)
 
 

@@ -8,9 +8,9 @@ import pytest
 
 from contactlab_fit import read_measurements
 from contactlab_fit.model import Model, scene_of
-from contactlab_fit.parameters import Setup, parameter_named
+from contactlab_fit.parameters import Setup, find_parameter
 from contactlab_fit.problem import Problem
-from contactlab_fit.readings import readings, turned
+from contactlab_fit.readings import readings, turn_scene
 from tests.fitting.impacts import BODIES
 
 TURN = 2.0 * math.pi
@@ -21,7 +21,7 @@ def problem_of(columns):
     """Return the problem of steel balls, and the columns before the impact."""
     table = read_measurements(columns)
     setup = Setup(scene_of(BODIES, table.given, len(table)), None)
-    model = Model(setup=setup, parameters=(parameter_named("friction_coefficient", setup),))
+    model = Model(setup=setup, parameters=(find_parameter("friction_coefficient", setup),))
     return Problem(model=model, measured=table.measured, errors=table.errors), list(table.given)
 
 
@@ -134,9 +134,9 @@ def test_both_angles_read_another_way():
 def test_impacts_are_turned_at_the_speed_that_was_measured():
     angle = np.array([0.3, 1.0])
     scene = attrs.evolve(BODIES, normal_speed=[3.0, 3.0], tangential_velocity=[4.0, -4.0])
-    free = turned(scene, angle, ["speed"])
+    free = turn_scene(scene, angle, ["speed"])
     assert free.normal_speed == pytest.approx(5.0 * np.cos(angle))
     assert free.tangential_velocity == pytest.approx(5.0 * np.sin(angle))
-    bound = turned(scene, angle, ["normal_speed"])
+    bound = turn_scene(scene, angle, ["normal_speed"])
     assert bound.normal_speed == pytest.approx([3.0, 3.0])
     assert bound.tangential_velocity == pytest.approx(3.0 * np.tan(angle))

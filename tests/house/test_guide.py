@@ -15,7 +15,7 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Status, contracts
-from contactlab.cli.guide import PARTS, SECTION, added, sections, summary, text, whole
+from contactlab.cli.guide import PARTS, SECTION, add_pages, sections, summary, text, whole
 from contactlab.cli.guide import pages as guide_pages
 from contactlab.cli.guide import topics as guide_topics
 from contactlab.impact import bodies, coupling, error_model, hertz, normal_spin
@@ -94,7 +94,7 @@ def test_the_contract_in_the_guide_is_that_of_the_code():
 
 
 def test_topics_are_the_files():
-    own = {*guide_pages()} - {*added()}
+    own = {*guide_pages()} - {*add_pages()}
     assert sorted(path.stem for path in GUIDE.glob("*")) == sorted(own)
 
 

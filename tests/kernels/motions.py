@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.integrate import quad
 
-from contactlab_laws.springs.doubling import Memory, moved
+from contactlab_laws.springs.doubling import Memory, move_springs
 
 UNIT, MODULUS, TIME = 0.7, 3.0e4, 0.02
 
@@ -66,7 +66,7 @@ def by_the_law(springs, rows, sizes):
     memory, unit, modulus = Memory(none, none, places, places), np.array([UNIT]), MODULUS
     answers = []
     for size, radius, limit in zip(sizes, rows[:, 6], rows[:, 7], strict=True):
-        force, work, memory = moved(
+        force, work, memory = move_springs(
             memory,
             np.array([size]),
             np.array([radius]),

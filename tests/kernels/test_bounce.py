@@ -12,7 +12,7 @@ import pytest
 
 import contactlab
 from contactlab import Encounter, HalfSpace, Material, Sphere, collide
-from contactlab_laws.viscoelastic.batch import extrapolated
+from contactlab_laws.viscoelastic.batch import extrapolate_steps
 from contactlab_laws.viscoelastic.relaxation import number_of
 from tests.kernels.test_kernels import (
     COMPILER,
@@ -266,7 +266,7 @@ def impacts(lower, upper):
     random, count = np.random.default_rng(10), 100
     chi, e = random.uniform(lower, upper, count), random.uniform(0.01, 1.0, count)
     psi1 = random.uniform(0.0, 1.0, count) * np.maximum(1.0, 2.0 * chi * (1.0 + e) - e)
-    return psi1, chi, e, extrapolated(psi1, chi, number_of(e), springs=200, steps=1000)
+    return psi1, chi, e, extrapolate_steps(psi1, chi, number_of(e), springs=200, steps=1000)
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ from contactlab_laws.deresiewicz.branches import (
     UNLOADING,
     ContactState,
     Step,
-    followed,
+    follow_step,
 )
 
 
@@ -44,7 +44,7 @@ def step(displacement, limit=1.0):
 def test_a_path_at_constant_load(moves, force, slipped, branch, sense):
     state = ContactState(limit=1.0)
     for move in moves:
-        state, work = followed(state, step(move))
+        state, work = follow_step(state, step(move))
         assert work >= 0.0
         assert state.held == 0.0  # at constant load nothing sticks while it grows
     assert state.force == pytest.approx(force, abs=1e-12)
@@ -59,7 +59,7 @@ def test_work_is_that_of_the_loop():
     moves = [0.001] * 500 + [-0.001] * 1000 + [0.001] * 1000
     for count, move in enumerate(moves):
         before = state
-        state, lost = followed(state, step(move))
+        state, lost = follow_step(state, step(move))
         if count >= 500:
             work += lost
             area += 0.5 * (before.force + state.force) * move
@@ -71,9 +71,9 @@ def test_work_is_that_of_the_loop():
 @pytest.mark.parametrize("displacement", [0.1, -0.1, 0.0])
 def test_a_contact_that_only_grows_sticks(displacement):
     """k dD where the limit outruns the displacement, and no more than the limit."""
-    state, work = followed(ContactState(), step(displacement, limit=8.0))
+    state, work = follow_step(ContactState(), step(displacement, limit=8.0))
     assert state.force == pytest.approx(1.5 * displacement)
     assert (state.sense, state.slipped, state.limit, work) == (0, 0.0, 8.0, 0.0)
     assert state.outrun == pytest.approx(abs(displacement) - 4.0 if displacement else -4.0)
-    capped, _ = followed(ContactState(force=-7.0), step(0.0, limit=2.0))
+    capped, _ = follow_step(ContactState(force=-7.0), step(0.0, limit=2.0))
     assert capped.force == -2.0

@@ -7,7 +7,7 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation
-from contactlab_laws.springs.doubling import Memory, fitted, moved
+from contactlab_laws.springs.doubling import Memory, fit_grid, move_springs
 from tests.longer import longer
 
 #: Steps from one random knot to the next.
@@ -31,7 +31,7 @@ def given_work(springs, slip, level, *, mean=True, weight=None):
     for next_place, zeta in zip(slip, level, strict=True):
         limit = (2.0 / 3.0) * unit * zeta**1.5 * radius
         step, reach = (next_place - place) * unit, radius * np.sqrt(zeta)
-        force, _, memory = moved(memory, step, reach, limit, unit=one, modulus=one)
+        force, _, memory = move_springs(memory, step, reach, limit, unit=one, modulus=one)
         if weight is not None:
             force = force * weight(memory)
         work = work + (0.5 * (force + before) if mean else force) * step
@@ -106,7 +106,9 @@ def test_merging_keeps_the_force_and_loses_energy_and_splitting_changes_neither(
 
     force, energy = force_and_energy(size / springs, held)
     for factor in (1.7, 3.3, 20.0):
-        after, merged, lost = fitted(memory.size, memory.deflection, factor * size, np.ones(items))
+        after, merged, lost = fit_grid(
+            memory.size, memory.deflection, factor * size, np.ones(items)
+        )
         assert ((after / 2.0 < factor * size) & (factor * size <= after)).all()
         new_force, new_energy = force_and_energy(after / springs, merged)
         assert new_force == pytest.approx(force, rel=1e-12, abs=1e-14)
@@ -116,7 +118,7 @@ def test_merging_keeps_the_force_and_loses_energy_and_splitting_changes_neither(
     inner[springs // 2 :] = 0.0  # the outer half is out of contact when cells are split
     force, energy = force_and_energy(size / springs, inner)
     memory = memory._replace(deflection=inner)
-    after, split, lost = fitted(memory.size, memory.deflection, 0.24 * size, np.ones(items))
+    after, split, lost = fit_grid(memory.size, memory.deflection, 0.24 * size, np.ones(items))
     assert (after == 0.5 * size).all()
     new_force, new_energy = force_and_energy(after / springs, split)
     assert new_force == pytest.approx(force, rel=1e-12, abs=1e-14)

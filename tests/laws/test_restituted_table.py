@@ -200,13 +200,13 @@ def test_no_impact_gains():
 )
 def test_beyond_the_table_springs_answer_to_their_error(chi, bound):
     """Against twice as many springs, extrapolated; and alone as in an array."""
-    from contactlab_laws.viscoelastic.batch import extrapolated
+    from contactlab_laws.viscoelastic.batch import extrapolate_steps
     from contactlab_laws.viscoelastic.relaxation import number_of
 
     e = np.array([0.0005, 0.3, 0.95])
     psi1 = np.array([0.3, 0.6, 0.95]) * np.maximum(1.0, 2.0 * chi * (1.0 + e) - e)
     found = rebound(psi1, chi, restitution=e)
-    finer = extrapolated(psi1, np.full(3, chi), number_of(e), springs=140, steps=1000)
+    finer = extrapolate_steps(psi1, np.full(3, chi), number_of(e), springs=140, steps=1000)
     assert found == pytest.approx(finer, abs=bound)
     alone = rebound(float(-psi1[2]), chi, restitution=0.95)
     assert alone == pytest.approx(-found[2], abs=1e-10)

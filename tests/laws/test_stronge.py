@@ -123,7 +123,7 @@ def stages_of(psi1, chi):
         while x < 0.5 * np.pi:
             if not found or found[-1] != contact.sense:
                 found.append(contact.sense)
-            contact, x = stages.advanced(stages.ONE, contact, half, np.sqrt(2.0 * chi), x)
+            contact, x = stages.advance_stage(stages.ONE, contact, half, np.sqrt(2.0 * chi), x)
     return found
 
 

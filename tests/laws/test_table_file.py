@@ -88,7 +88,7 @@ def test_a_build_goes_on_where_it_was_interrupted(tmp_path, monkeypatch):
 
     At once it is built by the command.
     """
-    made = elastic.shipped()
+    made = elastic.load_table()
     calls = []
 
     def solve(psi1, chi):

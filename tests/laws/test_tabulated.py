@@ -11,7 +11,7 @@ import contactlab
 from contactlab import Simulation, rebound
 from contactlab.study.bench_methods import scenes
 from contactlab_laws.tables import elastic, patches
-from contactlab_laws.tables.elastic import SHIPPED, shipped
+from contactlab_laws.tables.elastic import SHIPPED, load_table
 from contactlab_laws.tables.file import read
 from contactlab_laws.tables.patches import nodes, polynomial
 from contactlab_laws.tables.regions import (
@@ -42,7 +42,7 @@ def stored():
 
 
 def mixed(count, seed):
-    return draw(count, seed, shipped().cuts)[:2]
+    return draw(count, seed, load_table().cuts)[:2]
 
 
 @pytest.mark.parametrize(("chi", "psi1", "value"), [row for row in TABLE if row[0] <= LARGEST_CHI])
@@ -53,7 +53,7 @@ def test_reference_table(chi, psi1, value):
 
 def test_fresh_impacts():
     """A third of them on or beside singular curves."""
-    rows = verify(shipped(), count=150, seed=20)
+    rows = verify(load_table(), count=150, seed=20)
     assert {row.name for row in rows} > {*NAMES, "all"}
     assert max(row.largest for row in rows) < BOUND
     assert rows[-1].rms < 0.1 * BOUND
@@ -61,7 +61,7 @@ def test_fresh_impacts():
 
 @pytest.mark.slow
 def test_many_fresh_impacts():
-    assert verify(shipped(), count=20_000, seed=21)[-1].largest < BOUND
+    assert verify(load_table(), count=20_000, seed=21)[-1].largest < BOUND
 
 
 def test_odd_to_the_last_bit():
@@ -97,7 +97,7 @@ def test_limits():
 
 def seams(count):
     """Both sides of every line where one region, or one patch, ends and another begins."""
-    made = shipped()
+    made = load_table()
     unit = np.linspace(0.0, 1.0, count)
     step = 1e-13
     pairs = []
@@ -151,7 +151,7 @@ def test_slope_is_continuous_at_psi1_of_one_and_at_full_slip():
 
 @pytest.mark.slow
 def test_derivatives_against_differences_of_exact_impacts():
-    psi1, chi, _ = draw(80, 24, shipped().cuts)
+    psi1, chi, _ = draw(80, 24, load_table().cuts)
     curves = np.array([psi1, psi1 - 1.0, psi1 - 4.0 * chi + 1.0, chi, chi - 0.5, chi - LARGEST_CHI])
     far = np.abs(curves).min(axis=0) > 1e-3
     psi1, chi = psi1[far][:30], chi[far][:30]
@@ -200,7 +200,7 @@ def test_scalar_gathered_and_sorted_agree(monkeypatch):
     singly = [rebound(*pair) for pair in pairs]
     off = np.abs(np.array(singly) - gathered)
     # At a seam rounding, which is not that of arrays, may choose the patch of the other side.
-    here = places(np.abs(psi1), chi, shipped().cuts)
+    here = places(np.abs(psi1), chi, load_table().cuts)
     cells = np.array([here.a, here.b]) * 64.0
     seam = np.zeros(psi1.size, dtype=bool)
     seam[here.who] = (np.abs(cells - np.round(cells)) < 1e-9).any(axis=0)
@@ -209,7 +209,7 @@ def test_scalar_gathered_and_sorted_agree(monkeypatch):
 
 
 def test_places_and_impacts_are_each_others_inverse():
-    made = shipped()
+    made = load_table()
     psi1, chi = mixed(3000, 27)
     here = places(psi1, chi, made.cuts)
     for region in np.unique(here.region).tolist():
@@ -227,7 +227,7 @@ def test_the_cuts_are_found_again(monkeypatch):
     monkeypatch.setattr(cuts, "POINTS", 12)
     monkeypatch.setattr(cuts, "HALVINGS", 8)
     unit = np.linspace(0.0, 1.0, 21)
-    found, known = cuts.find(), shipped().cuts
+    found, known = cuts.find(), load_table().cuts
     for curve, arguments, one, other in zip(
         (polynomial, slip_cut, polynomial),
         (unit, CUT_END * unit, SEAM_FROM + (1.0 - SEAM_FROM) * unit),
@@ -242,7 +242,7 @@ def test_the_cuts_are_found_again(monkeypatch):
 @pytest.mark.parametrize("row", [(5, 2, 2, 0, 1), (5, 3, 2, 4, 1)], ids=["at psi1 = 1", "beyond"])
 def test_a_patch_is_made_again_from_exact_impacts(row):
     """At once as good as the table's tolerance, and the same polynomial, slopes included."""
-    made, cell = shipped(), Cell(*row)
+    made, cell = load_table(), Cell(*row)
     cells, all_terms = stored()
     known = all_terms[cells.index(list(row))]
     psi1, chi = cell.nodes(made.cuts)

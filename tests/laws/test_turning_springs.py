@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from contactlab_laws.springs.turning import beyond, relaxed, turned
+from contactlab_laws.springs.turning import beyond, relax, turn_springs
 
 
 def dragged(held, move, least, most, cross=1.0):
@@ -41,7 +41,7 @@ def test_a_step_has_a_local_error_of_third_order(cross, growth, short, least):
         held, move = (1.0 - short * size) * (0.6 + 0.8j), 1.5 * size + 0.0j
         most = 1.0 + growth * size
         column = [np.array([[each]]) for each in (held, move, 1.0, most)]
-        found, lost = turned(*column, cross=None if cross == 1.0 else np.array([cross]))
+        found, lost = turn_springs(*column, cross=None if cross == 1.0 else np.array([cross]))
         assert abs(found[0, 0]) == pytest.approx(most)
         assert lost[0] > 0.0
         errors.append(abs(found[0, 0] - dragged(held, move, 1.0, most, cross)))
@@ -64,7 +64,7 @@ def test_a_spring_slips_to_the_closest_point_of_its_limit():
     rounding = 4e-16 * np.abs(force[slips])
     assert (np.abs(np.abs(kept)[slips] - limit[slips]) <= 1e-9 * limit[slips] + rounding).all()
     slips &= limit > 1e-6 * np.abs(force)  # of others the difference keeps few digits
-    slip = relaxed(over, cross)[slips]
+    slip = relax(over, cross)[slips]
     assert (slip.conj() * kept[slips]).real.min() > 0.0
     aside = (slip.conj() * kept[slips]).imag / (np.abs(slip) * np.abs(kept[slips]))
     assert np.abs(aside).max() < 1e-8

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from contactlab_laws.viscoelastic.batch import extrapolated, rebound
+from contactlab_laws.viscoelastic.batch import extrapolate_steps, rebound
 from contactlab_laws.viscoelastic.motion import course
 from contactlab_laws.viscoelastic.relaxation import restitution_of
 from tests.laws.test_restituted_table import PSI1, REFERENCES, SINGLES
@@ -12,17 +12,17 @@ from tests.laws.test_restituted_table import PSI1, REFERENCES, SINGLES
 def test_values_of_another_program():
     psi1 = np.tile(PSI1, len(REFERENCES))
     a, chi = np.repeat(list(REFERENCES), len(PSI1), axis=0).T
-    found = extrapolated(psi1, chi, a, springs=40, steps=400)
+    found = extrapolate_steps(psi1, chi, a, springs=40, steps=400)
     assert found == pytest.approx(np.concatenate([*REFERENCES.values()]), abs=4e-4)
 
 
 @pytest.mark.slow
 def test_each_its_own_relaxation_time():
     psi1, chi, a, psi2 = np.array(SINGLES).T
-    found = extrapolated(psi1, chi, a, springs=60, steps=480)
+    found = extrapolate_steps(psi1, chi, a, springs=60, steps=480)
     assert found == pytest.approx(psi2, abs=1e-4)
     alone = [
-        extrapolated(psi1[k : k + 1], chi[k : k + 1], float(a[k]), springs=60, steps=480)[0]
+        extrapolate_steps(psi1[k : k + 1], chi[k : k + 1], float(a[k]), springs=60, steps=480)[0]
         for k in range(4)
     ]
     assert found == pytest.approx(alone, abs=1e-12)

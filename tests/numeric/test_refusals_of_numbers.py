@@ -95,15 +95,15 @@ def test_an_array_that_is_kept_is_a_copy_and_read_only():
 
 def test_two_quantities_of_one_shape():
     one, other = np.array([1.0, 2.0]), np.array([3.0, 4.0])
-    found = checks.paired("psi1", "chi", (one, other))
+    found = checks.pair_up("psi1", "chi", (one, other))
     assert (found[0] is one, found[1] is other) == (True, True)
-    plain = checks.paired("psi1", "chi", (1.0, 2.0))
+    plain = checks.pair_up("psi1", "chi", (1.0, 2.0))
     assert [(each.shape, float(each)) for each in plain] == [((), 1.0), ((), 2.0)]
-    spread = checks.paired("psi1", "chi", (1.0, other))
+    spread = checks.pair_up("psi1", "chi", (1.0, other))
     assert [each.tolist() for each in spread] == [[1.0, 1.0], [3.0, 4.0]]
-    spread = checks.paired("psi1", "chi", (one[:, None], other))
+    spread = checks.pair_up("psi1", "chi", (one[:, None], other))
     assert [each.shape for each in spread] == [(2, 2), (2, 2)]
-    assert refusal(checks.paired, "psi1", "chi", (one, np.ones(3))) == (
+    assert refusal(checks.pair_up, "psi1", "chi", (one, np.ones(3))) == (
         "shapes of psi1 and chi = ((2,), (3,)): must broadcast to one; one value of chi for each "
         "psi1"
     )

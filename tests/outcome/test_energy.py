@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
-from contactlab.outcome.energy import balanced
+from contactlab.outcome.energy import judge_books
 from tests.laws.normal_laws import Damped
 from tests.laws.tangential_laws import Creator, Slinger
 
@@ -119,6 +119,6 @@ def test_slip_out_of_none_is_energy_from_nothing():
     met = scene(slip=0.0)
     motion = Simulation(tangential="coulomb").run(met).motion
     slung = attrs.evolve(motion, slip_velocity_change=1e-3)
-    found, _ = balanced(slung, met, np.inf)
+    found, _ = judge_books(slung, met, np.inf)
     assert found.status is Status.UNBALANCED
     assert found.detail == "The contact slips inf times as fast as it met."

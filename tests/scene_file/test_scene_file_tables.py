@@ -11,7 +11,7 @@ import pytest
 
 import contactlab
 from contactlab.scene_file.read import _deep
-from contactlab.scene_file.table import Table, flattened, number_list
+from contactlab.scene_file.table import Table, flatten, number_list
 from tests.scene_file.test_scene_file_messages import IMPACT
 from tests.scene_file.test_scene_file_refusals import refusal
 
@@ -138,8 +138,8 @@ def test_a_maker_that_overflows_names_its_table():
 
 def test_values_by_dotted_name_however_they_are_nested():
     content = {"a": {"b": {"c": 1}, "d": {"leaf": 2}}, "e.f": 3}
-    assert flattened(content) == {"a.b.c": 1, "a.d.leaf": 2, "e.f": 3}
-    found = flattened(content, leaf=lambda table: "leaf" in table)
+    assert flatten(content) == {"a.b.c": 1, "a.d.leaf": 2, "e.f": 3}
+    found = flatten(content, leaf=lambda table: "leaf" in table)
     assert found == {"a.b.c": 1, "a.d": {"leaf": 2}, "e.f": 3}
 
 

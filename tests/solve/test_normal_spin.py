@@ -24,7 +24,7 @@ from contactlab import (
 from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
 from contactlab.impact.normal_spin import nodes
-from contactlab.outcome.columns import columns, quantity_named
+from contactlab.outcome.columns import columns, find_quantity
 from contactlab.outcome.plan import NORMAL_SPIN
 from contactlab.outcome.tables import sections
 from contactlab.outcome.text_table import table
@@ -590,7 +590,7 @@ def test_columns_of_files_have_the_spin_only_where_bodies_turn():
         result.scene.normal_spin, result.rebound_normal_spin, result.scene.w1, result.scene.chi_w,
         result.w2,
     ]  # fmt: skip
-    assert quantity_named("w2").of(result) == pytest.approx(result.w2)
+    assert find_quantity("w2").of(result) == pytest.approx(result.w2)
     still = {name for name, *_ in columns(law.run(met(1.0, 0.0).scene))}
     assert not still & set(names)
     assert "w1=-0.5, chi_w=0.01" in str(result)

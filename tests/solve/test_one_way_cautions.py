@@ -13,7 +13,7 @@ from contactlab import (
     collide,
     create,
 )
-from contactlab.study.posed import posed
+from contactlab.study.posed import pose
 from tests.solve.any_scene import (
     ALL,
     BALL,
@@ -68,7 +68,7 @@ ROWS = [
 def test_the_laws_own_cautions_hold(scene, laws, words):
     """And where friction changes the approach their sizes are said to be of spheres."""
     simulation = Simulation(**laws)
-    scene = posed(scene, simulation.laws)
+    scene = pose(scene, simulation.laws)
     result = simulation.run(scene).check()
     told, planned = str(result), [str(clause) for clause in simulation.plan(scene).cautions]
     for word in words:

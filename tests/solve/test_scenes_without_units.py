@@ -12,7 +12,7 @@ from contactlab import Encounter, Material, Scene, Simulation, Sphere, collide, 
 from contactlab.cli.main import main
 from contactlab.numeric.checks import quantity
 from contactlab.study.bench_methods import Method
-from contactlab.study.posed import posed
+from contactlab.study.posed import pose
 from contactlab.study.work_precision import bench
 from contactlab_laws.springs.law import Springs
 from tests.laws.normal_laws import LinearSpring, in_si
@@ -79,7 +79,7 @@ def test_where_friction_changes_the_approach_too():
     jkr = Simulation(normal="jkr", tangential="springs")
     with pytest.raises(ValueError, match="jkr needs a scene with units"):
         jkr.run(bodies)
-    jkr.run(posed(bodies, jkr.laws)).check()
+    jkr.run(pose(bodies, jkr.laws)).check()
 
 
 def test_no_door_of_many_or_of_paths_lets_them_in(tmp_path):
@@ -146,8 +146,8 @@ def test_files_and_the_command_line_tell_it(tmp_path, capsys):
 
 def test_scenes_are_posed_with_units_for_such_laws_alone():
     groups = Scene.nondimensional(psi1=[0.5, 1.2], chi=[1.0, 2.0], lam=0.1, rho=0.3)
-    assert posed(groups, Simulation().laws) is groups
-    sized = posed(groups, Simulation(normal="jkr").laws)
+    assert pose(groups, Simulation().laws) is groups
+    sized = pose(groups, Simulation(normal="jkr").laws)
     assert sized.has_units
     for name in ("psi1", "chi", "lam", "eta"):
         assert getattr(sized, name) == pytest.approx(getattr(groups, name), rel=1e-12)

@@ -172,7 +172,7 @@ def test_interrupted_laws_are_left_out(file, after, kept, monkeypatch):
             raise KeyboardInterrupt
         return run(*words)
 
-    monkeypatch.setattr(study, "_timed", lambda name, simulation, scene, **_: study.LawRun(
+    monkeypatch.setattr(study, "_time", lambda name, simulation, scene, **_: study.LawRun(
         name=name, result=interrupted(simulation, scene), run_time_per_impact=1.0))  # fmt: skip
     monkeypatch.setattr(study, "_run", interrupted)
     if kept is None:

@@ -187,7 +187,7 @@ class ReportsItsEndlessness(AsksTillItGives):
         try:
             return super().integrate(scene, normal, tangential, observer)
         except Exception as error:
-            detail = faults.raised(error)
+            detail = faults.tell_error(error)
             return TangentialMotion.nothing(scene.shape, Status.LAW_RAISED, detail)
 
 

@@ -117,7 +117,7 @@ class HalfKicks(Integrator):
                     break
                 change, work, before = change - slowed, work + answer.friction_work, after
         except Exception as error:
-            status, what = contactlab.Status.LAW_RAISED, faults.raised(error)
+            status, what = contactlab.Status.LAW_RAISED, faults.tell_error(error)
         return TangentialMotion(
             slip_velocity_change=change,
             friction_work=work,

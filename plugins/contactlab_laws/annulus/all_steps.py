@@ -135,7 +135,7 @@ class BlockMarch:
             return 0
         rows = rows[: len(edges)]
         inner = np.arange(len(lag)) < np.array(edges)[:, None]
-        return self._tested(
+        return self._test(
             rows, np.where(inner, 0.0, np.array(slip_signs)[:, None]), totals, changes
         )
 
@@ -162,9 +162,9 @@ class BlockMarch:
             changes.append(changes[-1] - self.kicks[k] * force)
         rows[:, 0] = totals[1:]
         self.answers[at:until] = rows.dot(matrix)
-        return self._tested(rows, np.tile(signs, (len(rows), 1)), totals, changes)
+        return self._test(rows, np.tile(signs, (len(rows), 1)), totals, changes)
 
-    def _tested(self, rows: Array, signs: Array, totals: list[float], changes: list[float]) -> int:
+    def _test(self, rows: Array, signs: Array, totals: list[float], changes: list[float]) -> int:
         """Enter a block of steps, whose ``rows`` hold D and the drives; return how many pass."""
         at, until = self.at, self.at + len(rows)
         drive, answer, limits = rows[:, 1:], self.answers[at:until, 1:], self.limits[at:until]

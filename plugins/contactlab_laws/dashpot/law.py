@@ -30,7 +30,7 @@ class Parts(NamedTuple):
     radius: Real
 
 
-def pressed(parts: Parts, approach: Real, rate: Real, powers: tuple[float, float]) -> NormalContact:
+def press(parts: Parts, approach: Real, rate: Real, powers: tuple[float, float]) -> NormalContact:
     """Return the contact of P = k z^n + c z^m z', ``powers`` (n, m), without tension; b² = R z."""
     touching: Any = approach >= 0.0
     inside: Any = approach * touching  # NaN stays NaN
@@ -79,7 +79,7 @@ class Tsuji(ClosedFormNormalLaw):
 
     def respond(self, state: Parts, approach: Real, rate: Real) -> tuple[NormalContact, Parts]:
         """Return force and Hertz's radius (2)."""
-        return pressed(state, approach, rate, (1.5, 0.25)), state
+        return press(state, approach, rate, (1.5, 0.25)), state
 
     def motion(self, scene: Scene) -> ClosedFormMotion:
         """Return the motion in closed form: an oscillator in zeta^1.25, Hertz's without damping."""
@@ -127,7 +127,7 @@ class Linear(ClosedFormNormalLaw):
 
     def respond(self, state: Parts, approach: Real, rate: Real) -> tuple[NormalContact, Parts]:
         """Return force and radius."""
-        return pressed(state, approach, rate, (1.0, 0.0)), state
+        return press(state, approach, rate, (1.0, 0.0)), state
 
     def motion(self, scene: Scene) -> ClosedFormMotion:
         """Return the motion of the oscillator."""

@@ -32,7 +32,7 @@ POINTS, NEWTON = 2000, 4
 ROOT = 0.2
 
 
-def stretched(share: Kind) -> Kind:
+def stretch_time(share: Kind) -> Kind:
     """Return tau = t⁵/(t⁵ + (1 - t)/16): oscillator time over duration, t the phase over pi."""
     # tau = ½ at t = ½, greatest compression; x^0.2 and so zeta^¼ is analytic at first touch.
     fifth = share**5
@@ -107,7 +107,7 @@ class ScaledMotion:
         """Return the scaled motion at ``phase`` in [0, pi]."""
         share = np.asarray(phase) / math.pi
         duration = self.oscillator.duration
-        x, rate, pull = self.oscillator.at(duration * stretched(share))
+        x, rate, pull = self.oscillator.at(duration * stretch_time(share))
         p = 1.0 - 1.0 / self.power
         factor = x**p  # zeta^(q-1)
         pace = duration * stretching(share) * share**4 / (self.power * factor + (factor == 0.0))

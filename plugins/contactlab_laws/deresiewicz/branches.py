@@ -77,15 +77,15 @@ class Step(NamedTuple):
         return sense * self.moved - (_square(self.limit) - _square(state.limit))
 
 
-def followed(state: ContactState, step: Step) -> tuple[ContactState, float]:
+def follow_step(state: ContactState, step: Step) -> tuple[ContactState, float]:
     """Return the state after a step, and the friction work in J."""
-    before = _turned(state, step)
+    before = _turn_branch(state, step)
     if not before.sense:
         trial = state.force + step.stiffness * step.displacement
         held = min(max(trial, -step.limit), step.limit)
         ahead = step.outruns(state, _sign(step.displacement))
         return before._replace(force=held, limit=step.limit, slipped=0.0, outrun=ahead), 0.0
-    after = _slipped(before, step)
+    after = _slip(before, step)
     if step.front_rate == 0.0:
         return after, 0.0
     # The traction on the slipping annulus is mu p; it slips by dD - s dM/k all over.
@@ -96,7 +96,7 @@ def followed(state: ContactState, step: Step) -> tuple[ContactState, float]:
     return after, 0.5 * traction * slid
 
 
-def _turned(state: ContactState, step: Step) -> ContactState:
+def _turn_branch(state: ContactState, step: Step) -> ContactState:
     """Return the state with the sense and the branch of a step."""
     # The edge slips while its displacement outruns the limit. Where the displacement no longer
     # outruns it, the edge turns if it slips the other way, or sticks. Under a falling load it may
@@ -124,7 +124,7 @@ def _turned(state: ContactState, step: Step) -> ContactState:
     return state._replace(sense=begun, branch=LOADING, slipped=slipped, held=held)
 
 
-def _slipped(state: ContactState, step: Step) -> ContactState:
+def _slip(state: ContactState, step: Step) -> ContactState:
     """Return the state after a step in which the edge slips."""
     old, limit, sense, branch = state.limit, step.limit, state.sense, state.branch
     pressed, square = limit - old, _square(limit)
@@ -138,14 +138,14 @@ def _slipped(state: ContactState, step: Step) -> ContactState:
     ahead = state.slipped * _square(old) + weight * sense * step.moved + rest * grown
     slipped = max(ahead / square, 0.0) if square > 0.0 else 0.0
     if loading:
-        force = sense * limit * (held + (1.0 - held) * _used(slipped))
+        force = sense * limit * (held + (1.0 - held) * _share_of_slip(slipped))
     else:
-        force = turn + 2.0 * sense * limit * _used(slipped)
+        force = turn + 2.0 * sense * limit * _share_of_slip(slipped)
         goal = earlier if branch == RELOADING else -turn
         if limit > 0.0 and sense * force > sense * goal:  # beyond its starting point: loading
             beyond = 2.0 * (slipped - _edge(0.5 * sense * (goal - turn) / limit))
             slipped, branch, held = _edge(sense * goal / limit) + beyond, LOADING, 0.0
-            force = sense * limit * _used(slipped)
+            force = sense * limit * _share_of_slip(slipped)
     if slipped >= 1.0:  # gross slip: the memory is lost
         branch, held, force = LOADING, 0.0, sense * limit
     return state._replace(
@@ -166,7 +166,7 @@ def _square(limit: float) -> float:
     return math.cbrt(limit) ** 2
 
 
-def _used(slipped: float) -> float:
+def _share_of_slip(slipped: float) -> float:
     """Return u = 1 - (1 - epsilon)^(3/2)."""
     if slipped >= 1.0:
         return 1.0

@@ -19,7 +19,7 @@ from contactlab.contracts import (
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
-from contactlab_laws.deresiewicz.branches import ContactState, Step, followed
+from contactlab_laws.deresiewicz.branches import ContactState, Step, follow_step
 from contactlab_laws.differences import table as differences
 from contactlab_laws.jaeger.partial_slip import hemisphere
 
@@ -145,4 +145,4 @@ def _one(
     )
     if not math.isfinite(limit + total + displacement):
         return contact._replace(force=math.nan), math.nan
-    return followed(contact, step)
+    return follow_step(contact, step)

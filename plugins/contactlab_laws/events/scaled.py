@@ -129,7 +129,7 @@ def _follow(
     except LostPathError as error:
         failure = str(error)
     except Exception as error:
-        status, failure = Status.LAW_RAISED, faults.raised(error)
+        status, failure = Status.LAW_RAISED, faults.tell_error(error)
     if not failure and x < math.pi:
         failure = "the path ends before contact does"
     missing = books_miss(velocity, inertia, change, work)

@@ -57,15 +57,15 @@ def digest() -> str:
 
 def library() -> Any:
     """Return the library, or None where there is none or it is left out."""
-    return _library(_wanted())[0]
+    return _library(_wants_library())[0]
 
 
 def told() -> str:
     """Return in words whether the library is used, and why not."""
-    return _library(_wanted())[1]
+    return _library(_wants_library())[1]
 
 
-def _wanted() -> bool:
+def _wants_library() -> bool:
     """Return whether the environment lets the library be used."""
     return os.environ.get(VARIABLE, "").strip().lower() not in ("0", "false", "no", "off")
 

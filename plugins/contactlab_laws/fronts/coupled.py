@@ -19,9 +19,9 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.hertz import DURATION_CONSTANT, hertz_scales
-from contactlab.numeric.arrays import chosen, filled, some
+from contactlab.numeric.arrays import chosen, some, spread_object
 from contactlab.numeric.types import Array, Mask
-from contactlab.numeric.vectors import entry, joined
+from contactlab.numeric.vectors import entry, join_components
 from contactlab_laws.fronts import compiled
 from contactlab_laws.fronts.compiled import MEMORY, MOST_STEPS
 from contactlab_laws.fronts.path import Impact
@@ -52,14 +52,14 @@ def motion(
     speed: Any = scene.normal_speed
     kappa: Any = scene.pair.stiffness_ratio
     smooth: Any = mu == 0.0
-    numbers = joined((scene.psi1, scene.chi, scene.lam, scene.eta), shape).reshape(-1, 4).T
+    numbers = join_components((scene.psi1, scene.chi, scene.lam, scene.eta), shape).reshape(-1, 4).T
     if observer is None or some(smooth) or numbers.shape[1] != 1:
-        found, lost = _followed(numbers, smooth, tolerance)
+        found, lost = _follow_sides(numbers, smooth, tolerance)
     else:
         left, status, steps = kept(numbers[:, 0].tolist(), tolerance, MOST_STEPS)
         found, lost = np.array(left)[:, None], np.array([status])
         _show(scene, scales, steps, observer)
-    ended, detail = filled(Status.SUCCESS, shape), filled("", shape)
+    ended, detail = spread_object(Status.SUCCESS, shape), spread_object("", shape)
     if lost.any():
         found[:6, lost != 0] = math.nan
         ended, detail = (each[lost].reshape(shape)[()] for each in (ENDED, DETAILS))
@@ -86,19 +86,19 @@ def motion(
     )
 
 
-def _followed(numbers: Array, smooth: Mask, tolerance: float) -> tuple[Array, NDArray[np.intc]]:
+def _follow_sides(numbers: Array, smooth: Mask, tolerance: float) -> tuple[Array, NDArray[np.intc]]:
     """Return what impacts leave and their statuses; ``smooth`` marks those without friction."""
     if not some(smooth):
-        return solved(numbers, tolerance)
+        return solve_impacts(numbers, tolerance)
     # nothing slips: psi is infinite, and V and the slip are closed forms
     moving = np.flatnonzero(np.broadcast_to(~np.ravel(smooth), numbers.shape[1]))
     found = np.repeat(np.array(SMOOTH)[:, None], numbers.shape[1], axis=1)
     lost = np.zeros(numbers.shape[1], dtype=np.intc)
-    found[:, moving], lost[moving] = solved(numbers[:, moving], tolerance)
+    found[:, moving], lost[moving] = solve_impacts(numbers[:, moving], tolerance)
     return found, lost
 
 
-def solved(numbers: Array, tolerance: float) -> tuple[Array, NDArray[np.intc]]:
+def solve_impacts(numbers: Array, tolerance: float) -> tuple[Array, NDArray[np.intc]]:
     """Return what impacts leave and their statuses, as ``compiled.follow`` does."""
     out, status = compiled.follow(numbers, tolerance)
     if not status.any():

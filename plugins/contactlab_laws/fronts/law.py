@@ -109,7 +109,7 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
             return (_from_table(scene, psi1, chi, where=True),)
         closed = (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
         if self.table and not np.all(tabulated):
-            closed = (*closed, *_solved(scene, np.logical_not(tabulated)))
+            closed = (*closed, *_solve_in_c(scene, np.logical_not(tabulated)))
         if not np.any(tabulated):
             return closed
         if scene.shape:
@@ -167,7 +167,7 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
         return motion(scene, normal, accuracy or FOLLOWED, observer)
 
 
-def _solved(scene: Scene, where: Mask) -> tuple[WholeImpact, ...]:
+def _solve_in_c(scene: Scene, where: Mask) -> tuple[WholeImpact, ...]:
     """Return the answers of the compiled law, where it solves central impacts."""
     if compiled.library() is None:
         return ()

@@ -141,7 +141,7 @@ class Impact:
         self.memory[-1] = Drawn(piece.sign, (front, rate, margin, self.lack), left)
         return self._after(event, front)
 
-    def _locked(self) -> Part:
+    def _slip_back(self) -> Part:
         """Let the front run back through a zone that locked out of slip of the other sign."""
         piece = self.memory[-1]
         assert isinstance(piece, Locked)
@@ -206,7 +206,7 @@ class Impact:
             return self._gross
         piece = memory[-1]
         if isinstance(piece, Locked):
-            return self._locked
+            return self._slip_back
         if piece.sign != self.sign:
             u, V, k, J = piece.outer
             outer = (u, V, 2.0 * V - k, (4.0 / 3.0) * u**3 - J)

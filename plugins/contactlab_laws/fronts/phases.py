@@ -15,8 +15,8 @@ from contactlab_laws.fronts.series import (
     Rows,
     Series,
     along_drawn,
-    along_locked,
     along_whole,
+    follow_unlocking,
     value,
 )
 
@@ -75,7 +75,7 @@ def step(
             spent = rows[7]
         else:
             inmost = state[4] * state[4] < INMOST * abs(state[0] * state[2])
-            rows = along_locked(laws, state, inmost=inmost)
+            rows = follow_unlocking(laws, state, inmost=inmost)
             spent = [rows[4][0] - end, *rows[4][1:]]
         events = [_slip_stops(rows), (spent, False), _edge_meets(rows)]
     length = _usable(rows, tolerance)

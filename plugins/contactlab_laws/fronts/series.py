@@ -120,7 +120,7 @@ def along_whole(laws: Laws, state: Sequence[float], *, sticks: bool) -> Rows:
     return rows
 
 
-def along_locked(laws: Laws, state: Sequence[float], *, inmost: bool) -> Rows:
+def follow_unlocking(laws: Laws, state: Sequence[float], *, inmost: bool) -> Rows:
     """Return u, V, k, J, c and T while a zone slips that was locked out of the other sign.
 
     There m + 2c² and J - (4/3) c³ are constant, and 2 c dc = u k dx. The variable is x or, for

@@ -73,16 +73,16 @@ def phase_at_fraction(fraction: Array) -> tuple[Array]:
     return (np.where(fraction <= 0.5, phase, np.pi - phase),)
 
 
-def remembered(function: Callable[[Array], tuple[Array, ...]], at: Real) -> tuple[Array, ...]:
+def remember(function: Callable[[Array], tuple[Array, ...]], at: Real) -> tuple[Array, ...]:
     """Return ``function(at)``, cached if short: impacts with equal steps share their phases."""
     points = np.asarray(at, dtype=np.float64)
     if points.size > LONGEST_KEPT:
         return function(points)
-    return tuple(array.reshape(points.shape) for array in _cached(function, points.tobytes()))
+    return tuple(array.reshape(points.shape) for array in _cache(function, points.tobytes()))
 
 
 @lru_cache(maxsize=64)
-def _cached(function: Callable[[Array], tuple[Array, ...]], at: bytes) -> tuple[Array, ...]:
+def _cache(function: Callable[[Array], tuple[Array, ...]], at: bytes) -> tuple[Array, ...]:
     columns = function(np.frombuffer(at))
     for column in columns:
         column.flags.writeable = False
@@ -90,7 +90,7 @@ def _cached(function: Callable[[Array], tuple[Array, ...]], at: bytes) -> tuple[
 
 
 @lru_cache(maxsize=16)
-def _shared(*_: float) -> dict[Any, Any]:
+def _share(*_: float) -> dict[Any, Any]:
     """Return the dict that motions share whose batches have as many axes and the same numbers."""
     return {}
 
@@ -134,7 +134,7 @@ class HertzMotion(ClosedFormMotion):
             return None
         pair, speed = self.scene.pair, self.scene.normal_speed
         numbers: Any = (pair.radius, pair.effective_modulus, pair.normal_mass, speed)
-        return _shared(len(self.scene.shape), *numbers)
+        return _share(len(self.scene.shape), *numbers)
 
     def take(self, part: Index) -> HertzMotion:
         """Return the motion of some impacts."""
@@ -167,7 +167,7 @@ class HertzMotion(ClosedFormMotion):
     def at(self, phase: Real) -> NormalSample:
         """Return the motion at ``phase`` in [0, pi]."""
         speed = self.scene.normal_speed
-        u, rate, instant = remembered(scaled_motion, phase)
+        u, rate, instant = remember(scaled_motion, phase)
         instant = instant * (self.maximum_approach / speed)
         approach = u * u * self.maximum_approach
         force = u**3 * self.maximum_force
@@ -177,4 +177,4 @@ class HertzMotion(ClosedFormMotion):
 
     def phase(self, fraction: Real) -> Real:
         """Return the phase at ``fraction`` of the duration, by the inverse of ``scaled_time``."""
-        return remembered(phase_at_fraction, fraction)[0]
+        return remember(phase_at_fraction, fraction)[0]

@@ -72,13 +72,13 @@ def advance(
     else:
         each = np.broadcast_to(square, (items,))
         geometry = of_each(bundle, before.square, each, pressure)
-    force, work, deflection = _returned(bundle, before.deflection, geometry, displacement, items)
+    force, work, deflection = _return_map(bundle, before.deflection, geometry, displacement, items)
     if not len(deflection):  # out of contact NaN stays NaN
         force = force + 0.0 * (displacement * pressure)
     return force, work, SpringState(deflection, geometry.limit, square)
 
 
-def _returned(
+def _return_map(
     bundle: Bundle, before: Array, geometry: Geometry, displacement: Real, items: int
 ) -> tuple[Array, Array, Array]:
     """Return force, friction work and the new w = clip(w + part D, -l, l), a return mapping."""
@@ -99,15 +99,15 @@ def _returned(
     else:
         work[:still] *= after[:still] + before[:still]
         work[still:] *= after[still:]
-    total = _weighed(weights, work)
+    total = _weigh(weights, work)
     if touching < len(before):  # springs that left the contact lose their deflection
         left = before[touching:]
         slip = left + displacement
         total = total + bundle.full_weights[touching : len(before)] @ (left * slip)
-    return _weighed(weights, after), 0.5 * np.maximum(total, 0.0), after
+    return _weigh(weights, after), 0.5 * np.maximum(total, 0.0), after
 
 
-def _weighed(weights: Array, values: Array) -> Array:
+def _weigh(weights: Array, values: Array) -> Array:
     """Return the sum over the springs, shape (items,)."""
     if weights.ndim == 1:
         return np.asarray(weights @ values)

@@ -31,7 +31,7 @@ from contactlab_laws.march.fixed import (
     MOST_STEPS,
     in_groups,
     needed_steps,
-    refined,
+    refine_count,
     refusals,
 )
 from contactlab_laws.march.march import march
@@ -96,15 +96,15 @@ class Adaptive(CoupledIntegrator):
 
         def even(normal: NormalMotion, count: int) -> TangentialMotion:
             first = _march(normal, law, count)
-            second = _march(normal, law, 2 * count) if _succeeded(first) else first
-            if not _succeeded(second):
+            second = _march(normal, law, 2 * count) if _succeeds(first) else first
+            if not _succeeds(second):
                 return second
-            return self._doubled(normal, law, 4 * count, (first, second), 3 * count)
+            return self._double(normal, law, 4 * count, (first, second), 3 * count)
 
         try:
             with faults.blaming(law):
                 needed = needed_steps(normal, law)
-            motion = in_groups(normal, FIRST, needed, refined(FIRST, needed), even)
+            motion = in_groups(normal, FIRST, needed, refine_count(FIRST, needed), even)
             if observer is not None:
                 _march(normal, law, motion.counters.get("steps", FIRST), observer)
         except faults.LawFaultError as fault:
@@ -176,7 +176,7 @@ class Adaptive(CoupledIntegrator):
         merged = TangentialMotion.merged(parts, scene.shape)
         return attrs.evolve(merged, counters={"steps": steps}), finer
 
-    def _doubled(
+    def _double(
         self,
         normal: NormalMotion,
         law: SteppedTangentialLaw,
@@ -189,9 +189,9 @@ class Adaptive(CoupledIntegrator):
         shape = normal.scene.shape
         counters = {"steps": count, "evaluations": tried + count}
         last = attrs.evolve(_march(normal, law, count), counters=counters)
-        if not _succeeded(last):
+        if not _succeeds(last):
             return last
-        error, allowed = self._error(*before, last), self._allowed(normal.scene)
+        error, allowed = self._error(*before, last), self._tolerated_change(normal.scene)
         unresolved: Any = np.asarray(~(error <= allowed))
         if not unresolved.any():
             return last
@@ -199,9 +199,9 @@ class Adaptive(CoupledIntegrator):
             sentence = f"After {count} steps psi2 still changes by more than the tolerance."
             return last.failing(unresolved, Status.UNRESOLVED, sentence)
         if not shape or unresolved.all():
-            return self._doubled(normal, law, 2 * count, (before[1], last), tried + count)
+            return self._double(normal, law, 2 * count, (before[1], last), tried + count)
         middle, fine = (batch.taken(motion, shape, unresolved) for motion in (before[1], last))
-        finer = self._doubled(normal.take(unresolved), law, 2 * count, (middle, fine), 0)
+        finer = self._double(normal.take(unresolved), law, 2 * count, (middle, fine), 0)
         parts = ((np.ones_like(unresolved), last), (unresolved, finer))
         merged = TangentialMotion.merged(parts, shape)
         # The most steps that any impact took, and all evaluations.
@@ -210,7 +210,7 @@ class Adaptive(CoupledIntegrator):
             merged, counters={"steps": finer.counters["steps"], "evaluations": evaluations}
         )
 
-    def _allowed(self, scene: Scene) -> Any:
+    def _tolerated_change(self, scene: Scene) -> Any:
         """Return the tolerance as a change of slip velocity, in m/s."""
         unit, _, speed = range_of(scene)
         return max(self.tolerance, ROUNDING) * np.maximum(unit, speed)
@@ -234,7 +234,7 @@ def _rates(motion: TangentialMotion) -> tuple[Array, Array]:
     return Ends.of(motion.normal).final_rate, slip
 
 
-def _succeeded(motion: TangentialMotion) -> bool:
+def _succeeds(motion: TangentialMotion) -> bool:
     """Return whether every impact was followed to its end."""
     return bool(np.all(motion.status == Status.SUCCESS))
 

@@ -33,7 +33,7 @@ from contactlab.contracts import (
 from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
 from contactlab.impact.hertz import DURATION_CONSTANT
-from contactlab.numeric.arrays import chosen, filled, locked
+from contactlab.numeric.arrays import chosen, lock_arrays, spread_object
 from contactlab.numeric.types import Mask, Real
 from contactlab_laws.march.division import resolving
 
@@ -178,8 +178,8 @@ class _March:
         self.compressions: Any = 1 if plain else np.ones(scene.shape, dtype=int)
         self.alive: Any = True if plain else np.ones(scene.shape, dtype=bool)
         self.steps = 0
-        self.status: Any = filled(Status.SUCCESS, scene.shape)
-        self.detail: Any = filled("", scene.shape)
+        self.status: Any = spread_object(Status.SUCCESS, scene.shape)
+        self.detail: Any = spread_object("", scene.shape)
 
     def run(self, observer: Observer | None) -> TangentialMotion:
         """Return the motion to the end of contact of all impacts."""
@@ -194,7 +194,7 @@ class _March:
         except faults.LawFaultError as fault:
             self.fail(fault.status, fault.detail, self.alive)
         except BaseException as error:  # a plug-in may not end the process
-            sentence = faults.sentence(self.law, faults.raised(error), self.steps)
+            sentence = faults.sentence(self.law, faults.tell_error(error), self.steps)
             self.fail(Status.LAW_RAISED, sentence, self.alive)
         return self._motion()
 
@@ -220,10 +220,10 @@ class _March:
             approach = approach + velocity[0] * drift
             before = contact
             drifting = velocity[0]
-            moved = self._joined([each * drift for each in velocity[1:]])
-            start = self._joined(velocity[1:])
+            moved = self._join([each * drift for each in velocity[1:]])
+            start = self._join(velocity[1:])
             if self.axes == 2 or many:
-                locked(moved), locked(start)
+                lock_arrays(moved), lock_arrays(start)
             # forces that depend on rates act on those in the middle of their kick
             tried: list[tuple[Any, Any]] = []
             for _ in range(1 if self.elastic else TURNS):
@@ -233,16 +233,16 @@ class _March:
                     at = [v - 0.5 * k for v, k in zip(velocity, kick, strict=True)]
                     at[0] = _nearer(tried, at[0])
                 if many:
-                    locked(approach), locked(at[0])
+                    lock_arrays(approach), lock_arrays(at[0])
                 with faults.blaming(alone) as blamed:
                     blamed.step = self.steps
                     contact, new = alone.respond(memory, approach, at[0])
                     contact = judges.judge_contact(alone, contact, self.shape, self.steps)
                     for entry in contact if many else ():
-                        locked(entry)
+                        lock_arrays(entry)
                 load, sampled = contact.friction_load, None
                 if self.shares:
-                    sampled = self._sampled(approach, at, force, step)
+                    sampled = self._sample(approach, at, force, step)
                 increment = Increment(moved, start, load, step, drift, sampled)
                 response, after = law.advance(state, increment, before, contact)
                 pressure, force = contact.force, self._components(response)
@@ -251,7 +251,7 @@ class _March:
             if np.any((least < 0.0) & self.alive) if many else least < 0.0:
                 self._refuse_below_zero(contact)
             if response.settled is not True and not np.all(response.settled):
-                force = self._unsettled(response.settled, force)
+                force = self._leave_unanswered_out(response.settled, force)
                 if not np.any(self.alive):
                     return None
             touching = contact.overlap > 0.0
@@ -265,7 +265,7 @@ class _March:
             self.work = self.work + response.friction_work * self.alive
             self.shear = self.shear + response.shear_loss * self.alive
             if observer is not None:
-                seen = self._joined(middle[1:]), self._joined(force)
+                seen = self._join(middle[1:]), self._join(force)
                 fields = partial(law.fields, state)
                 observer(Sample(time, approach, middle[0], contact, *seen, fields))
             self.change = [c - k for c, k in zip(self.change, kick, strict=True)]
@@ -279,10 +279,10 @@ class _March:
             self.compressions = self.compressions + again
             self.duration = self.duration + step * going
             if self.elastic and (self.shape or not touching):
-                self._parted(self.alive & np.logical_not(touching), time, approach, drifting)
+                self._note_parting(self.alive & np.logical_not(touching), time, approach, drifting)
             self.alive = going
             if not self.elastic and np.any(again):
-                self._pulled(again & (contact.force < 0.0))
+                self._count_turns(again & (contact.force < 0.0))
             if not (self.alive.any() if self.shape else self.alive):
                 return None
             if not np.isfinite(sum(velocity)).all():
@@ -294,13 +294,13 @@ class _March:
                 if not np.any(self.alive):
                     return None
 
-    def _parted(self, parted: Mask, time: Real, approach: Real, rate: Real) -> None:
+    def _note_parting(self, parted: Mask, time: Real, approach: Real, rate: Real) -> None:
         """Note when surfaces of an elastic contact parted: between two steps, at a known rate."""
         if np.any(parted):
             crossed = time - approach / chosen(parted, rate, 1.0)
             self.duration = chosen(parted, crossed, self.duration)
 
-    def _pulled(self, back: Mask) -> None:
+    def _count_turns(self, back: Mask) -> None:
         """Count turns that tension made, and give up impacts that had too many."""
         self.pulls = self.pulls + back
         held = self.pulls >= MOST_PULLS
@@ -330,7 +330,7 @@ class _March:
             sentence = faults.sentence(self.normal.law, words, self.steps)
             raise faults.LawFaultError(Status.MALFORMED, sentence)
 
-    def _unsettled(self, settled: Mask, force: list[Real]) -> list[Real]:
+    def _leave_unanswered_out(self, settled: Mask, force: list[Real]) -> list[Real]:
         """Mark impacts to which the law has no answer, and return the forces of the others."""
         lost = self.alive & ~np.broadcast_to(settled, self.shape)
         sentence = faults.sentence(self.law, "no division into stick and slip found", self.steps)
@@ -339,7 +339,7 @@ class _March:
         self.alive = self.alive & ~lost
         return [np.where(lost, 0.0, each) for each in force]
 
-    def _joined(self, components: list[Real]) -> Real:
+    def _join(self, components: list[Real]) -> Real:
         """Return a displacement or velocity as the law takes it."""
         return components[0] if self.axes == 1 else np.stack(components, axis=-1)
 
@@ -349,12 +349,12 @@ class _March:
             return self.step
         return self.step * np.minimum((self.steps + 0.5) / self.leading, 1.0)
 
-    def _sampled(self, approach: Real, at: list[Real], force: list[Real], step: Real) -> Sampled:
+    def _sample(self, approach: Real, at: list[Real], force: list[Real], step: Real) -> Sampled:
         """Return the motion where the forces act, as far as it is known."""
         inertia = self.W[1][1]
         if self.axes == 2:
             inertia = 0.5 * (inertia + self.W[2][2])
-        slip, acting = self._joined(at[1:]), self._joined(force)
+        slip, acting = self._join(at[1:]), self._join(force)
         return Sampled(approach, at[0], slip, acting, 0.5 * step * inertia)
 
     def _components(self, response: TangentialResponse) -> list[Real]:
@@ -383,7 +383,7 @@ class _March:
 
     def _motion(self) -> TangentialMotion:
         lost = np.where(self.status != Status.SUCCESS, math.nan, 0.0)
-        change = self._joined([each + lost for each in self.change[1:]])
+        change = self._join([each + lost for each in self.change[1:]])
         number: Any = (lambda v: v + lost) if self.shape else (lambda v: float(v + lost))
         rate = self.before[0] + self.change[0]
         ends = (self.duration, rate, *self.greatest, self.loss, self.compressions)

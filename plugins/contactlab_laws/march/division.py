@@ -70,17 +70,19 @@ def endpoints(normal: NormalMotion, count: int) -> Steps:
 
 
 def _midpoints(normal: NormalMotion, count: int, graded: bool) -> Steps:
-    fractions = _graded(normal, count) if graded else np.linspace(0.0, 1.0, 2 * count + 1)
+    fractions = _grade(normal, count) if graded else np.linspace(0.0, 1.0, 2 * count + 1)
     halves = np.array(normal.phase(fractions))
     halves[-1] = np.pi  # exactly, as the inverse is not
     ends = normal.at(_column(halves[::2], normal))
     times = np.asarray(ends.time)
     kick = times[1:] - times[:-1]
     impulse = np.asarray(ends.load_impulse)
-    return _parted(sampled(normal, halves[1::2], kick, impulse[1:] - impulse[:-1]), ends)
+    return _cut_at_parting(
+        sample_steps(normal, halves[1::2], kick, impulse[1:] - impulse[:-1]), ends
+    )
 
 
-def _graded(normal: NormalMotion, count: int) -> Array:
+def _grade(normal: NormalMotion, count: int) -> Array:
     """Return fractions of the duration at the ends and middles of steps even in dt/b.
 
     The greatest approach is at an end of a step: the contact radius has a kink there.
@@ -124,10 +126,10 @@ def _endpoints(normal: NormalMotion, count: int) -> Steps:
     loads = impulse[1:] - impulse[:-1]
     kick = np.asarray(normal.duration) / count
     shape = (count,) + (1,) * len(normal.scene.shape)
-    return _parted(sampled(normal, phases[:count], np.ones(shape) * kick, loads), ends)
+    return _cut_at_parting(sample_steps(normal, phases[:count], np.ones(shape) * kick, loads), ends)
 
 
-def _parted(steps: Steps, ends: NormalSample) -> Steps:
+def _cut_at_parting(steps: Steps, ends: NormalSample) -> Steps:
     """Return the steps, and one of no duration if the contact breaks under a friction load.
 
     A law then loses what its contact still stores, and its friction work contains that energy.
@@ -147,7 +149,7 @@ def _parted(steps: Steps, ends: NormalSample) -> Steps:
     return Steps(NormalContact(*contact), *still, *last)
 
 
-def sampled(normal: NormalMotion, phases: Array, kick: Array, load_impulse: Array) -> Steps:
+def sample_steps(normal: NormalMotion, phases: Array, kick: Array, load_impulse: Array) -> Steps:
     """Return steps that sample the contact at ``phases``, shape (K,) or (K, ...), read-only."""
     # ``kick`` is the time in s for which each force acts, ``load_impulse`` the exact integral of
     # the friction load over it in N s, both of shape (K, ...).

@@ -66,7 +66,7 @@ def needed_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene | None =
     return np.maximum(resolving(omega * normal.duration, law), float(LEAST_STEPS))
 
 
-def refined(steps: int, needed: Real) -> Real:
+def refine_count(steps: int, needed: Real) -> Real:
     """Return ``steps``, or the first number >= ``needed`` of a sequence from it."""
     # With a sequence the impacts of a batch fall into a few groups of equal steps.
     if isinstance(needed, float) and needed <= steps:
@@ -132,7 +132,7 @@ class FixedSteps(CoupledIntegrator):
 
     def _taken(self, needed: Real) -> Real:
         """Return how many steps each impact takes: ``steps``, or more if these are too few."""
-        return refined(self.steps, needed) if self.refine else float(self.steps)
+        return refine_count(self.steps, needed) if self.refine else float(self.steps)
 
     def resolution_for(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Real:
         """Return how many steps each impact takes."""
@@ -168,7 +168,7 @@ class FixedSteps(CoupledIntegrator):
             return ()
         share = for_share(np.broadcast_to(needed > self.steps, scene.shape))
         if self.refine and most <= MOST_STEPS:
-            to = int(np.max(refined(self.steps, needed)))
+            to = int(np.max(refine_count(self.steps, needed)))
             raised = f"steps raised from {self.steps} to {to}{share}"
             return (f"{raised}: fewer do not resolve the stiffness",)
         return (f"{self.steps} steps are too few{share}: this scene needs {most:.6g}",)

@@ -26,7 +26,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import filled, keep_freed_memory, locked, plain, spread
+from contactlab.numeric.arrays import keep_freed_memory, lock_arrays, plain, spread, spread_object
 from contactlab.numeric.checks import shown
 from contactlab.numeric.types import Array, Real
 from contactlab_laws.march.division import one_by_one
@@ -58,7 +58,7 @@ def _all_at_once(
             response = law.advance_all(scene, normal, steps)
             if response is None:
                 return None
-            if (complaint := _malformed(response, scene, len(steps.kick))) is not None:
+            if (complaint := _complain_of_shape(response, scene, len(steps.kick))) is not None:
                 raise faults.LawFaultError(Status.MALFORMED, faults.sentence(law, complaint, 1))
             force, count = response.force, len(response.force)
             kick = steps.kick[:count] / scene.pair.tangential_mass
@@ -77,7 +77,7 @@ def _all_at_once(
         if fault is not None:
             return None  # step by step the observer sees all instants up to the fault
         _show(normal, steps, force, observer)
-    return _ended(normal, law, change, response.friction_work, count, fault, response.shear_loss)
+    return _end(normal, law, change, response.friction_work, count, fault, response.shear_loss)
 
 
 def _show(normal: NormalMotion, steps: Steps, force: Array, observer: Observer) -> None:
@@ -95,10 +95,14 @@ def _show(normal: NormalMotion, steps: Steps, force: Array, observer: Observer) 
         observer(Sample(*moment, step.contact, velocity, acting, dict))
 
 
-def _malformed(response: AllStepsResponse, scene: Scene, steps: int) -> str | None:
+def _complain_of_shape(response: AllStepsResponse, scene: Scene, steps: int) -> str | None:
     """Return a sentence on an answer of wrong kind or shape, or None."""
     force, work, settled, shear = response
-    if not isinstance(force, np.ndarray) or not force.ndim or faults.malformed(force, force.shape):
+    if (
+        not isinstance(force, np.ndarray)
+        or not force.ndim
+        or faults.is_malformed(force, force.shape)
+    ):
         return f"the forces {shown(force)}"
     count = len(force)
     missing = count > steps or (count < steps and np.all(settled))
@@ -106,7 +110,7 @@ def _malformed(response: AllStepsResponse, scene: Scene, steps: int) -> str | No
         wanted = f"for {steps} steps of a scene of shape {scene.shape}"
         return f"forces of shape {force.shape} {wanted}"
     for name, energy in (("friction work", work), ("loss in shear", shear)):
-        if faults.malformed(energy, scene.shape):
+        if faults.is_malformed(energy, scene.shape):
             return f"{name} {shown(energy)}"
     return None
 
@@ -128,7 +132,7 @@ def _one_by_one(
     shares = shares_loss(law, normal.law)
     before = NormalContact(zero, zero, zero, zero)
     fault, count = None, 0
-    velocity: Real = locked(initial)
+    velocity: Real = lock_arrays(initial)
     time: Real = 0.0
     try:
         state = law.start(scene, normal)
@@ -137,7 +141,7 @@ def _one_by_one(
             count += 1
             displacement = velocity * step.drift
             if not single:
-                locked(velocity), locked(displacement)
+                lock_arrays(velocity), lock_arrays(displacement)
             sampled = None
             if shares:
                 mobility = 0.5 * step.kick / mass
@@ -173,12 +177,12 @@ def _one_by_one(
         sentence = faults.sentence(law, raised.detail, count, time)
         fault = faults.LawFaultError(raised.status, sentence)
     except BaseException as error:  # a plug-in may not end the process
-        sentence = faults.sentence(law, faults.raised(error), count, time)
+        sentence = faults.sentence(law, faults.tell_error(error), count, time)
         fault = faults.LawFaultError(Status.LAW_RAISED, sentence)
-    return _ended(normal, law, change, work, count, fault, shear)
+    return _end(normal, law, change, work, count, fault, shear)
 
 
-def _ended(
+def _end(
     normal: NormalMotion,
     law: Law,
     change: Real,
@@ -196,7 +200,7 @@ def _ended(
         slip_velocity_change=spread(change, shape),
         friction_work=spread(work, shape),
         shear_loss=spread(shear_loss, shape),
-        status=filled(Status.SUCCESS if fault is None else fault.status, shape),
+        status=spread_object(Status.SUCCESS if fault is None else fault.status, shape),
         detail="" if fault is None else fault.detail,
         counters={"steps": count},
     )

@@ -22,7 +22,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat
 from contactlab.numeric.types import Array, Real
 from contactlab_laws.jaeger.bundle import spring_fields
-from contactlab_laws.springs.turning import Vectors, energy, turned
+from contactlab_laws.springs.turning import Vectors, energy, turn_springs
 
 #: Contacts whose radius is below this times that of the pair just touch: no friction. The cells of
 #: a smaller contact could underflow.
@@ -107,7 +107,7 @@ def advance(
         components = (flat(displacement[..., axis], shape) for axis in (0, 1))
         displacement = next(components) + 1j * next(components)
     limit = state.friction_coefficient * flat(after.friction_load, shape)
-    force, work, memory = moved(
+    force, work, memory = move_springs(
         state.memory,
         displacement if vectors else flat(displacement, shape),
         flat(after.radius, shape),
@@ -126,7 +126,7 @@ def advance(
     return TangentialResponse(force.reshape(shape), work.reshape(shape)), state
 
 
-def moved(
+def move_springs(
     before: Memory,
     displacement: Vectors,
     radius: Array,
@@ -158,7 +158,7 @@ def moved(
     """
     radius = radius + 0.0 * (abs(displacement) + limit)  # NaN where any of the three is not finite
     radius = radius * (1.0 - (radius <= TOUCH * unit)) + 0.0 * radius
-    size, held, merged = fitted(
+    size, held, merged = fit_grid(
         before.size, before.deflection, radius, unit, spans=spans, cross=cross
     )
     cell = size / len(held)
@@ -171,7 +171,7 @@ def moved(
     most = compression * steepness
     if held.dtype.kind == "c":
         least = np.maximum(before.radius * before.radius - places * places, 0.0)
-        deflection, lost = turned(held, move, before.steepness * least, most, cross)
+        deflection, lost = turn_springs(held, move, before.steepness * least, most, cross)
     else:
         trial = held + move
         deflection = np.minimum(np.maximum(trial, -most), most)
@@ -189,7 +189,7 @@ def moved(
     return force, work, Memory(size, radius, deflection, most, steepness)
 
 
-def fitted(
+def fit_grid(
     size: Array,
     held: Vectors,
     radius: Array,

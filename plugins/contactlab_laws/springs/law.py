@@ -134,7 +134,7 @@ class Springs(ProfileLaw, CausalTangentialLaw):
             return ()
         from contactlab_laws.viscoelastic import whole_impacts  # springs need no table
 
-        return whole_impacts.tabulated(scene, e, beyond=rate is not None)
+        return whole_impacts.look_up(scene, e, beyond=rate is not None)
 
     def errors(
         self, scene: Scene, normal: NormalMotion, steps: Real, accuracy: float | None = None

@@ -36,7 +36,7 @@ STEPS, FAR = 2, 1e60
 BLOCK = 4096
 
 
-def turned(
+def turn_springs(
     held: Vectors, move: Vectors, least: Array, most: Array, cross: Array | None = None
 ) -> tuple[Vectors, Array]:
     """Return w after a step, and twice the friction work over the stiffness of one spring.
@@ -50,16 +50,16 @@ def turned(
     cross : array, shape (items,), optional
         Stiffness along the second axis over that along the first; 1 by default.
     """
-    moved = stretched(move, cross)
+    moved = stretch(move, cross)
     early = beyond(held + EARLY * moved, least + EARLY * (most - least), cross)
     trial = held + moved - WEIGHT * early
     late = beyond(trial, most, cross)
     after = trial - late
-    slip = relaxed(WEIGHT * early + late, cross)
+    slip = relax(WEIGHT * early + late, cross)
     return after, (slip.conj() * (held + after)).real.sum(axis=0)
 
 
-def dragged(
+def drag_springs(
     held: Vectors,
     move: Vectors,
     pull: Vectors,
@@ -81,9 +81,9 @@ def dragged(
     decay : array, shape (springs, items) or (springs, 1)
         Time of the step over A.
     cross : array, shape (items,), optional
-        As in ``turned``.
+        As in ``turn_springs``.
     """
-    moved, pull = stretched(move, cross), stretched(pull, cross)
+    moved, pull = stretch(move, cross), stretch(pull, cross)
     share = EARLY * decay / (1.0 + EARLY * decay)
     early = beyond(held + EARLY * moved + pull, first + EARLY * (most - first), cross)
     trial: Vectors = held + moved - WEIGHT * share * early
@@ -109,19 +109,19 @@ def beyond(force: Vectors, limit: Array, cross: Array | None = None) -> Vectors:
     return over
 
 
-def stretched(move: Vectors, cross: Array | None) -> Vectors:
+def stretch(move: Vectors, cross: Array | None) -> Vectors:
     """Return displacements times the stiffness over that along the first axis."""
     return move if cross is None else move.real + 1j * (cross * move.imag)
 
 
-def relaxed(force: Vectors, cross: Array | None) -> Vectors:
-    """Return the displacements that ``stretched`` made forces of."""
+def relax(force: Vectors, cross: Array | None) -> Vectors:
+    """Return the displacements that ``stretch`` made forces of."""
     return force if cross is None else force.real + 1j * (force.imag / cross)
 
 
 def energy(force: Vectors, cross: Array | None) -> Array:
     """Return abs(w)² of springs, on an ellipse force times displacement."""
-    return (force.conj() * relaxed(force, cross)).real
+    return (force.conj() * relax(force, cross)).real
 
 
 def _closest(along: Array, across: Array, limit: Array, cross: Array) -> tuple[Array, Array]:

@@ -21,13 +21,13 @@ import numpy as np
 from contactlab.contracts import Increment, NormalContact, TangentialResponse
 from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import flat, shaped
+from contactlab.numeric.arrays import flat, shape_as
 from contactlab.numeric.types import Array, Real
 from contactlab_laws.jaeger.bundle import spring_fields
 from contactlab_laws.jaeger.partial_slip import Scales
 from contactlab_laws.jaeger.step import common
-from contactlab_laws.springs.doubling import crossing, fitted
-from contactlab_laws.springs.turning import Vectors, beyond, dragged, relaxed, stretched
+from contactlab_laws.springs.doubling import crossing, fit_grid
+from contactlab_laws.springs.turning import Vectors, beyond, drag_springs, relax, stretch
 
 #: Rates below this times that at first touch say nothing of A: the law is asked at this one.
 SLOWEST = 1e-3
@@ -192,19 +192,19 @@ def advance(
     drive = Drive(
         tangential(increment.displacement) * scales.displacement,
         row(increment.drift),
-        acted(row(increment.duration), row(increment.drift)),
+        share_under_force(row(increment.duration), row(increment.drift)),
         *rates,
         friction * limit,
         friction * acting,
         scales.displacement,
         state.cross,
     )
-    force, work, loss, memory = moved(memory, contact, drive, state.grows, state.splits)
-    work, loss = (shaped(each * scales.metres, shape) for each in (work, loss))
+    force, work, loss, memory = move_viscous(memory, contact, drive, state.grows, state.splits)
+    work, loss = (shape_as(each * scales.metres, shape) for each in (work, loss))
     if vectors:
         acts = np.stack((force.real, force.imag), axis=-1).reshape(*shape, 2)
     else:
-        acts = shaped(force, shape)
+        acts = shape_as(force, shape)
     return TangentialResponse(acts, work, True, loss), state._replace(memory=memory)
 
 
@@ -243,7 +243,7 @@ def limits(b: Array, load: Array) -> tuple[Array, Array]:
     return np.where(excess < 0.0, np.cbrt(load), b), np.maximum(excess, 0.0)
 
 
-def acted(duration: Array, drift: Array) -> Array:
+def share_under_force(duration: Array, drift: Array) -> Array:
     """Return the share of a drift under the force of its end, the rest being that of its begin.
 
     A drift goes from the middle of the time for which one force acts to the middle of the next.
@@ -271,7 +271,7 @@ class Drive(NamedTuple):
     cross: Array | None = None
 
 
-def moved(
+def move_viscous(
     before: Memory, contact: Contact, drive: Drive, grows: bool, splits: bool
 ) -> tuple[Vectors, Array, Array, Memory]:
     """Return force (N), friction work and loss in shear (scaled), and the springs after a step."""
@@ -284,44 +284,44 @@ def moved(
     ratio: Any = 1.0
     if grows or splits:
         reach = np.sqrt(edge + 0.0 * size)  # one for each size, where all impacts share an edge
-        size, held, _ = fitted(size, held, reach, 1.0, spans=not splits, cross=drive.cross)
+        size, held, _ = fit_grid(size, held, reach, 1.0, spans=not splits, cross=drive.cross)
     squares = squared_places(size, len(held))
     least = profile(squares, before.edge, before.excess)
     if size is not before.size:  # as many springs over another length: tractions as they were
         cut = profile(squared_places(before.size, len(held)), before.edge, before.excess)
         old = _cut(before.deflection + before.lead, cut, drive.cross)
-        old = fitted(before.size, old, reach, 1.0, spans=not splits)[1]
+        old = fit_grid(before.size, old, reach, 1.0, spans=not splits)[1]
         ratio = np.where(before.size > 0.0, size / (before.size + TINY), 1.0)
     most = profile(squares, edge, excess)
-    part, first = entered(squares, least, (before.edge, before.excess), edge, excess)
+    part, first = enter_step(squares, least, (before.edge, before.excess), edge, excess)
     lead = contact.time * drive.scale
     move = part * drive.move
     deflection = held * np.exp(-decay * (1.0 - part)) if first is not least else held
     asked = deflection, move, drive.move / decay, first, most, part * decay
-    deflection = dragged(*asked, drive.cross) if np.iscomplexobj(held) else _slipped(*asked)
+    deflection = drag_springs(*asked, drive.cross) if np.iscomplexobj(held) else _slip(*asked)
     total = most.sum(axis=0)
     in_contact = total > 0.0
     per_total = 1.0 / np.where(in_contact, total, 1.0)
     weight = drive.limit * per_total
-    share, traction, slip = solved(
+    share, traction, slip = solve_slip(
         deflection, most, lead, drive, per_total, out=np.empty_like(deflection)
     )
     if not in_contact.all():
-        pulled = lead * stretched(drive.slip, drive.cross)
+        pulled = lead * stretch(drive.slip, drive.cross)
         share = np.where(in_contact, share, alone(pulled, excess, before.share))
     # the work on springs is lost or stored; what is stored is lost when a spring leaves, or after
     old = _cut(held + before.lead, least, drive.cross) if old is None else old
     mean = (1.0 - drive.acted) * ratio * before.weight * old + drive.acted * weight * traction
     # springs that entered count as if they had moved all the time: the force is their mean
-    gained = _real(mean, relaxed(deflection - held, drive.cross) / np.maximum(part, TINY))
+    gained = _real(mean, relax(deflection - held, drive.cross) / np.maximum(part, TINY))
     work = _real(mean, drive.move) - gained
-    carried = lead * stretched(slip, drive.cross)
+    carried = lead * stretch(slip, drive.cross)
     after = Memory(size, edge, excess, contact.time, carried, share, weight, deflection)
     force = drive.acting * share
     return force, np.maximum(work.sum(axis=0), 0.0), gained.sum(axis=0), after
 
 
-def solved(
+def solve_slip(
     deflection: Vectors, most: Array, lead: Array, drive: Drive, per_total: Real, *, out: Vectors
 ) -> tuple[Vectors, Vectors, Vectors]:
     """Return share of Coulomb's limit, tractions, and the slip velocity that they belong to.
@@ -333,7 +333,7 @@ def solved(
     share = np.divide(drive.force, drive.acting, out=0.0 * drive.force, where=drive.acting > 0.0)
     stiff = lead * drive.mobility * drive.acting * per_total
     cross = drive.cross
-    traction = np.add(deflection, lead * stretched(drive.slip, cross), out=out)
+    traction = np.add(deflection, lead * stretch(drive.slip, cross), out=out)
     _cut(traction, most, cross)
     found = np.ones(len(traction)).dot(traction) * per_total
     slip = np.broadcast_to(drive.slip, share.shape)
@@ -347,7 +347,7 @@ def solved(
     slip, cross = slip.copy(), None if cross is None else cross[hard]
     for _ in range(TURNS):
         slip[hard] = at
-        pulled = deflection[:, hard] + few[0] * stretched(at, cross)
+        pulled = deflection[:, hard] + few[0] * stretch(at, cross)
         stuck = (np.abs(pulled) < limits).sum(axis=0)
         _cut(pulled, limits, cross)
         new = one + (pulled.sum(axis=0) * few[2] - one) / (1.0 + few[1] * stuck)
@@ -386,7 +386,7 @@ def profile(squares: Array, edge: Array, excess: Array) -> Array:
     return np.where(inside > 0.0, inside + excess, 0.0)
 
 
-def entered(
+def enter_step(
     squares: Array, least: Array, before: tuple[Array, Array], edge: Array, excess: Array
 ) -> tuple[Any, Array]:
     """Return the part of the step for which springs move, and their limit at its begin.
@@ -412,7 +412,7 @@ def relaxing(first: Array, most: Array, decay: Array) -> tuple[Array, Array]:
     return gone, first * gone + (most - first) * (1.0 - gone / np.maximum(decay, TINY))
 
 
-def _slipped(
+def _slip(
     held: Vectors, move: Vectors, _: Vectors, first: Array, most: Array, decay: Array
 ) -> Vectors:
     """Return w along one line: held by the limit, which goes evenly from ``first`` to ``most``."""
@@ -432,7 +432,7 @@ def alone(pull: Vectors, excess: Real, share: Vectors) -> Vectors:
 def fields(state: State) -> dict[str, Any]:
     """Return radius, displacement and limit (m), stuck and slipping, shape (*shape, springs).
 
-    The displacement is that of an elastic spring under the same force; ``relaxed`` is w in m.
+    The displacement is that of an elastic spring under the same force; ``relax`` is w in m.
     """
     memory, scales, shape = state.memory, state.scales, state.shape
     springs, items = memory.deflection.shape

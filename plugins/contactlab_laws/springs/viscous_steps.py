@@ -100,7 +100,7 @@ def _grid(springs: int, edge: Array, excess: Array, decay: Array) -> _Grid | Non
     if (np.diff(touching[: top + 1]) < 0).any() or (np.diff(touching[top:]) > 0).any():
         return None
     born = np.concatenate(([[0.0]], edges[:-1])), np.concatenate(([[0.0]], excesses[:-1]))
-    part, first = viscous.entered(squares, least, born, edges, excesses)
+    part, first = viscous.enter_step(squares, least, born, edges, excesses)
     gone, span = viscous.relaxing(first, most, part * decay[:, None])
     total = most.sum(axis=1)
     earlier = np.concatenate(([0], touching[:-1]))
@@ -136,7 +136,7 @@ def _march(
     mass = np.reshape(np.asarray(scene.pair.tangential_mass, dtype=float), (1, -1))
     velocity = np.broadcast_to(np.asarray(scene.slip_velocity, dtype=float), shape).reshape(-1)
     acting, limit = friction * acting, friction * rows(steps.contact.friction_load)
-    acted = viscous.acted(kick, drift)
+    acted = viscous.share_under_force(kick, drift)
     mobility, drift, lead = 0.5 * kick / mass, drift * scale, time * scale
     springs = len(state.memory.deflection)
     w, moved, traction, before = np.zeros((4, springs, items))
@@ -168,7 +168,7 @@ def _march(
             move, drift[k], acted[k], slip, force, mobility[k], limit[k], acting[k], scale
         )
         most = grid.most[k, :now, None]
-        share, _, _ = viscous.solved(held, most, lead[k], drive, grid.per_total[k], out=f)
+        share, _, _ = viscous.solve_slip(held, most, lead[k], drive, grid.per_total[k], out=f)
         if grid.per_total[k] == 0.0:
             share = viscous.alone(lead[k] * drive.slip, grid.excess[k], last_share)
         last_share = share

@@ -16,7 +16,7 @@ from contactlab_laws.stronge.stages import (
     Half,
     Numbers,
     Rebound,
-    advanced,
+    advance_stage,
 )
 
 
@@ -35,7 +35,7 @@ def rebounds(incidence: Array, frequency: Array, restitution: Array) -> Rebound:
                         Contact(*(each[who] for each in contact)),
                         Half(scale[who], closing),
                     )
-                    part, x[who] = advanced(MANY, part, half, frequency[who], x[who])
+                    part, x[who] = advance_stage(MANY, part, half, frequency[who], x[who])
                     for whole, each in zip(contact[1:], part[1:], strict=True):
                         whole[who] = each
             live = live[x[live] < WHOLE]

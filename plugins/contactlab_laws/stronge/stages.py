@@ -63,14 +63,14 @@ def rebound(incidence: float, frequency: float, restitution: float) -> Rebound:
     for half in (Half(1.0, True), Half(restitution, False)):
         x, changes = 0.0 if half.scale > 0.0 else WHOLE, 0
         while x < WHOLE:
-            contact, x = advanced(ONE, contact, half, frequency, x)
+            contact, x = advance_stage(ONE, contact, half, frequency, x)
             changes += 1
             if changes > MOST_CHANGES * (1.0 + frequency):
                 raise ArithmeticError(f"slip and stick change {changes} times, omega = {frequency}")
     return Rebound.of(contact, frequency)
 
 
-def advanced(
+def advance_stage(
     numbers: Numbers, contact: Contact, half: Half, frequency: Any, x: Any
 ) -> tuple[Contact, Any]:
     """Return contact and phase where a stage that begins at x ends; all are in slip, or none."""

@@ -17,7 +17,7 @@ from contactlab_laws.tables.patches import (
     Patches,
     chebyshev_of_values,
     compiled_polynomial,
-    needed,
+    count_terms,
     nodes,
     powers_of_chebyshev,
 )
@@ -78,7 +78,7 @@ class Table:
         back = powers_of_chebyshev(NODES, stretch=2.0, shift=1.0)
         chebyshev = forth @ terms @ forth.T
         sizes = np.abs(chebyshev)
-        count = np.array([needed(sizes.sum(axis=axis), SMALL) for axis in (2, 1)])
+        count = np.array([count_terms(sizes.sum(axis=axis), SMALL) for axis in (2, 1)])
         kept = np.arange(NODES) < count[..., None]
         chebyshev *= kept[0, :, :, None] & kept[1, :, None, :]
         scales = np.exp2(cells[:, 1:3].T.astype(np.float64))  # int16 would give float32
@@ -118,7 +118,7 @@ def _grid(cells: NDArray[np.int16]) -> NDArray[np.int16]:
 
 
 @cache
-def shipped() -> Table:
+def load_table() -> Table:
     """Return the table that came with the package."""
     return Table.of(read(SHIPPED))
 
@@ -143,12 +143,12 @@ def rebound(psi1: Any, chi: Any, *, derivatives: bool = False) -> Any:
     if flat.size < FEW:
         psi2 = np.array(list(map(_single(), flat.tolist(), ratios.tolist())))
     else:
-        psi2 = values(shipped(), np.abs(flat), ratios)
+        psi2 = values(load_table(), np.abs(flat), ratios)
         np.negative(psi2, out=psi2, where=flat < 0.0)
     psi2 = psi2.reshape(shape)
     if not derivatives:
         return psi2
-    slopes = gradient(shipped(), np.abs(flat), ratios)
+    slopes = gradient(load_table(), np.abs(flat), ratios)
     by_psi1, by_chi = (each.reshape(shape) for each in slopes)
     return psi2, by_psi1, by_chi * np.copysign(1.0, psi1)
 
@@ -156,7 +156,7 @@ def rebound(psi1: Any, chi: Any, *, derivatives: bool = False) -> Any:
 @cache
 def _single() -> Callable[[float, float], float]:
     """Return the function of psi1 and chi that gives psi2 of one impact in plain floats."""
-    table = shipped()
+    table = load_table()
     stuck, slip, seam = table.cuts
     cuts = SingleCuts(
         compiled_polynomial(stuck),

@@ -51,10 +51,10 @@ class Patches:
 
     def values(self, patch: Numbers, a: Array, *others: Array) -> Array:
         """Return the values at places, shape (places,)."""
-        by = self._sorted if patch.size >= FEW else self._gathered
+        by = self._sort if patch.size >= FEW else self._gather
         return by(patch, a, *others)
 
-    def _sorted(self, patch: Numbers, *at: Array) -> Array:
+    def _sort(self, patch: Numbers, *at: Array) -> Array:
         """Return values, patch by patch: a product for each, the rest for whole stretches."""
         order = np.argsort(patch, kind="stable")
         counts = np.bincount(patch, minlength=len(self.terms))
@@ -96,7 +96,7 @@ class Patches:
         np.multiply(y[:, None], z, out=out.reshape(shape))
         return out
 
-    def _gathered(self, patch: Numbers, *at: Array) -> Array:
+    def _gather(self, patch: Numbers, *at: Array) -> Array:
         """Return values at places in any order."""
         local, size = np.concatenate(at), patch.size
         local -= self.origins.take(patch, axis=1).reshape(-1)
@@ -153,7 +153,7 @@ class Single:
         if self.calls >= COMPILED:  # of two threads both may
             text = _horner_text([_horner_text(row, "y") for row in self.rows], "x")
             lines = f"x = a - {self.left!r}", f"y = b - {self.low!r}"
-            self.all_of_them[self.patch] = _compiled("a, b", *lines, f"return {text}")
+            self.all_of_them[self.patch] = _compile("a, b", *lines, f"return {text}")
         x, y, total = a - self.left, b - self.low, 0.0
         for row in self.rows:
             inner = 0.0
@@ -171,7 +171,7 @@ def _horner_text(terms: Sequence[object], argument: str) -> str:
     return text
 
 
-def _compiled(arguments: str, *lines: str) -> Any:
+def _compile(arguments: str, *lines: str) -> Any:
     """Return a function of the lines."""
     names: dict[str, Any] = {}
     exec("\n ".join((f"def function({arguments}):", *lines)), names)
@@ -181,7 +181,7 @@ def _compiled(arguments: str, *lines: str) -> Any:
 def compiled_polynomial(terms: Array) -> Callable[[float], float]:
     """Return the polynomial with ``terms``, lowest first, as a function of a plain float."""
     text = _horner_text(terms[::-1].tolist(), "x")
-    function: Callable[[float], float] = _compiled("x", f"return {text}")
+    function: Callable[[float], float] = _compile("x", f"return {text}")
     return function
 
 
@@ -239,7 +239,7 @@ def chebyshev_of_values(count: int) -> Array:
     return matrix * (-1.0) ** k[:, None]
 
 
-def needed(sizes: Array, small: float) -> NDArray[np.intp]:
+def count_terms(sizes: Array, small: float) -> NDArray[np.intp]:
     """Return how many Chebyshev terms are needed, one at least; those left out sum to ``small``.
 
     Parameters

@@ -38,7 +38,7 @@ STEP = 1e-30
 
 
 @cache
-def shipped() -> Table:
+def load_table() -> Table:
     """Return the table that came with the package."""
     return Table.of(read(SHIPPED))
 
@@ -46,7 +46,7 @@ def shipped() -> Table:
 @lru_cache(maxsize=16)
 def section(e: float) -> Table:
     """Return the table at one restitution."""
-    return shipped().at(e)
+    return load_table().at(e)
 
 
 def rebound(psi1: Any, chi: Any, restitution: Any, *, derivatives: bool = False) -> Any:
@@ -130,7 +130,7 @@ def _partial(speed: Array, chi: Array, e: Any) -> Array:
     if isinstance(e, float):
         psi2 = section(e).values(slips, u, chi)
     else:
-        psi2 = shipped().values(slips, u, chi, e)
+        psi2 = load_table().values(slips, u, chi, e)
     return np.multiply(psi2, speed, out=psi2, where=~slips)
 
 
@@ -141,7 +141,7 @@ def _share(e: Any) -> Any:
 
 def _step(speed: Array, chi: Array) -> Array:
     """Return the elastic psi2 less that of the table at e = 1, which is its error."""
-    return np.asarray(elastic.values(elastic.shipped(), speed, chi) - _partial(speed, chi, 1.0))
+    return np.asarray(elastic.values(elastic.load_table(), speed, chi) - _partial(speed, chi, 1.0))
 
 
 def without_rebound(speed: Array, chi: Array) -> Array:
@@ -170,7 +170,7 @@ def gradient(speed: Array, chi: Array, e: Array) -> tuple[Array, Array, Array]:
         p[: q.size] += 1j * STEP
         x[q.size :] += 1j * STEP
         ours = (_partial(p, x, 1.0).imag / STEP).reshape(2, -1)
-        exact = elastic.gradient(elastic.shipped(), q, y)
+        exact = elastic.gradient(elastic.load_table(), q, y)
         slopes[:2, near] += _share(own) * (np.array(exact) - ours)
     by_psi1[who], by_chi[who], by_e[who] = slopes
     return by_psi1, by_chi, by_e
@@ -185,7 +185,7 @@ def _kept(_: float) -> dict[int, Callable[[float, float], float]]:
 @cache
 def _plain() -> tuple[list[int], list[list[int]], list[int]]:
     """Return grid, sizes and starts of the shipped table in plain numbers."""
-    table = shipped()
+    table = load_table()
     return table.grid.tolist(), table.sizes.T.tolist(), table.starts.tolist()
 
 
@@ -222,7 +222,7 @@ def _single(speed: float, chi: float, e: float, end: float) -> float:
     kept = _kept(e)
     value = kept.get(patch)
     if value is None:
-        patches = shipped().patches
+        patches = load_table().patches
         *origin, start = patches.origins[:, patch].tolist()
         by_e = (e - start) ** np.arange(NODES[2])
         value = kept[patch] = Single(np.array(origin), patches.terms[patch] @ by_e, kept, patch)

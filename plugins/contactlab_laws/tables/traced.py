@@ -68,7 +68,7 @@ def _shifting(origins: Array, count: int) -> Array:
 @cache
 def restituted_constants() -> dict[str, Any]:
     """Return the table of restitutions, and the elastic one."""
-    table = restituted.shipped()
+    table = restituted.load_table()
     return {
         "grid": table.grid.astype(np.int32),
         "starts": table.starts,

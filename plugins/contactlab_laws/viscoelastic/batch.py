@@ -42,11 +42,11 @@ def rebound(psi1: Array, chi: Array, number: Real, *, springs: int, steps: int) 
     for first in range(0, psi1.size, width):
         part = slice(first, first + width)
         own = a if alike else a[part]
-        psi2[part] = _followed(psi1[part], chi[part], own, path or course(own, steps), springs)
+        psi2[part] = _follow_once(psi1[part], chi[part], own, path or course(own, steps), springs)
     return np.clip(psi2, -psi1, psi1)
 
 
-def extrapolated(psi1: Array, chi: Array, number: Real, *, springs: int, steps: int) -> Array:
+def extrapolate_steps(psi1: Array, chi: Array, number: Real, *, springs: int, steps: int) -> Array:
     """Return psi2 of ``rebound``, extrapolated from half as many springs and steps."""
     coarse, fine = (
         rebound(psi1, chi, number, springs=springs // part, steps=steps // part) for part in (2, 1)
@@ -82,7 +82,7 @@ class Contact(NamedTuple):
 
 
 @np.errstate(under="ignore", over="ignore")
-def _followed(psi1: Array, chi: Array, number: Array, path: Course, springs: int) -> Array:
+def _follow_once(psi1: Array, chi: Array, number: Array, path: Course, springs: int) -> Array:
     """Return psi2 of impacts; ``number`` and ``path`` have one column, or one for each."""
     # The step of second order of §15: half a kick, the displacement w under a limit that is
     # linear in the step, half a kick. Kicks are the share of Coulomb's limit times the exact
@@ -120,7 +120,7 @@ def _followed(psi1: Array, chi: Array, number: Array, path: Course, springs: int
         psi, share = _once(*known)
         if stiff[step - 1]:
             settled = chi * stiffness[step - 1] > STIFF
-            for each, other in zip((psi, share), _settled(*known), strict=True):
+            for each, other in zip((psi, share), _settle(*known), strict=True):
                 np.copyto(each, other, where=settled)
     return np.asarray(psi - chi * gains[-1] * 2.0 * share)
 
@@ -167,7 +167,7 @@ def _once(
     return ahead - kick * share, share
 
 
-def _settled(
+def _settle(
     contact: Contact, w: Array, number: Array, ahead: Array, kick: Array, share: Array, room: Array
 ) -> tuple[Array, Array]:
     """Return what ``_once`` does, by Newton's method."""

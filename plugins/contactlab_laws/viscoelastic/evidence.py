@@ -6,7 +6,7 @@ import numpy as np
 
 from contactlab.contracts.motion import NormalMotion
 from contactlab.impact import kinetics
-from contactlab.impact.cautions import DEEPEST, OUTSIDE, named
+from contactlab.impact.cautions import DEEPEST, OUTSIDE, name_bodies
 from contactlab.impact.hertz import slips_throughout
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array, Mask
@@ -37,7 +37,7 @@ def cautions(scene: Scene, normal: NormalMotion, *, fitted: bool) -> tuple[str, 
     grips = np.logical_not(slips) & (e < ELASTIC)
     if not np.any(grips):
         return ()
-    of_bodies = (*_deep(scene, normal), *_metal(scene)) if named(scene) else ()
+    of_bodies = (*_deep(scene, normal), *_metal(scene)) if name_bodies(scene) else ()
     return (*(() if fitted else _trusted(np.asarray(scene.chi), e, grips)), *of_bodies)
 
 

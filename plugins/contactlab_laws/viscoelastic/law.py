@@ -29,7 +29,7 @@ ONE_FOR_ALL = ("restitution", "relaxation_time")
 PAIRS = "must be two or more pairs of speed and e"
 
 
-def measured(table: object) -> tuple[tuple[float, float], ...]:
+def pair_speeds(table: object) -> tuple[tuple[float, float], ...]:
     """Return a table of speeds and restitutions as pairs, or refuse it."""
     remedy = "write [[speed, e], [speed, e]], speeds in m/s"
     try:
@@ -84,7 +84,7 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
     speed_loss: float | None = quantity("(s/m)^(1/5)", rule=LOSS, default=None)
     restitutions: tuple[tuple[float, float], ...] | None = attrs.field(
         default=None,
-        converter=attrs.converters.optional(measured),
+        converter=attrs.converters.optional(pair_speeds),
         metadata={"unit": "m/s, 1", "range": PAIRS},
     )
 

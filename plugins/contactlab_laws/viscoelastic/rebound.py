@@ -53,13 +53,13 @@ def beyond(speed: Array, chi: Array, e: Array) -> Array:
     p, x, own = speed[who], chi[who], e[who]
     found, share = restituted.without_rebound(p, x), np.minimum(own / LEAST, 1.0)
     where = np.flatnonzero(own > 0.0)
-    by_springs = _followed(p[where], x[where], np.maximum(own[where], LEAST))
+    by_springs = _follow_springs(p[where], x[where], np.maximum(own[where], LEAST))
     found[where] += share[where] * (by_springs - found[where])
     psi2[who] = np.clip(np.maximum(found, psi2[who]), -p, p)
     return np.asarray(psi2)
 
 
-def _followed(speed: Array, chi: Array, e: Array) -> Array:
+def _follow_springs(speed: Array, chi: Array, e: Array) -> Array:
     """Return psi2 by springs, those together whose chi lie within a factor of two."""
     from contactlab_laws.viscoelastic import batch  # a table needs none of this
     from contactlab_laws.viscoelastic.relaxation import number_of

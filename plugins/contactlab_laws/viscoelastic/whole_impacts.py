@@ -14,7 +14,7 @@ from contactlab_laws.tables.restituted_regions import RESTITUTED_CHI, restituted
 from contactlab_laws.viscoelastic.rebound import rebound
 
 
-def tabulated(scene: Scene, restitution: Real, *, beyond: bool) -> tuple[WholeImpact, ...]:
+def look_up(scene: Scene, restitution: Real, *, beyond: bool) -> tuple[WholeImpact, ...]:
     """Return the answer for the impacts whose chi is in the table, or for all; or nothing."""
     low, high = (0.0, math.inf) if beyond else RESTITUTED_CHI
     chi, psi1 = np.broadcast_arrays(np.asarray(scene.chi), np.asarray(scene.psi1))

@@ -22,7 +22,7 @@ SIZES = (1_000, 10_000, 100_000, 1_000_000)
 SINGLES = 1_000
 
 
-def mixed(count: int) -> tuple[Array, Array]:
+def mix(count: int) -> tuple[Array, Array]:
     """Return impacts over all of chi, psi1 up to a little beyond the beginning of full slip."""
     rng = np.random.default_rng(7)
     chi = rng.uniform(0.01, LARGEST_CHI, count)
@@ -54,7 +54,7 @@ def bench() -> list[tuple[str, float]]:
     """Return names and nanoseconds of processor time an impact."""
     rows = []
     for count in SIZES:
-        psi1, chi = mixed(count)
+        psi1, chi = mix(count)
         least = _least(partial(rebound, psi1, chi))
         rows.append((f"{count} together", 1e9 * least / count))
     least = _least(partial(rebound, psi1, chi, derivatives=True))

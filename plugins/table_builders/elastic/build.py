@@ -101,7 +101,7 @@ def build(path: Path, *, tolerance: float = TOLERANCE, workers: int = 1) -> None
         solve: Solve = exact
         if workers > 1:
             pool = stack.enter_context(ProcessPoolExecutor(workers))
-            solve = partial(_shared, pool.map, workers)
+            solve = partial(_compute, pool.map, workers)
         while progress.todo:
             _batch(progress, tolerance, solve)
             progress.keep(kept)
@@ -144,7 +144,7 @@ def _batch(progress: Progress, tolerance: float, solve: Solve) -> None:
             progress.terms.append(patch.terms)
 
 
-def _shared(share: Callable[..., Iterable[Array]], workers: int, psi1: Array, chi: Array) -> Array:
+def _compute(share: Callable[..., Iterable[Array]], workers: int, psi1: Array, chi: Array) -> Array:
     """Return answers of ``exact``, computed by as many processes behind the mapping ``share``."""
     parts = 8 * workers
     return np.concatenate(

@@ -6,7 +6,7 @@ import numpy as np
 
 from contactlab.numeric.types import Array
 from contactlab_laws.fronts.compiled import LOST, MOST_STEPS
-from contactlab_laws.fronts.coupled import solved
+from contactlab_laws.fronts.coupled import solve_impacts
 from contactlab_laws.fronts.phases import LOCKED
 from contactlab_laws.fronts.steps import Steps, kept
 
@@ -19,7 +19,7 @@ def exact(psi1: Array, chi: Array) -> Array:
     """Return psi2 for psi1 >= 0, shape (impacts,): 25 us each compiled, some ms by Python."""
     numbers = np.zeros((4, psi1.size))
     numbers[0], numbers[1] = psi1, chi
-    found, status = solved(numbers, STEP)
+    found, status = solve_impacts(numbers, STEP)
     for row in status.nonzero()[0].tolist():
         _refuse_lost(float(psi1[row]), float(chi[row]), int(status[row]))
     return np.asarray(psi1 + found[1])

@@ -24,7 +24,7 @@ LEFT_OUT, UNIT = 5e-7, 1e-9
 WIDTH = 1000
 
 
-def thinned() -> list[str]:
+def thin_table() -> list[str]:
     """Return the numbers of the thinned table.
 
     First the terms of both cuts and of the seam. Then for each patch with chi > 1/2 how many
@@ -65,7 +65,7 @@ def _rows(cell: NDArray[np.int16], terms: Array, cuts: Cuts) -> list[list[int]]:
 
 def write(folder: Path | None = None) -> list[Path]:
     """Write the table into the kernels of a folder, by default contactlab's; return the files."""
-    return put(thinned(), FILES, folder)
+    return put(thin_table(), FILES, folder)
 
 
 def put(numbers: list[str], heads: dict[str, str], folder: Path | None = None) -> list[Path]:

@@ -14,7 +14,7 @@ from contactlab.numeric.types import Array
 from contactlab_laws.tables.file import Stored, write
 from contactlab_laws.tables.patches import chebyshev_of_values, nodes
 from contactlab_laws.tables.restituted_regions import NODES, REGIONS, border
-from contactlab_laws.viscoelastic.batch import extrapolated
+from contactlab_laws.viscoelastic.batch import extrapolate_steps
 from contactlab_laws.viscoelastic.relaxation import number_of
 
 #: Largest error of psi2 between the nodes of a cell, by region; it is looked for where the sum of
@@ -75,7 +75,7 @@ def solve(psi1: Array, chi: Array, e: float) -> Array:
     most = max(steps for least, steps in STEPS if e >= least)
     for where, steps in ((low, STEPS[0][1]), (~low, most)):
         if where.any():
-            psi2[where] = extrapolated(
+            psi2[where] = extrapolate_steps(
                 psi1[where], chi[where], number_of(e), springs=SPRINGS, steps=steps
             )
     return psi2

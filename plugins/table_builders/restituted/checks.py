@@ -11,7 +11,7 @@ import contactlab
 from contactlab_laws.tables.file import read
 from contactlab_laws.tables.restituted import SHIPPED, rebound
 from contactlab_laws.tables.restituted_regions import REGIONS, border, restituted_error
-from contactlab_laws.viscoelastic.batch import extrapolated
+from contactlab_laws.viscoelastic.batch import extrapolate_steps
 from contactlab_laws.viscoelastic.relaxation import number_of
 
 #: Springs and steps in the comparison, more than those of the table.
@@ -37,7 +37,7 @@ def verify(count: int, seed: int) -> int:
             chi, u = draw.uniform(region.low, region.high, size), draw.random(size)
             psi1 = 1.0 + (border(chi, e) - 1.0) * u if region.slips else u
             found = rebound(psi1, chi, float(e))
-            off = np.abs(found - extrapolated(psi1, chi, number_of(float(e)), **GRID))
+            off = np.abs(found - extrapolate_steps(psi1, chi, number_of(float(e)), **GRID))
             rows += zip(off, restituted_error(chi, e), psi1, chi, np.full(size, e), strict=True)
         worst, bound, *at = max(rows)
         rms = float(np.sqrt(np.mean([row[0] ** 2 for row in rows])))

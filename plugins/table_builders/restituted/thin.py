@@ -11,7 +11,7 @@ from numpy.polynomial.chebyshev import chebvander
 from numpy.typing import NDArray
 
 from contactlab.numeric.types import Array
-from contactlab_laws.viscoelastic.batch import extrapolated
+from contactlab_laws.viscoelastic.batch import extrapolate_steps
 from contactlab_laws.viscoelastic.relaxation import number_of
 from table_builders.elastic import thin
 
@@ -56,7 +56,7 @@ PIECES = (
 )
 
 
-def thinned() -> list[str]:
+def thin_table() -> list[str]:
     """Return the numbers of the table.
 
     First where the tree of each piece begins. A fork is its axis, how many numbers its lower half
@@ -77,7 +77,7 @@ def tree(piece: Piece) -> list[int]:
 
 def write(folder: Path | None = None) -> list[Path]:
     """Write the table into the kernels of a folder, by default contactlab's; return the files."""
-    return thin.put(thinned(), FILES, folder)
+    return thin.put(thin_table(), FILES, folder)
 
 
 def nodes(count: int) -> Array:
@@ -96,7 +96,9 @@ def _slice(slips: bool, u: Array, chi: Array, e: float) -> Array:
     """Return the values at one restitution, shape of ``u``."""
     psi1 = 1.0 + (2.0 * chi - 1.0) * (1.0 + e) * u * (2.0 - u) if slips else u
     a = number_of(e)
-    psi2 = extrapolated(psi1.ravel(), chi.ravel(), a, springs=SPRINGS, steps=STEPS).reshape(u.shape)
+    psi2 = extrapolate_steps(psi1.ravel(), chi.ravel(), a, springs=SPRINGS, steps=STEPS).reshape(
+        u.shape
+    )
     return psi2 - psi1 + 2.0 * chi * (1.0 + e) if slips else psi2 / psi1
 
 
