@@ -271,7 +271,7 @@ class Bare(NormalLaw):
 
 
 @attrs.frozen(kw_only=True)
-class Wrapping(LinearSpring):
+class Wrapping(Bare):
     """A law with options that are a law and a function."""
 
     inner: object = None
