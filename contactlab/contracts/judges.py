@@ -45,7 +45,19 @@ def below_zero(radius: Real, load: Real, largest: tuple[Real, Real]) -> str:
 
 
 def judge_contact(law: Law, contact: object, shape: tuple[int, ...], step: int) -> NormalContact:
-    """Return a contact with its friction load, or refuse what is none."""
+    """Return a contact with its friction load, or refuse what is none.
+
+    Parameters
+    ----------
+    law : Law
+        The normal law that answered.
+    contact : object
+        Its answer.
+    shape : tuple of int
+        Shape of the batch.
+    step : int
+        Number of the step, from 1, for the sentence.
+    """
     if not isinstance(contact, NormalContact):
         sentence = faults.sentence(law, f"respond gave {shown(contact)}, not a NormalContact", step)
         raise faults.LawFaultError(Status.LAW_RAISED, sentence)

@@ -16,12 +16,10 @@ import numpy as np
 from contactlab.contracts.law import Law, law_kind
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
-from contactlab.outcome.files import stamp
 from contactlab.registration.hooks import PluginError, guard
 from contactlab.registration.manager import MANAGER
 from contactlab.registration.names import FILE, PluginInfo, Untrusted
 from contactlab.registry.law_classes import unfit
-from contactlab.registry.law_files import checksum, is_users
 
 #: Laws that were loaded from files.
 IN_FILES: dict[type[Law], PluginInfo] = {}
@@ -88,6 +86,9 @@ def law_at(place: str) -> type[Law]:
 
 def _module(path: str) -> ModuleType:
     """Return a file as a module, loaded again if it changed."""
+    from contactlab.outcome.files import stamp
+    from contactlab.registry.law_files import checksum  # laws by name need none of this
+
     # A module's name has no dots, and no two paths may agree.
     name = path.removesuffix(".py").replace("%", "%25").replace(".", "%2E")
     before, now = LOADED.get(path), stamp(path)
@@ -115,6 +116,8 @@ def _module(path: str) -> ModuleType:
 
 def _mistaken(module: ModuleType, content: bytes, folder: str) -> str | None:
     """Return a file that a law's file imports in place of its neighbour of that name, or None."""
+    from contactlab.registry.law_files import is_users  # laws by name need none of this
+
     # Python has one module of a name: that of another law's folder, or of an earlier folder.
     names = [each.__name__ for each in vars(module).values() if isinstance(each, ModuleType)]
     for statement in ast.walk(ast.parse(content)):

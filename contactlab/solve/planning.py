@@ -41,7 +41,6 @@ from contactlab.registration.manager import MANAGER
 from contactlab.registry.composition import Laws
 from contactlab.registry.law_words import in_words, name_of
 from contactlab.solve.answers import Mask
-from contactlab.solve.error_cautions import of_errors
 from contactlab.solve.normal_motion import normal_motion, normal_or_failed
 from contactlab.solve.solve import ways
 from contactlab.solve.way import WHOLE, Masks, Way, ask
@@ -145,6 +144,8 @@ def _words(
         cautions = _cautions(way, scene, motion, masks)
         if some(masks.marched):
             error = columns.psi2_error
+            from contactlab.solve.error_cautions import of_errors  # of marches only
+
             cautions += tuple(of_errors(used, way.scene, error, masks.marched, advice))
     return tuple(computed), tuple(left_out), cautions
 

@@ -15,7 +15,6 @@ from contactlab.registration.names import KINDS
 from contactlab.registry.acceptance import accept
 from contactlab.registry.composition import Laws, versions
 from contactlab.solve.decoupled import Decoupled
-from contactlab.solve.unfollowed import followed_apart, refuse_march
 from contactlab.solve.way import Way
 
 
@@ -24,7 +23,11 @@ def ways(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
     found: list[Way] = []
     # Where slip turns laws are asked first: their refusal and its remedy hold for the batch.
     for where, part in reversed(kinetics.parts(scene, as_one=as_one)):
-        if part.inverse_mass is None:
+        if part.inverse_mass is None and laws.capability.unfollowed is None:
+            found.append(Decoupled(where, part, laws))
+        elif part.inverse_mass is None:
+            from contactlab.solve.unfollowed import followed_apart  # most laws need none
+
             found += [Decoupled(*each, laws) for each in followed_apart(laws, where, part)]
         else:
             from contactlab.solve.coupled import Coupled  # spheres need none of this
@@ -41,7 +44,10 @@ def accept_scene(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]
         _, part, used = way
         for law in used.capability.refusing:
             accept(law, part.central)
-        refuse_march(way, history=as_one)
+        if used.capability.unfollowed is not None:
+            from contactlab.solve.unfollowed import refuse_march  # most laws need none
+
+            refuse_march(way, history=as_one)
     return found
 
 
