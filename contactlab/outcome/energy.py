@@ -149,7 +149,7 @@ def judge_books(
     bound: Real,
     cancels: float = 0.0,
     *,
-    together: bool = False,
+    coupled: bool = False,
     restitution_error: Real = math.nan,
 ) -> tuple[Motion, Real]:
     """Return ``motion`` with status ``UNBALANCED`` where the energy books do not balance.
@@ -158,10 +158,10 @@ def judge_books(
     fails above ``bound`` and ``cancels``, or above 1 if the bound is infinite. Or a
     loss or work is below zero by more than rounding and what is declared; or the bodies
     slip faster than at first touch. If friction changed the normal motion, as in motions of both
-    ``together``, or the spin about the normal, one of the two may gain what the other loses, and
+    ``coupled``, or the spin about the normal, one of the two may gain what the other loses, and
     the sum of both energies is judged. ``restitution_error`` is declared, NaN if it is not.
     """
-    alone = (motion.exchange == 0.0) & (motion.normal_spin_change == 0.0) & (not together)
+    alone = (motion.exchange == 0.0) & (motion.normal_spin_change == 0.0) & (not coupled)
     gain = OF_THE_RATE * restitution_error + ROUNDING
     if (
         not scene.shape

@@ -64,7 +64,7 @@ class Motion(TangentialMotion):
         return attrs.evolve(self, slip_velocity_change=lock_arrays(change))
 
     @classmethod
-    def along(
+    def combine(
         cls,
         normal: NormalMotion,
         tangential: TangentialMotion | WholeImpact,
@@ -152,26 +152,26 @@ CHECKED = (*MOVED, *(name for name in ENDS if name != "normal_velocity"))
 _numbers, _moved = attrgetter(*CHECKED), attrgetter(*MOVED)
 
 
-def sound(motion: Motion, *, together: bool = False) -> Motion:
+def sound(motion: Motion, *, coupled: bool = False) -> Motion:
     """Return ``motion`` with status ``NON_FINITE`` where a success holds a number not finite.
 
-    Laws that answer both motions ``together``, and motions that no step can follow, need not know a
+    Laws that answer both motions ``coupled``, and motions that no step can follow, need not know a
     duration or the maxima. Integrators
     check the quantities that they use; this check adds overflows in the conversion to SI, and
     quantities that an integrator does not check.
     """
     # The sum is not finite if a number is not; if finite numbers overflow, each is looked at.
-    numbers = _moved if together else _numbers
+    numbers = _moved if coupled else _numbers
     if motion.status is Status.SUCCESS:
         if finite(sum(numbers(motion))):
             return motion
     elif not np.ndim(motion.status):
         return motion
-    elif not together:
+    elif not coupled:
         with np.errstate(all="ignore"):
             if finite(sum(numbers(motion))):
                 return motion
-    names = MOVED if together else CHECKED
+    names = MOVED if coupled else CHECKED
     values = {name: np.asarray(getattr(motion, name)) for name in names}
     change = values["slip_velocity_change"]
     if change.ndim > np.ndim(motion.status):

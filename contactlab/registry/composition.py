@@ -47,7 +47,7 @@ ON_A_PATH = "springs"
 RIGID = {"tangential": "coulomb"}
 #: Laws of impacts in which friction changes the approach: exact in the plane under elastic Hertz
 #: contact, springs otherwise.
-TOGETHER = (EXACT, {"tangential": ON_A_PATH, "integrator": FIXED_STEPS})
+FOR_COUPLED = (EXACT, {"tangential": ON_A_PATH, "integrator": FIXED_STEPS})
 RESTITUTION = {"normal": "viscoelastic", "tangential": "springs"}
 #: Contracts of tangential laws that can be run; every law must be derived from one of them.
 WAYS = (SteppedTangentialLaw, PathTangentialLaw, WholeImpactTangentialLaw)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from contactlab.contracts.law import Law
 from contactlab.impact.scene import Scene
 from contactlab.registration.names import KINDS
-from contactlab.registry.composition import RIGID, TOGETHER, Laws, misfit
+from contactlab.registry.composition import FOR_COUPLED, RIGID, Laws, misfit
 
 
 def stand_in(laws: Laws, part: Scene) -> Laws:
@@ -53,9 +53,9 @@ def _no_answer(laws: Laws, part: Scene) -> str | None:
 
 
 def _fitting(laws: Laws, kinds: Iterable[str]) -> Iterator[tuple[dict[str, str], Laws]]:
-    """Yield what ``TOGETHER`` names of ``kinds``, and the laws with it, where they fit."""
+    """Yield what ``FOR_COUPLED`` names of ``kinds``, and the laws with it, where they fit."""
     free = set(kinds)
-    for names in TOGETHER:
+    for names in FOR_COUPLED:
         taken = {kind: name for kind, name in names.items() if kind in free}
         try:
             other = laws.taking(taken)

@@ -58,7 +58,7 @@ class Simulation:
         The default is exact: Hertz's closed form and the slip front followed event by event.
         A law that is left out is the first in ``contactlab.registry.composition.PREFERRED`` that
         fits the others; where friction changes the approach, and that law has no answer, the first
-        in ``TOGETHER`` stands in for it.
+        in ``FOR_COUPLED`` stands in for it.
 
     Raises
     ------

@@ -43,7 +43,7 @@ GIVEN_UP = (Status.LAW_RAISED, Status.MALFORMED, Status.NON_FINITE)
 #: Statuses of impacts that were not followed to an end, by no fault of a law's answer.
 WITHOUT_END = (Status.NOT_SEPARATED, Status.TOO_FEW_STEPS, Status.UNRESOLVED)
 #: What a plan says of such impacts.
-TOGETHER = "normal and tangential motion together: friction changes the approach, or slip turns"
+BOTH_MOTIONS = "normal and tangential motion together: friction changes the approach, or slip turns"
 OF_CONTACT = (
     "restitution: of a frictionless impact on the mass 1/W_nn; that of the bodies follows from it"
 )
@@ -122,7 +122,7 @@ class Coupled(Way):
             if moved.normal is None and np.any(np.asarray(moved.status) == Status.SUCCESS):
                 told = "the answer has not the ends of its normal motion"
                 raise faults.LawFaultError(Status.MALFORMED, faults.sentence(blamed, told, 1))
-            return Motion.along(normal, moved, kinetics.slip_axes(scene))
+            return Motion.combine(normal, moved, kinetics.slip_axes(scene))
 
     def _ended_as_alone(self, motion: Motion, normal: NormalMotion) -> Motion:
         """Return a motion whose impacts without an end have the status of the approach alone."""
@@ -197,7 +197,7 @@ class Coupled(Way):
 
     def remarks(self, masks: Masks) -> list[Clause]:
         """Return that both motions are found together, and of what a restitution is."""
-        said = [TOGETHER]
+        said = [BOTH_MOTIONS]
         if getattr(self.laws.normal, "restitution", None) not in (None, 1.0):
             said.append(OF_CONTACT)
         return [Clause(text, masks.known) for text in said]

@@ -78,7 +78,7 @@ class Decoupled(Way):
         """Return the motion by whole-impact answers where there are any, else marched."""
         normal, answered, columns, _ = prepared
         marched: Any = columns.code == MARCHED
-        return Motion.along(normal, self._tangential(normal, answered, marched, recorder))
+        return Motion.combine(normal, self._tangential(normal, answered, marched, recorder))
 
     def line(self, scene: Scene) -> Array:
         """Return the direction of slip at first touch, which slip keeps."""

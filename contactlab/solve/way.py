@@ -161,10 +161,10 @@ class Way(Entries, ABC):
         # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
         bound = prepared.books_bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
         few = self.both or type(prepared.normal) is UnfollowedMotion  # isinstance is slow
-        motion = judge_energy(sound(motion, together=few), prepared.normal)
+        motion = judge_energy(sound(motion, coupled=few), prepared.normal)
         error = prepared.columns.restitution_error
         motion, off = judge_books(
-            motion, scene, bound, self.cancels, together=self.both, restitution_error=error
+            motion, scene, bound, self.cancels, coupled=self.both, restitution_error=error
         )
         return raise_errors(prepared.columns, scene, off, bound, self.cancels), motion
 

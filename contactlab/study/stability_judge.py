@@ -167,7 +167,7 @@ def march_impact(simulation: Simulation, scene: Scene) -> ImpactResult:
     tangential = integrator.integrate(scene, normal, law, None)
     code = np.full(scene.shape, MARCHED)
     plan = Plan(PlanColumns(code, integrator.errors(scene, normal, law).psi2))
-    motion = sound(Motion.along(normal, tangential))
+    motion = sound(Motion.combine(normal, tangential))
     return ImpactResult(scene=scene, plan=plan, motion=motion, run_time=0.0, laws={})
 
 

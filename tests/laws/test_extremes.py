@@ -37,7 +37,7 @@ def integrate(law, scene):
         return simulation.run(scene).motion
     normal = simulation.normal_motion(scene)
     motion = simulation.integrator.integrate(scene, normal, simulation.tangential)
-    return sound(Motion.along(normal, motion))
+    return sound(Motion.combine(normal, motion))
 
 
 def paper_scene(psi1, chi):

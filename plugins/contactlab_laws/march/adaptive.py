@@ -126,14 +126,12 @@ class Adaptive(CoupledIntegrator):
         needed = coupled.needed_steps(scene, normal, tangential)
         count = np.where(needed <= MOST_STEPS, np.maximum(needed, FIRST), np.inf)
         refused = Status.TOO_FEW_STEPS, refusals(FIRST, needed)
-        before = coupled.march_together(
-            scene, normal, tangential, count, None, refused, usual=USUAL
-        )
+        before = coupled.march_coupled(scene, normal, tangential, count, None, refused, usual=USUAL)
         succeeded = np.asarray(before.status == Status.SUCCESS)
         if not succeeded.any():
             return before
         count = np.where(succeeded, count, np.inf)  # what has failed is not followed again
-        motion, count = self._doubled_together(scene, normal, tangential, count, before)
+        motion, count = self._double_coupled(scene, normal, tangential, count, before)
         if scene.shape:
             failed = before.status != Status.SUCCESS
             everywhere = np.ones(scene.shape, dtype=bool)
@@ -141,10 +139,10 @@ class Adaptive(CoupledIntegrator):
             steps = motion.counters
             motion = attrs.evolve(TangentialMotion.merged(parts, scene.shape), counters=steps)
         if observer is not None:
-            coupled.march_together(scene, normal, tangential, count, observer)
+            coupled.march_coupled(scene, normal, tangential, count, observer)
         return motion
 
-    def _doubled_together(
+    def _double_coupled(
         self,
         scene: Scene,
         normal: NormalMotion,
@@ -156,7 +154,7 @@ class Adaptive(CoupledIntegrator):
         finer = np.where(2.0 * count <= MOST_STEPS, 2.0 * count, np.inf)
         sentence = "A velocity still changes by more than the tolerance at the most steps."
         refused = Status.UNRESOLVED, sentence
-        last = coupled.march_together(scene, normal, law, finer, None, refused)
+        last = coupled.march_coupled(scene, normal, law, finer, None, refused)
         moved = np.maximum(
             *(np.abs(a - b) for a, b in zip(*map(_rates, (last, before)), strict=True))
         )
@@ -165,9 +163,9 @@ class Adaptive(CoupledIntegrator):
         if not np.any(left):
             return last, finer
         if not scene.shape:
-            return self._doubled_together(scene, normal, law, finer, last)
+            return self._double_coupled(scene, normal, law, finer, last)
         middle = batch.taken(last, scene.shape, left)
-        more, most = self._doubled_together(
+        more, most = self._double_coupled(
             scene.take(left), normal.take(left), law, finer[left], middle
         )
         finer[left] = most

@@ -95,7 +95,7 @@ def deepest(scene: Scene) -> Any:
     return np.clip(np.minimum(energy / alone, held), 1.0, DEEPEST)
 
 
-def march_together(
+def march_coupled(
     scene: Scene,
     normal: NormalMotion,
     law: CausalTangentialLaw,

@@ -147,13 +147,13 @@ class FixedSteps(CoupledIntegrator):
         else:
             assert isinstance(tangential, CausalTangentialLaw)
             needed = coupled.needed_steps(scene, normal, tangential)
-            taken = self._taken_together(needed)
+            taken = self._take_coupled(needed)
         declared = tangential.errors(scene, normal, taken)
         if every(followed := np.less_equal(needed, taken) & np.isfinite(taken)):
             return declared
         return Errors(*(chosen(followed, each, math.nan) for each in declared))
 
-    def _taken_together(self, needed: Real) -> Real:
+    def _take_coupled(self, needed: Real) -> Real:
         """Return the steps of each impact in the approach without friction; infinite if refused."""
         most = MOST_STEPS if self.refine else self.steps
         return np.where(needed <= most, np.maximum(self.steps, needed), np.inf)
@@ -211,8 +211,8 @@ class FixedSteps(CoupledIntegrator):
         """Return the motion, ``steps`` counted on the approach without friction."""
         assert isinstance(tangential, CausalTangentialLaw)
         needed = coupled.needed_steps(scene, normal, tangential)
-        taken = self._taken_together(needed)
+        taken = self._take_coupled(needed)
         refused = Status.TOO_FEW_STEPS, refusals(self.steps, needed)
-        return coupled.march_together(
+        return coupled.march_coupled(
             scene, normal, tangential, taken, observer, refused, usual=self.steps
         )
