@@ -23,6 +23,7 @@ from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import ENDLESS, MARCHED, PlanColumns, Reason
 from contactlab.solve.answers import Answered, answers, check_motion, separates, show
+from contactlab.solve.failed_motion import UnfollowedMotion
 from contactlab.solve.normal_motion import normal_or_failed
 from contactlab.solve.way import ONE_BY_ONE, Prepared, Way, halves
 
@@ -124,8 +125,10 @@ class Decoupled(Way):
             error = error + np.where(one.where, one.answer.psi2_error, 0.0)
         if some(marched):
             with np.errstate(all="ignore"):
-                errors = laws.integrator.errors(scene, normal, laws.tangential)
-                declared = judges.judge_errors(laws.tangential, errors, scene.shape).psi2
+                declared: Any = math.nan  # of a motion without a course no law is asked
+                if type(normal) is not UnfollowedMotion:
+                    errors = laws.integrator.errors(scene, normal, laws.tangential)
+                    declared = judges.judge_errors(laws.tangential, errors, scene.shape).psi2
                 if math.isnan(normal.accuracy):
                     declared = math.nan  # no better known than the motion that it follows
                 error = np.where(marched, declared, error) if scene.shape else declared

@@ -140,7 +140,7 @@ def test_other_laws_than_the_table_s_are_marched():
     laws = Simulation(normal="tsuji", tangential="coulomb")
     values = restitution(0.12, laws=laws)
     found = fit(table(values), BODIES, simulation=laws)
-    assert "Coulomb" in found.laws
+    assert "coulomb" in found.laws
     assert found["friction_coefficient"] == pytest.approx(0.12, abs=1e-6)
 
 

@@ -100,7 +100,7 @@ def test_an_elastic_law_is_told_that_the_material_yields(normal):
 
 @pytest.mark.parametrize("normal", ["thornton", "walton_braun"])
 def test_a_law_that_yields_is_not(normal):
-    assert said(normal, scene(YIELD)) == []
+    assert not any("GPa" in text for text in said(normal, scene(YIELD)))
 
 
 def test_the_threshold_is_the_slowest_impact_that_yields():

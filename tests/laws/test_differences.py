@@ -75,7 +75,7 @@ def test_what_was_not_measured_has_no_number():
         told = cautions(1.0, chi, normal=create("normal.tsuji", restitution=e))
         (text,) = [each for each in told if "limited separately" in each]
         assert "outside what was measured" in text
-    motion = SimpleNamespace(law=Unknown(), final_rate=-1.0, scene=SCENE, offers=frozenset())
+    motion = SimpleNamespace(law=Unknown(), final_rate=-1.0, scene=SCENE, claims=frozenset())
     assert "outside what was measured" in springs(SCENE, motion)[0]
     assert choice(SCENE, motion) == ()
 

@@ -41,7 +41,7 @@ class Swinging(NormalLaw):
 
 def test_bodies_may_turn_so_often_before_they_part():
     """They may rest at each turn, drawn back, and pass through without force in between."""
-    for turns, ended in ((21, True), (22, False)):
+    for turns, ended in ((17, True), (18, False)):
         motion = normal_motion(Swinging(turns=turns), scene())
         assert (motion.status is Status.SUCCESS) is ended, turns
         if ended:  # each turn is half a period after the last, the first a quarter from the start

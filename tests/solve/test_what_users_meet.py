@@ -155,7 +155,7 @@ BALL = Sphere(0.01, STEEL)
 RESULT = Simulation().run(Scene.nondimensional(psi1=1.2, chi=1.44), history=True)
 #: What a user writes, and a key word of the answer.
 WRONG_NAMES = {
-    "Simulation(normal='tsuji', restitution=0.9)": r"create\('normal.tsuji', restitution=0.9\)",
+    "Simulation(normal='tsuji', restitution=0.9)": r"'normal.viscoelastic', restitution=0.9\)",
     "Simulation(law='springs')": "did you mean 'tangential'",
     "Simulation('springs')": "arguments are written with their names.*it has normal, tangential",
     "Sphere(diameter=0.02, material=STEEL)": "did you mean 'radius', half the diameter",

@@ -24,7 +24,7 @@ from contactlab.testing.check import (
     apply_if,
     hold,
 )
-from contactlab.testing.every_law import claims
+from contactlab.testing.every_law import known_words
 from tests.testing.broken_laws import Sound
 
 
@@ -210,7 +210,7 @@ def test_tests_of_pytest_are_those_that_a_law_claims(few):
 
 def test_words_that_a_law_may_offer_are_those_that_checks_test():
     contracts = contactlab.contracts
-    assert claims(contracts.NormalLaw) == {
+    assert known_words(contracts.NormalLaw) == {
         "radius",
         "hertzian_pressure",
         "elastic_hertz",
@@ -220,7 +220,7 @@ def test_words_that_a_law_may_offer_are_those_that_checks_test():
         "plastic",
         "elliptic",
     }
-    assert claims(contracts.TangentialLaw) == {
+    assert known_words(contracts.TangentialLaw) == {
         "partial_slip",
         "rigid",
         "no_friction",
@@ -229,4 +229,4 @@ def test_words_that_a_law_may_offer_are_those_that_checks_test():
         "normal_spin",
         "shares_loss",
     }
-    assert claims(contracts.Integrator) == set()
+    assert known_words(contracts.Integrator) == set()
