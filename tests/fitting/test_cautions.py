@@ -101,7 +101,7 @@ def test_a_restitution_that_elastic_laws_cannot_meet_is_told_with_what_another_l
     other = fit(data, BODIES, parameters=names)
     assert f"restitution were {other['normal.restitution']:.3g} in place of 1" in told
     assert "normal=viscoelastic" in told
-    assert "Viscoelastic(restitution=0.8" in other.laws
+    assert "viscoelastic (restitution=0.8" in other.laws
     mu = float(re.search(r"friction_coefficient ([\d.]+)$", told)[1])
     assert mu == pytest.approx(other["friction_coefficient"], rel=1e-3)
     assert mu == pytest.approx(0.12, rel=0.03)
