@@ -53,7 +53,7 @@ cite --tangential fronts,coulomb
 explore --out e.html
 run --psi1 1.2 --chi 1.44
 run --psi1 1.2 --chi 1.44 --json
-run @steel_ball.toml --set tangential.annuli=10 --set integrator.steps=50 --estimate-error
+run @steel_ball.toml --tangential annulus --set tangential.annuli=10 --set integrator.steps=50
 run --psi1 1.2 --chi 1.44 --figure f.png --history h.csv --out o.json
 run --psi1 1.2 --chi 1.44 --stick-slip s.png
 run @sweep.toml --out o.npz --figure f.svg
@@ -88,7 +88,7 @@ rum
 sweep --psi1 1:2 --chi 1
 compare @foot.toml --all
 fit @sweep.toml
-run @steel_ball.toml --set tangential.anuli=3
+run @steel_ball.toml --tangential annulus --set tangential.anuli=3
 figures --out f --only 9
 run @steel_ball.toml --tangential fronts --normal jkr
 plugins show herz

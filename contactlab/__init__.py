@@ -83,6 +83,7 @@ if TYPE_CHECKING:
     from contactlab.registration.manager import plugin_manager, register
     from contactlab.runs.simulation import Simulation
     from contactlab.scene_file import read_scene
+    from contactlab.study.comparison import compare
     from contactlab_fit.estimation import fit as fit  # not in __all__: the folder can be taken out
 
 __version__ = "0.1.0"
@@ -124,6 +125,7 @@ __all__ = [
     "WholeImpact",
     "WholeImpactTangentialLaw",
     "collide",
+    "compare",
     "create",
     "hookimpl",
     "load_path",
@@ -176,6 +178,7 @@ MODULES = {
     "Status": "contracts.status",
     "SweepFolder": "outcome.sweep_folder",
     "collide": "collisions.collide",
+    "compare": "study.comparison",
     "fit": "contactlab_fit",
     "hookimpl": "registration.hooks",
     "load_path": "paths.load_path",

@@ -32,7 +32,7 @@ TWO_BODIES = ("any_two_bodies.png", "thousand_poses.png")
 #: Script, a word it prints, and the picture or pictures it writes.
 SCRIPTS = {
     "one_impact": ("psi2 = -0.4", "one_impact.png"),
-    "law_swap": ("coulomb", "law_swap.png"),
+    "law_swap": ("exact -0.1805 paper -0.1855 rigid 0.0000", "law_swap.png"),
     "sweep": ("1000 impacts", "sweep.png"),
     "experiment": ("coulomb  rms 0.046", "kharaz2001.png"),
     "stick_slip_map": ("100% of the springs", "stick_slip_map.png"),

@@ -5,25 +5,34 @@ import io
 import json
 import re
 import sys
+import tomllib
 import types
 
 import numpy as np
 import pytest
 
-from contactlab import Simulation, create, read_scene
+from contactlab import (
+    Scene,
+    Simulation,
+    compare,
+    create,
+    plugin_manager,
+    read_scene,
+    register,
+)
 from contactlab.cli import guide
 from contactlab.cli.main import main
 from contactlab.impact.hertz import peak_pressure
 from contactlab.registry.registry import REGISTRY
-from contactlab.testing import CHECKS, Verdict, check_law
+from contactlab.testing import CHECKS, Verdict, check_law, examine
 from tests.present import ROOT, needs_sources
 
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 EXAMPLES = ROOT / "examples"
 LAWS, STARTING = (guide.text(topic) for topic in ("laws", "getting-started"))
-SNIPPETS = re.findall(r"```python\n(.*?)```\n", TEXT, re.DOTALL)
-#: Words above which a newcomer sees too much before the first picture of their own.
-MOST_WORDS = 900
+SWAP, OWN_LAW = re.findall(r"```python\n(.*?)```\n", TEXT, re.DOTALL)
+#: Words without code above which a newcomer sees too much; words a sentence, on average.
+MOST_WORDS, MOST_OF_A_SENTENCE = 900, 20
 
 
 def run(code):
@@ -36,26 +45,64 @@ def run(code):
     return module, printed.getvalue()
 
 
-def test_four_lines_end_in_a_plot_of_the_ball_of_the_moving_picture(tmp_path, monkeypatch):
+def test_eight_lines_swap_a_law_print_and_end_in_the_picture_below_them(tmp_path, monkeypatch):
     pyplot = pytest.importorskip("matplotlib.pyplot")
-    (code,) = SNIPPETS
-    assert len([line for line in code.splitlines() if line]) == 4
+    assert len([line for line in SWAP.splitlines() if line]) == 8
     monkeypatch.chdir(tmp_path)
     pyplot.close("all")  # of tests before
     try:
-        module, _ = run(code)
-        (number,) = pyplot.get_fignums()
-        (axes,) = pyplot.figure(number).axes
-        assert len(axes.lines) == 4  # the force, zero and the limits
+        module, told = run(SWAP)
+        (axes,) = pyplot.figure(pyplot.get_fignums()[0]).axes
+        assert [len(line.get_xdata()) for line in axes.lines] == 3 * [71]
     finally:
         pyplot.close("all")
-    assert (tmp_path / "impact.png").read_bytes().startswith(b"\x89PNG")
-    thrown = read_scene(EXAMPLES / "thrown_ball.toml").scene
-    assert (module.scene.psi1, module.scene.chi) == (thrown.psi1, thrown.chi)
+    assert f"```text\n{told}```" in TEXT
+    assert (tmp_path / "swap.png").read_bytes().startswith(b"\x89PNG")
+    assert module.scene.psi1[12] == pytest.approx(1.2)
 
 
-def test_there_are_few_words():
-    assert len(TEXT.split()) <= MOST_WORDS
+@needs_sources
+def test_the_example_swaps_the_laws_as_the_readme_does():
+    example = (EXAMPLES / "law_swap.py").read_text("utf-8").replace("law_swap.png", "swap.png")
+    assert set(SWAP.splitlines()) <= set(example.splitlines())
+
+
+@pytest.mark.slow
+def test_the_law_of_ones_own_is_checked_and_priced_as_told():
+    law = run(OWN_LAW)[0].Smooth()
+    found = examine(law)
+    verdicts = [item.verdict for item in found]
+    told = " ".join(TEXT.split())
+    assert f"{verdicts.count(Verdict.PASSED)} checks pass. One fails, `turning_points`," in told
+    assert [item.check for item in found if item.verdict is Verdict.FAILED] == ["turning_points"]
+    scene = Scene.nondimensional(psi1=np.linspace(0.0, 6.0, 121), chi=1.4412)
+    laws = {"exact": Simulation(), "smooth": Simulation(tangential=law)}
+    compared = compare(scene, laws | {"annulus": Simulation(tangential="annulus")})
+    own, paper = (np.abs(compared.difference("psi2", name)).max() for name in compared.names[1:])
+    assert f"off by up to {own:.2f} in psi2, and the paper's annuli by {paper:.3f}" in told
+
+
+def test_the_law_of_ones_own_is_registered_by_the_lines_that_follow_it():
+    """As its entry point names it, and as ``register`` does without a name."""
+    (points,) = re.findall(r"```toml\n(.*?)```\n", TEXT, re.DOTALL)
+    group = tomllib.loads(points)["project"]["entry-points"]["contactlab"]
+    module, _ = run(OWN_LAW)
+    assert group == {"tangential.smooth": f"smooth:{module.Smooth.__name__}"}
+    assert "`contactlab.register(Smooth)`" in TEXT
+    assert [register(module.Smooth)] == [*group]
+    try:
+        scene = Scene.nondimensional(psi1=1.2, chi=1.4412)
+        assert abs(Simulation(tangential="smooth").run(scene).check().psi2) < 1e-3
+    finally:
+        plugin_manager().unregister(module.Smooth)
+
+
+def test_there_are_few_words_and_short_sentences():
+    prose = re.sub(r"```.*?```|<!--.*?-->", "", TEXT, flags=re.DOTALL)
+    assert len(prose.split()) <= MOST_WORDS
+    lines = [line for line in prose.splitlines() if not line.startswith(("|", "#", "!["))]
+    sentences = re.split(r"(?<=[.:?])[*]*\s+", " ".join(lines))
+    assert sum(len(each.split()) for each in sentences) <= MOST_OF_A_SENTENCE * len(sentences)
 
 
 @needs_sources
@@ -177,23 +224,19 @@ def test_the_table_of_the_experiment_is_what_the_command_prints():
             assert close(rms.removesuffix(" rad/s").rstrip("°"), series["laws"][law]["rms"])
 
 
-def test_the_distance_of_the_springs_and_of_the_codes():
-    """What the README says of the picture stands in the table that the command prints."""
-    told = {name: cells for name, *cells in rows("## What discrete-element codes do", LAWS)}
-    assert float(told["springs"][1]) <= 1e-4
-    worst = [float(cells[1]) for name, cells in told.items() if name.startswith("mindlin_cap")]
-    assert f"{min(worst)} to {max(worst)} in psi2" in " ".join(TEXT.split())
-
-
-def test_the_numbers_of_ones_body():
-    """Each is that of the guide, or what the scene that stands beside it gives."""
-    told = " ".join(TEXT.partition("## Your body")[2].partition("## Install")[0].split())
-    engines = rows("## What it changes", guide.text("engines"))
-    worst = {law: cells[0] for _, law, *cells in engines}
-    own, ours = worst["`mindlin/force`"], worst["`mindlin_springs`, 8 springs"]
-    assert f"{own} with LAMMPS's `mindlin/force`, {ours} with eight springs" in told
-    thrown = re.search(r"throw of ([\d.]+°) by contactlab, ([\d.]+°)", guide.text("engines"))
-    assert f"{thrown[1]}, pooltool's default {thrown[2]}" in told
+def test_the_numbers_of_who_uses_it():
+    """Each is that of the guide, of an example, or what the scene that stands beside it gives."""
+    told = " ".join(TEXT.partition("## Who uses it")[2].partition("## Install")[0].split())
+    scene = Scene.nondimensional(psi1=np.linspace(0.05, 7.0, 140), chi=1.75)
+    coarse = create("integrator.symplectic", steps=50)
+    capped = Simulation(tangential="mindlin_cap", integrator=coarse).run(scene).check().psi2
+    worst = np.abs(capped - Simulation().run(scene).check().psi2).max()
+    (eight,) = re.findall(
+        r"`springs` with .* 8 of them \| .*? to ([\d.]+) at", guide.text("choosing")
+    )
+    assert (
+        f"is off by up to {worst:.2f} in psi2; eight springs by {eight} (chi 1.18 to 1.75)" in told
+    )
     falling = dict(re.findall(r"^ +(\d+)° +([\d.]+)", guide.text("any-two-bodies"), re.MULTILINE))
     assert f"tilted by 30°: its end rebounds with {falling['30']} m/s" in told
     foot = read_scene(EXAMPLES / "foot.toml")
@@ -202,18 +245,43 @@ def test_the_numbers_of_ones_body():
         assert result.rebound_slip_velocity == pytest.approx(slip, abs=5e-4)
     assert foot.scene.slip_velocity < 0.0
     assert "slips back at 0.34 m/s" in told
+    script: dict[str, object] = {}
+    code = (EXAMPLES / "throw_of_billiard_balls.py").read_text("utf-8").partition("print(")[0]
+    exec(code, script)
+    cut = np.radians([20.0])
+    mu = script["friction"](1.34 * np.sin(cut))
+    thrown, rigid = script["elastic"](cut, 1.34)[0], script["no_slip"](cut, mu)[0]
+    assert f"20° cut and 1.34 m/s: {thrown:.2f}°, a published rigid model {rigid:.2f}°" in told
+
+
+def test_the_toe_shot_is_cautioned_of_its_wide_contact():
     club: dict[str, object] = {}
     exec((EXAMPLES / "toe_shot.py").read_text("utf-8").partition("# %%")[0], club)
-    spins = []
-    for law in ("springs", "coulomb"):
-        normal = create("normal.viscoelastic", restitution=0.8)
-        shot = club["shot"](0.015, Simulation(normal=normal, tangential=law))
-        spins.append(round(-shot.spin[1] / (2.0 * np.pi) * 60.0))
-        if law == "springs":
-            wide = shot.result.motion.maximum_radius / club["ball"].radius
-            assert wide == pytest.approx(0.48, abs=0.005)
-            assert "contact radius over R" in str(shot.plan)
-    assert "backspin 15 mm off the toe: {} rpm, rigid {}".format(*spins) in told
+    normal = create("normal.viscoelastic", restitution=0.8)
+    shot = club["shot"](0.015, Simulation(normal=normal, tangential="springs"))
+    wide = shot.result.motion.maximum_radius / club["ball"].radius
+    assert wide == pytest.approx(0.48, abs=0.005)
+    assert "contact radius over R" in str(shot.plan)
+
+
+def test_the_rows_of_the_bench_are_those_of_the_guide():
+    """Its own table rounds to two digits, that of the guide has the numbers that it prints."""
+    guided = {(name, cells[0]): cells for name, *cells in rows("## Error against run time", LAWS)}
+    table = rows("## Three reports")
+    assert len(table) == 4
+    for name, resolution, error, took in table:
+        own = name.replace("`fronts`, the default", "`fronts`, `events`")
+        parts = [cells for (law, _), cells in guided.items() if law == own]
+        numbers = set(re.findall(r"=(\d+)", parts[0][0])) if "exact" not in resolution else set()
+        assert numbers <= set(re.findall(r"\d+", resolution))
+        assert close(error, float(parts[0][1]))
+        assert parts[0][5].replace("240 µs", "0.24 ms") == took
+
+
+def test_the_plan_is_what_the_command_prints(capsys):
+    assert main(["run", str(EXAMPLES / "thrown_ball.toml")]) == 0
+    (plan,) = re.findall(r"plan\.\n\n```text\n(.*?)```", TEXT, re.DOTALL)
+    assert plan in capsys.readouterr().out
 
 
 def test_the_pressure_of_the_first_scene():

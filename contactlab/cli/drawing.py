@@ -9,15 +9,15 @@ from typing import Any, Unpack
 from matplotlib.axes import Axes
 
 from contactlab.cli.arguments import Drawing
-from contactlab.figures.comparison import (
-    all_laws,
+from contactlab.figures.comparison import all_laws
+from contactlab.figures.files import Panels, save
+from contactlab.figures.load_paths import draw_loops
+from contactlab.study.comparison import Comparison
+from contactlab.study.comparison_figure import (
     differences,
     forces_over_contact,
     laws_over_sweep,
 )
-from contactlab.figures.files import Panels, save
-from contactlab.figures.load_paths import draw_loops
-from contactlab.study.comparison import Comparison
 from contactlab.study.loops import Loops
 
 

@@ -4,7 +4,7 @@ Examples
 --------
   contactlab run --psi1 1.2 --chi 1.4412
   contactlab run examples/steel_ball.toml --tangential coulomb
-  contactlab run examples/steel_ball.toml --set tangential.annuli=100 --history force.csv
+  contactlab run examples/steel_ball.toml --tangential annulus --history force.csv
   contactlab run examples/sweep.toml --out sweep.csv
   contactlab run --psi1 1.2 --chi 1.4412 --stick-slip map.png --style slides
   contactlab run --psi1 1.2 --chi 1.4412 --json

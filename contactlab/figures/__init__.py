@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 from contactlab.numeric.names import imported_on_use
 
 if TYPE_CHECKING:
-    from contactlab.figures.comparison import laws_over_sweep
     from contactlab.figures.files import save, save_figure
     from contactlab.figures.names import name_curves
     from contactlab.figures.paper import draw_paper
     from contactlab.figures.stick_slip import draw_stick_slip
     from contactlab.outcome.style import law_style, ordered_colours, styled
+    from contactlab.study.comparison_figure import laws_over_sweep
     from contactlab_fit.figures import draw_fits as draw_fits  # its folder can be taken out
 
 __all__ = [
@@ -37,7 +37,7 @@ __getattr__, __dir__ = imported_on_use(
         "draw_paper": "figures.paper",
         "draw_stick_slip": "figures.stick_slip",
         "law_style": "outcome.style",
-        "laws_over_sweep": "figures.comparison",
+        "laws_over_sweep": "study.comparison_figure",
         "name_curves": "figures.names",
         "ordered_colours": "outcome.style",
         "save": "figures.files",

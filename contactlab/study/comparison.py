@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Set
-from typing import Any
+from typing import TYPE_CHECKING, Any, overload
 
 import attrs
 import numpy as np
@@ -20,6 +20,12 @@ from contactlab.solve.error_estimate import estimate_errors
 from contactlab.study.agreement import Agreement, LawRun, values_of
 from contactlab.study.interrupts import require_all
 from contactlab.study.side_by_side import default_quantities, describe
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from contactlab.outcome.result import OwnAxes
+    from contactlab.outcome.style import Width
 
 #: Repeats of a short run. The least time counts, which other load of the machine disturbs least.
 REPEATS = 3
@@ -109,6 +115,43 @@ class Comparison:
             values_of(quantity, _shift_slip(result, change + sign * error)) for sign in (1.0, -1.0)
         ]
         return np.array(0.5 * np.abs(ends[0] - ends[1]))
+
+    @overload
+    def plot(
+        self, quantity: str | None = ..., *, axes: Axes, width: Width | None = ...
+    ) -> Axes: ...
+    @overload
+    def plot(
+        self, quantity: str | None = ..., *, axes: None = ..., width: Width | None = ...
+    ) -> OwnAxes: ...
+    def plot(
+        self,
+        quantity: str | None = None,
+        *,
+        axes: Axes | None = None,
+        width: Width | None = None,
+    ) -> Axes:
+        """Return axes with a curve for each law over a sweep, or with the forces of one impact.
+
+        Parameters
+        ----------
+        quantity : str, optional
+            Column of a written file, such as ``"tangential_restitution"``; by default the first
+            measured quantity, else psi2. Measured values are drawn as points.
+        axes : Axes, optional
+            Axes to draw on; a new figure of ``matplotlib.pyplot`` by default.
+        width : {"one", "two"}, optional
+            Columns of a page that a new figure fills.
+
+        Raises
+        ------
+        ValueError
+            If the quantity is unknown, or is given for a single impact; or if no law has a history
+            of a single impact.
+        """
+        from contactlab.study.comparison_figure import draw_compared  # matplotlib only when drawing
+
+        return draw_compared(axes, self, quantity, width)
 
     def failures(self) -> list[str]:
         """Return one sentence for each run with failed impacts, at measured points too."""

@@ -10,12 +10,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from contactlab.figures.comparison import POINTS
 from contactlab.figures.files import Panels, save
 from contactlab.impact.scene import entry_unit
 from contactlab.numeric.types import Array
 from contactlab.outcome.columns import QUANTITIES
 from contactlab.outcome.style import Look, Width, label, law_style, verbatim, zero_line
+from contactlab.study.comparison_figure import POINTS
 from contactlab_fit.fit_result import Fit
 
 MARKERS = "os^Dv<"

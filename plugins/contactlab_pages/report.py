@@ -12,7 +12,6 @@ import numpy as np
 from matplotlib.axes import Axes
 
 import contactlab
-from contactlab.figures.comparison import differences, forces_over_contact, laws_over_sweep
 from contactlab.figures.files import Panels, as_svg
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.types import Real
@@ -30,6 +29,7 @@ from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import SceneFile
 from contactlab.study.agreement import Agreement
 from contactlab.study.comparison import Comparison
+from contactlab.study.comparison_figure import differences, forces_over_contact, laws_over_sweep
 from contactlab_pages import html
 from contactlab_pages.drawing import scene_drawing
 

@@ -14,9 +14,9 @@ from matplotlib.figure import Figure
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, read_scene
 from contactlab.cli import compare as command
 from contactlab.cli.drawing import draw_all
-from contactlab.figures.comparison import differences, laws_over_sweep
 from contactlab.figures.files import save_figure
 from contactlab.study.comparison import compare
+from contactlab.study.comparison_figure import differences, laws_over_sweep
 from tests.laws.tangential_laws import Creator
 from tests.longer import longer
 

@@ -91,9 +91,15 @@ def test_options_reach_the_laws(run):
     assert "123 steps" in told
 
 
-def test_laws_on_the_command_line_replace_those_of_the_file(run, ball):
+def test_laws_on_the_command_line_replace_those_of_the_file(run, ball, tmp_path):
     """The file's options are for its own law, annulus, and must not reach another."""
-    content = json.loads(run("run", ball, "--tangential", "springs", "--json").out)
+    laws = (
+        "[simulation]\ntangential = 'annulus'\nintegrator = 'symplectic'\n"
+        "[simulation.options]\ntangential.annuli = 50\nintegrator.steps = 400\n"
+    )
+    file = tmp_path / "own_laws.toml"
+    file.write_text(f"{ball.read_text('utf-8')}\n{laws}", encoding="utf-8")
+    content = json.loads(run("run", file, "--tangential", "springs", "--json").out)
     assert content["laws"]["tangential"].startswith("springs")
     assert content["counters"]["steps"] == 400
 

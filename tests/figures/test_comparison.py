@@ -8,15 +8,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
+import contactlab
 from contactlab import Scene, Simulation
-from contactlab.figures.comparison import (
-    all_laws,
-    differences,
-    forces_over_contact,
-    laws_over_sweep,
-)
+from contactlab.figures.comparison import all_laws
 from contactlab.outcome.style import LAW_COLOURS, LAW_DASHES
 from contactlab.study.comparison import compare
+from contactlab.study.comparison_figure import differences, forces_over_contact, laws_over_sweep
+from tests.present import ROOT
 
 X = np.linspace(0.0, 4.0, 9)
 REFERENCE = 0.5 * X  # a range of 2
@@ -223,3 +221,41 @@ def test_forces_of_each_law_lie_within_one_limit():
         np.testing.assert_allclose(line.get_ydata()[1:] * peak, run.result.history.tangential_force)
     assert axes.get_ylim() == (-1.05, 1.05)
     assert axes.get_legend()._loc == 3  # lower left
+
+
+def test_a_comparison_plots_itself(tmp_path):
+    """A curve a law over a sweep, forces over one impact, on axes given or of a new figure."""
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    laws = {"exact": Simulation(), "rigid": Simulation(tangential="coulomb")}
+    swept = contactlab.compare(Scene.nondimensional(psi1=X, chi=1.0), laws)
+    given = Figure().subplots()
+    assert swept.plot(axes=given) is given
+    for line, law in zip(given.lines, laws, strict=True):
+        assert np.array_equal(line.get_ydata(), swept.values("psi2", law))
+    try:
+        own = swept.plot("tangential_restitution", width="one")
+        assert [own.figure] == [pyplot.figure(number) for number in pyplot.get_fignums()[-1:]]
+        assert np.array_equal(
+            own.lines[0].get_ydata(),
+            swept.values("tangential_restitution", "exact"),
+            equal_nan=True,
+        )
+    finally:
+        pyplot.close("all")
+    once = Scene.nondimensional(psi1=1.2, chi=1.0)
+    forces = contactlab.compare(once, laws, history=True).plot(axes=Figure().subplots())
+    assert len(forces.lines) >= len(laws)
+    for refused, quantity, words in (
+        (swept, "psi3", "psi3"),
+        (contactlab.compare(once, laws), None, "history=True"),
+        (contactlab.compare(once, laws, history=True), "psi2", "leave it out"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            refused.plot(quantity)
+
+
+def test_a_comparison_with_an_experiment_plots_what_was_measured():
+    file = contactlab.read_scene(ROOT / "examples" / "kharaz2001.toml")
+    axes = contactlab.compare(file, {"exact": Simulation()}).plot(axes=Figure().subplots())
+    (bars,) = axes.containers
+    assert np.array_equal(bars.lines[0].get_xdata(), file.measured[0].x)

@@ -7,10 +7,11 @@ from matplotlib.figure import Figure
 
 import contactlab
 from contactlab import Scene, Simulation
-from contactlab.figures.comparison import all_laws, laws_over_sweep
+from contactlab.figures.comparison import all_laws
 from contactlab.outcome.style import error_band
 from contactlab.scene_file import read_scene
 from contactlab.study.comparison import compare
+from contactlab.study.comparison_figure import laws_over_sweep
 
 #: Not in order: a band must follow the order of its curve.
 PSI1 = [2.0, 0.5, 1.2]

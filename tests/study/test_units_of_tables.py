@@ -8,10 +8,10 @@ from matplotlib.figure import Figure
 
 from contactlab import Scene, Simulation
 from contactlab.cli.main import main
-from contactlab.figures.comparison import differences, laws_over_sweep
 from contactlab.outcome.columns import unit_in
 from contactlab.scene_file import read_scene
 from contactlab.study.comparison import compare
+from contactlab.study.comparison_figure import differences, laws_over_sweep
 
 #: Quantities with the units m/s and rad/s of bodies, and an angle.
 QUANTITIES = "rebound_slip_velocity,rebound_spin,local_rebound_angle_deg"
