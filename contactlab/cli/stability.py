@@ -24,12 +24,12 @@ from contactlab.study.bench_methods import Method, methods
 from contactlab.study.error_map import error_maps
 from contactlab.study.model_error import ModelError
 from contactlab.study.stability import Stability, stability
-from contactlab.study.stability_judge import RAISED, SKIPPED, WRONG, Outcome
+from contactlab.study.stability_judge import NO_REFERENCE, RAISED, SKIPPED, WRONG, Outcome
 
 #: Most failures listed under the table; CSV and JSON hold every case.
 LISTED = 40
 #: Outcomes, in the order of the table.
-WORDS = ("answered", "coarse", "refused", SKIPPED, RAISED, WRONG)
+WORDS = ("answered", "coarse", NO_REFERENCE, "refused", SKIPPED, RAISED, WRONG)
 
 
 @hookimpl
@@ -98,8 +98,7 @@ def report(result: Stability) -> str:
         rows = [[item.method, item.case, item.outcome, item.note] for item in failures[:LISTED]]
         parts.append(table(["method", "case", "", ""], rows))
     parts.append(
-        f"{result.tried()} runs tried, {result.count(WRONG)} silently wrong; "
-        f"{result.count(SKIPPED)} more were skipped as too much work.\n"
+        f"{describe_totals(result)}\n"
         "Errors are numerical: distances from the law's own exact answer, over the range of psi2.\n"
         "Answers whose declared or estimated error is a quarter of the range or more are counted "
         "as coarse\nand have no error in the table.\n"
@@ -109,6 +108,18 @@ def report(result: Stability) -> str:
     if not result.complete:
         parts.append(f"not complete: {shared.say_why_incomplete(result)}")
     return "\n\n".join(parts)
+
+
+def describe_totals(result: Stability) -> str:
+    """Return how many answers were compared, how many are wrong, and what became of the others."""
+    totals = result.totals()
+    raised = f"{totals['raised']} raised an error; " if totals["raised"] else ""
+    return (
+        f"{totals['compared']} compared, {totals['silently_wrong']} wrong; "
+        f"{totals['no_reference']} had no reference, their signs and energy books were judged; "
+        f"{totals['refused']} refused with a reason; {raised}"
+        f"{totals['not_run']} not run, as too much work."
+    )
 
 
 def _worst(item: ModelError) -> tuple[float, float]:
@@ -124,6 +135,6 @@ def _content(result: Stability) -> dict[str, object]:
         "outcomes": json_value(result.outcomes),
         "model_errors": json_value(result.models),
         "tried": result.tried(),
-        "silently_wrong": result.count(WRONG),
+        **result.totals(),
         "complete": result.complete,
     }

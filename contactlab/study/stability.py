@@ -18,7 +18,16 @@ from contactlab.registry.composition import DEFAULT_NORMAL
 from contactlab.study.bench_methods import Method
 from contactlab.study.model_error import ModelError, model_error
 from contactlab.study.stability_cases import INCIDENCES, MAP, Cell, all_cases, map_chis
-from contactlab.study.stability_judge import ANSWERED, RAISED, SKIPPED, WRONG, Outcome, judge
+from contactlab.study.stability_judge import (
+    ANSWERED,
+    NO_REFERENCE,
+    RAISED,
+    REFUSED,
+    SKIPPED,
+    WRONG,
+    Outcome,
+    judge,
+)
 
 #: A case of more work than this, in steps of one part, is skipped. Work is not time: which cases
 #: are tried does not depend on the machine.
@@ -53,11 +62,32 @@ class Stability:
         """Return the number of runs judged."""
         return len(self.outcomes) - self.count(SKIPPED)
 
+    def totals(self) -> dict[str, int]:
+        """Return the number of answers compared, and of those wrong, and of all other cases.
+
+        Compared and without a reference, refused, raised and not run are all cases; wrong answers
+        are among the first two.
+        """
+        compared = sum(item.compared for item in self.outcomes)
+        return {
+            "compared": compared,
+            "silently_wrong": self.count(WRONG),
+            "no_reference": self.count(ANSWERED) + self.count(WRONG) - compared,
+            "refused": self.count(REFUSED),
+            "raised": self.count(RAISED),
+            "not_run": self.count(SKIPPED),
+        }
+
     def counts(self, method: str) -> Counter[str]:
-        """Return the number of cases with each outcome; ``coarse`` is a part of ``ANSWERED``."""
+        """Return the number of cases with each outcome.
+
+        ``coarse`` and ``NO_REFERENCE`` are parts of ``ANSWERED``.
+        """
         mine = [item for item in self.outcomes if item.method == method]
         counts = Counter(item.outcome for item in mine)
-        counts["coarse"] = sum(item.outcome == ANSWERED and item.bound > COARSE for item in mine)
+        answered = [item for item in mine if item.outcome == ANSWERED]
+        counts["coarse"] = sum(item.bound > COARSE for item in answered)
+        counts[NO_REFERENCE] = sum(not item.compared for item in answered)
         return counts
 
     def worst(self, method: str, family: str) -> float:

@@ -34,6 +34,8 @@ from contactlab.study.stability_references import (
 #: Outcomes. Only the last two are failures of the program.
 ANSWERED, REFUSED, SKIPPED = "answered", "refused", "skipped"
 WRONG, RAISED = "silently wrong", "raised"
+#: Of an answer that is compared with none: its signs and energy books alone are judged.
+NO_REFERENCE = "no reference"
 #: Rounding, over the range of psi2.
 ROUNDING = 1e-9
 #: Bound, over the range, for a law that declares no error: its error, and broken invariants.
@@ -76,6 +78,11 @@ class Outcome:
     bound: float = np.nan
     note: str = ""
     run_time_s: float = 0.0
+
+    @property
+    def compared(self) -> bool:
+        """True for an answer that was compared with a reference."""
+        return self.outcome in (ANSWERED, WRONG) and not np.isnan(self.error)
 
     @classmethod
     def of(
@@ -155,7 +162,7 @@ def judge_run(
     except Exception as error:
         note = f"its reference: {type(error).__name__}: {error}"
         return Outcome.of(case, RAISED, note=note, run_time_s=took)
-    note = "; ".join(wrong) or ("no reference" if np.isnan(off) else "")
+    note = "; ".join(wrong) or (NO_REFERENCE if np.isnan(off) else "")
     outcome = WRONG if wrong else ANSWERED
     return Outcome.of(case, outcome, error=off, bound=bound, note=note, run_time_s=took)
 

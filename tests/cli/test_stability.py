@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import re
 
 import attrs
@@ -39,8 +40,13 @@ def test_table_csv_and_figure_of_a_law(run, tmp_path):
         assert len(re.findall(rf"^springs / {integrator} ", ran.out, re.MULTILINE)) == 2
     with files[0].open(newline="", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
-    total = re.search(r"(\d+) runs tried, 0 silently wrong; (\d+) more were skipped", ran.out)
-    assert len(rows) == int(total[1]) + int(total[2])
+    total = re.search(
+        r"(\d+) compared, 0 wrong; (\d+) had no reference.*; (\d+) refused.*; (\d+) not run",
+        ran.out,
+    )
+    assert len(rows) == sum(map(int, total.groups()))
+    compared = [row for row in rows if row["outcome"] == "answered" and row["error"] != "nan"]
+    assert len(compared) == int(total[1])
     assert sum(row["family"] == "map" for row in rows) == 3 * 4 * (4 + 4 + 2)
     answered = [row for row in rows if row["outcome"] == "answered"]
     assert len(answered) > 100
@@ -68,7 +74,7 @@ def test_a_law_that_is_silently_wrong_fails_it_and_is_named(run, monkeypatch, tm
     ran = run(*COMMAND, "--csv", tmp_path / "s.csv")
     assert ran.status == 1
     assert re.search(r"springs / symplectic +\S.* silently wrong +error \S+ of the range", ran.out)
-    wrong = int(re.search(r"(\d+) silently wrong;", ran.out)[1])
+    wrong = int(re.search(r"compared, (\d+) wrong;", ran.out)[1])
     row = re.search(r"^springs / symplectic +\d+ [\d ]+ (\d+)$", ran.out, re.MULTILINE)
     assert int(row[1]) == wrong > 10
     with (tmp_path / "s.csv").open(newline="", encoding="utf-8") as stream:
@@ -87,7 +93,26 @@ def test_a_failure_on_the_map_alone_fails_it(run, monkeypatch, outcome):
     ran = run(*COMMAND)
     assert ran.status == 1
     assert re.search(rf"a / paper +here +{outcome} +off by 9", ran.out)
-    assert f"1 runs tried, {int(outcome == WRONG)} silently wrong" in ran.out
+    assert f"0 compared, {int(outcome == WRONG)} wrong; " in ran.out
+    assert ("1 raised an error" in ran.out) is (outcome == RAISED)
+
+
+def test_answers_without_a_reference_are_not_counted_as_compared(run, monkeypatch):
+    """Each of the outcomes is one number of the totals, in words and in JSON."""
+    told = [
+        *(("answered", 0.001), ("answered", math.nan), ("answered", math.nan), (WRONG, 0.5)),
+        *((WRONG, math.nan), ("refused", math.nan), ("skipped", math.nan)),
+    ]
+    outcomes = tuple(attrs.evolve(failed(word), error=error) for word, error in told)
+    found = Stability(outcomes=outcomes, complete=True)
+    monkeypatch.setattr(stability, "stability", lambda *_, **__: found)
+    words = run(*COMMAND).out
+    assert "2 compared, 2 wrong; 3 had no reference" in words
+    assert "1 refused with a reason; 1 not run" in words
+    content = json.loads(run(*COMMAND, "--json").out)
+    counted = ("compared", "no_reference", "refused", "raised", "not_run")
+    assert [content[name] for name in counted] == [2, 3, 1, 0, 1]
+    assert (content["silently_wrong"], content["tried"]) == (2, 6)
 
 
 def test_the_picture_has_a_curve_a_law_under_its_usual_integrator(run, tmp_path, monkeypatch):
