@@ -167,7 +167,7 @@ def test_restitution_comes_out_of_kharaz(run):
     found = content["parameters"]["normal.restitution"]
     assert found["value"] == pytest.approx(0.994, abs=0.002)
     assert found["interval_95"] == pytest.approx([0.984, 1.0], abs=0.002)
-    assert content["laws"].startswith("Viscoelastic(restitution=0.99")
+    assert content["laws"].startswith("viscoelastic (restitution=0.99")
 
 
 @pytest.mark.parametrize(
