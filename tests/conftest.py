@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import sys
+from importlib.util import find_spec
 
 # One thread for each process: the tests themselves run side by side (pytest -n auto).
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -35,6 +36,17 @@ class Mine(SteppedTangentialLaw):
 def contactlab_law(name):
     return Mine
 """
+
+#: Folders of tests that belong to a package under plugins/, which can be taken out.
+SHELVES = {
+    "contactlab_fit": ("fitting",),
+    "contactlab_halfspace": ("halfspace",),
+    "contactlab_pages": ("pages", "browser"),
+}
+collect_ignore = [
+    folder for package, folders in SHELVES.items() if find_spec(package) is None
+    for folder in folders
+]  # fmt: skip
 
 settings.register_profile(
     "quick", max_examples=QUICK, deadline=None, derandomize=True, database=None,

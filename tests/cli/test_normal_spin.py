@@ -77,24 +77,3 @@ def test_a_report_and_a_picture_of_a_ball(run, files, tmp_path, monkeypatch):
     ran = run("animate", one, "--out", tmp_path / "one.gif")
     assert ran.status == 0
     assert CAUTION in ran.err
-
-
-@pytest.mark.slow
-def test_the_half_space_answers_and_nothing_is_cautioned(run, tmp_path):
-    path = tmp_path / "one.toml"
-    path.write_text(BODIES["sphere"] + IMPACT)
-    law = ("--tangential", "halfspace", "--set", "tangential.rings=8")
-    ran = run("run", path, *law)
-    assert ran.status == 0
-    assert "spin about the normal: friction of slip and of spin is one" in ran.out
-    assert CAUTION not in ran.out + ran.err
-    content = json.loads(run("run", path, *law, "--json").out)
-    assert content["normal_spin"] == -100.0
-    assert -100.0 < content["rebound_normal_spin"] < -98.0
-    (tmp_path / "sweep.toml").write_text(BODIES["sphere"] + IMPACT + SWEEP)
-    swept = run("sweep", tmp_path / "sweep.toml", *law, "--out", tmp_path / "sweep.csv")
-    assert swept.status == 0
-    assert CAUTION not in swept.out + swept.err
-    assert "rebound_normal_spin (rad/s)" in (tmp_path / "sweep.csv").read_text()
-    both = run("compare", path, "--tangential", "halfspace,fronts", "--json")
-    assert CAUTION in both.err

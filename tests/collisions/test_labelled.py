@@ -18,7 +18,6 @@ from contactlab import (
     rebound,
     shapes,
 )
-from contactlab_fit import read_measurements
 from tests.present import extra
 
 STEEL = Material.named("steel")
@@ -248,7 +247,6 @@ DOORS = {
                                                    velocity=3 * [[0, 0, -1]]),
                                          restitution=lambda _: x),
     "semi-axes": lambda x: shapes.ellipsoid(material=STEEL, semi_axes=x, normal=(0, 0, 1)),
-    "a column of measurements": lambda x: read_measurements({"psi1": x, "psi2": LENGTHS}),
 }  # fmt: skip
 
 

@@ -23,7 +23,6 @@ from contactlab.outcome import energy, history, motion, plan, result
 from contactlab.solve import normal_motion
 from contactlab.study.validation import REFERENCE_PSI2
 from contactlab.testing import Verdict, check_law
-from contactlab_halfspace.checks import TORSION
 from tests.house import contract_page
 from tests.present import PACKAGE, ROOT, extra
 
@@ -226,7 +225,6 @@ def test_tables_of_the_theory_are_those_of_the_code():
     reference = {round(row[0], 6): tuple(row[1:]) for row in rows("5")}
     for chi, psi2 in REFERENCE_PSI2.items():
         assert reference[round(chi, 6)] == psi2
-    assert set(TORSION) < {tuple(row) for row in rows("17")}
     (angles, ratios, rims), psi2, _ = normal_spin.nodes()
     places = np.searchsorted(rims, [0.1, 0.2, 0.5, 1.0, 2.0, 5.0])
     moved = {row[0]: row[1:] for row in rows("17") if len(row) == 7}

@@ -16,7 +16,6 @@ from contactlab import (
     rebound,
     shapes,
 )
-from contactlab_fit import read_flight, read_measurements
 from tests.present import extra
 
 needs_pandas = extra("pandas")
@@ -175,12 +174,6 @@ def rods(normal):
 
 #: Doors that take no single number, by the begin of their refusals.
 OTHER_DOORS = {
-    "psi2 = .*masked": lambda: read_measurements({"psi1": VALUES, "psi2": MASKED}),
-    "psi1 = .*masked": lambda: read_measurements({"psi1": MASKED, "psi2": VALUES}),
-    "psi2 = .*list of numbers": lambda: read_measurements(
-        {"psi1": VALUES, "psi2": [[1.0], [1.0, 2.0]]}),
-    "x .m. = .*masked": lambda: read_flight(
-        {"t (s)": VALUES, "x (m)": MASKED, "y (m)": VALUES}),
     "restitution = .*masked": lambda: collide(
         Encounter(BALL, PLATE, 0.2, normal=(0, 0, -1), velocity=3 * [(0, 0, -1)]),
         restitution=lambda _: MASKED),

@@ -51,25 +51,6 @@ def test_the_size_bounds_the_error_of_springs_far_from_solid_spheres(name, e, ps
     assert 0.1 < off <= size(psi1, chi, name, e) < 5.0 * off
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["tsuji", "hunt_crossley", "kuwabara_kono"])
-def test_the_size_bounds_the_error_of_springs_at_random(name):
-    """Against tractions that are Coulomb's at every point, by the half-space law."""
-    rng = np.random.default_rng(31)
-    for e in rng.uniform(0.12, 0.97, 3):
-        chi = np.exp(rng.uniform(np.log(0.06), np.log(9.5), 8))
-        psi1 = rng.uniform(0.03, 1.0, 8) * (2.0 * chi * (1.0 + e) + 1.0)
-        law = create(f"normal.{name}", restitution=float(e))
-        scene = Scene.nondimensional(psi1=psi1, chi=chi, poisson_ratio=0.0)
-        fine = Simulation(
-            normal=law, tangential=create("tangential.springs", springs=120, shear_loss=0.0),
-            integrator=create("integrator.symplectic", steps=480),
-        ).run(scene)  # fmt: skip
-        exact = Simulation(normal=law, tangential="halfspace").run(scene)
-        for off, one, ratio in zip(np.abs(fine.psi2 - exact.psi2), psi1, chi, strict=True):
-            assert off <= max(size(float(one), float(ratio), name, float(e)), 3e-3)
-
-
 def test_what_was_not_measured_has_no_number():
     for chi, e in ((30.0, 0.5), (0.01, 0.5), (1.2, 0.05)):
         told = cautions(1.0, chi, normal=create("normal.tsuji", restitution=e))

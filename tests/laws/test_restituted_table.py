@@ -9,7 +9,6 @@ from contactlab import rebound
 from contactlab_laws.tables import restituted
 from contactlab_laws.tables.restituted_regions import BEYOND_ERROR, RESTITUTED_ERROR, WIDER_ERROR
 from contactlab_laws.viscoelastic.relaxation import restitution_of
-from tests.laws.viscous_rings import rebound as by_rings
 from tests.longer import longer
 
 CHI = 49 / 34
@@ -56,14 +55,6 @@ def test_values_of_another_program(a, chi):
 @pytest.mark.parametrize(("psi1", "chi", "a", "psi2"), SINGLES)
 def test_values_of_two_programs(psi1, chi, a, psi2):
     assert rebound(psi1, chi, restitution=restitution_of(a)) == pytest.approx(psi2, abs=5e-5)
-
-
-@pytest.mark.parametrize("a", [0.1, 0.4])
-def test_springs_are_coulombs_law_at_every_point(a):
-    """By rings that lose in pressure and shear, in whose solution there are no springs."""
-    psi1, chi = np.array([0.9, 1.1, 2.0]), np.array([1.44, 7 / 6, 1.0])
-    table = rebound(psi1, chi, restitution=restitution_of(a))
-    assert by_rings(psi1, chi, a, 64) == pytest.approx(table, abs=1e-3)
 
 
 @pytest.mark.parametrize(

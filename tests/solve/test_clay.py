@@ -123,7 +123,6 @@ SPHERE = Scene(BALL, FLOOR, 0.2, 1.0, 0.1)
 PATH = SPHERE, np.full(9, 1e-6), np.linspace(0.0, 1e-6, 9)
 REFUSED = [
     ("a march", lambda e: clay(e, tangential="annulus").run(SPHERE), "under Annulus"),
-    ("a half-space", lambda e: clay(e, tangential="halfspace").run(SPHERE), "under HalfSpace"),
     ("a history", lambda e: clay(e).run(SPHERE, history=True), "with a history"),
     ("a path", lambda e: load_path(*PATH, normal=clay(e).normal), "along a path"),
     ("bodies", lambda e: collide(rod(-35.0, slip=0.3), restitution=e), "friction changes"),

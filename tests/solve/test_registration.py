@@ -5,11 +5,10 @@ import json
 import pytest
 
 import contactlab
-from contactlab import PluginError, Scene, Simulation, read_scene
+from contactlab import PluginError, Simulation, read_scene
 from contactlab.cli.main import main
 from contactlab.contracts import claims
 from contactlab.contracts.law import requirements
-from contactlab.registry.registry import REGISTRY
 
 FILE = """
 import attrs
@@ -164,23 +163,16 @@ def test_a_law_is_shown_without_being_made(folder, capsys):
         ("normal.hunt_crossley", {"restitution": 1.0}, {"viscous"}),
         ("normal.viscoelastic", {"restitution": 0.8}, set()),
         ("normal.kuwabara_kono", {"relaxation_time": 0.0}, {"viscous", "similar"}),
-        ("tangential.halfspace", {"coupling": "two_way"}, {"normal_spin"}),
-        ("tangential.halfspace", {"coupling": "none", "angles": 8}, {"elastic_hertz"}),
     ],
 )
 def test_parameters_take_words_away_and_a_derived_class_loses_none(name, options, waived):
+    assert_waived(name, options, waived)
+
+
+def assert_waived(name, options, waived):
+    """Words of a law's class are those of the law, but for what its parameters waive."""
     law = contactlab.create(name, **options)
     words = type(law).offers | type(law).needs
     assert claims(law) | requirements(law) == words - waived
     derived = type("Derived", (type(law),), {"offers": type(law).offers | {"elliptic"}})
     assert claims(derived(**options)) == claims(law) | {"elliptic"}
-
-
-def test_half_space_needs_elastic_surfaces_for_two_way_coupling_only():
-    scene = Scene.nondimensional(psi1=1.2, chi=1.44)
-    options = {"rings": 8, "extrapolate": False}
-    halfspace = REGISTRY.law_class("tangential.halfspace")
-    one = Simulation(normal="tsuji", tangential=halfspace(**options), integrator="symplectic")
-    assert one.plan(scene)
-    with pytest.raises(ValueError, match="needs 'elastic_hertz'"):
-        Simulation(normal="tsuji", tangential=halfspace(coupling="two_way", **options))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import Encounter, Material, Scene, Simulation, Sphere, collide, fit, load_path
+from contactlab import Encounter, Material, Scene, Simulation, Sphere, collide, load_path
 from contactlab.cli.main import main
 from contactlab.numeric.checks import quantity
 from contactlab.study.bench_methods import Method
@@ -92,9 +92,7 @@ def test_no_door_of_many_or_of_paths_lets_them_in(tmp_path):
         lambda: jkr.sweep(BARE.stack([BARE, BARE]), keep=tmp_path / "kept"),
         lambda: jkr.normal_motion(BARE),
         lambda: load_path(BARE, [1e-6, 2e-6], [0.0, 1e-6], normal="jkr"),
-        lambda: fit({"psi2": [0.1, -0.1]}, Scene.stack([BARE, BARE]),
-                    parameters=["work_of_adhesion"], simulation=jkr),
-    )  # fmt: skip
+    )
     for door in doors:
         with pytest.raises(ValueError, match="jkr needs a scene with units"):
             door()

@@ -37,12 +37,6 @@ def test_that_of_the_rigid_body_is_its_distance_from_the_exact_table():
         assert error > 0.05
 
 
-@pytest.mark.slow
-def test_what_more_rings_change_is_no_error_of_the_model():
-    """The half-space without coupling has the continuum's limit, to the error of its rings."""
-    assert model_error("halfspace", (CHI, 100.0), (1.2,)) is None
-
-
 @pytest.mark.parametrize("law", ["mindlin_cap", "linear_spring"])
 def test_that_of_a_spring_is_what_finer_steps_leave(law):
     steps = contactlab.create("integrator.symplectic", steps=3000)

@@ -275,17 +275,6 @@ def test_a_law_that_is_judged_by_itself_is_judged_by_its_limit(psi1, chi):
     assert found == pytest.approx(change("adaptive", tolerance=1e-2), abs=1e-3 * width)
 
 
-def test_a_law_of_whole_impacts_is_judged_under_the_same_normal_law():
-    """By itself at twice its resolution: under a damped law, not under the default one."""
-    scene = Scene.nondimensional(psi1=1.2, chi=CHI)
-    law, twice = (contactlab.create("tangential.halfspace", rings=n) for n in (8, 16))
-    for normal in (contactlab.create("normal.tsuji", restitution=0.7), None):
-        laws = {} if normal is None else {"normal": normal}
-        own = Simulation(tangential=twice, **laws)
-        found = reference_for(law, own.normal)(scene, law)
-        assert found == float(own.run(scene).check().motion.slip_velocity_change)
-
-
 def test_exact_answers_break_no_invariant():
     for psi1 in (0.0, 1e-300, 0.5, -1.2, 3.0, 1e16):
         result = Simulation().run(Scene.nondimensional(psi1=psi1, chi=CHI)).check()

@@ -8,8 +8,14 @@ import pytest
 
 import contactlab
 from contactlab import Scene
-from tests.laws.square_grid import SquareGrid, rebound
-from tests.laws.test_halfspace import CHI, FINITE_ELEMENTS, SHIFTS, finite_element_case, simulation
+from tests.halfspace.square_grid import SquareGrid, rebound
+from tests.halfspace.test_halfspace import (
+    CHI,
+    FINITE_ELEMENTS,
+    SHIFTS,
+    finite_element_case,
+    simulation,
+)
 
 pytestmark = pytest.mark.slow
 #: Finite elements of the case of theory §9 between psi1 = .5 and 2: rms of the axisymmetric

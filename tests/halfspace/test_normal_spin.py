@@ -12,9 +12,11 @@ import contactlab
 from contactlab import Scene, Simulation
 from contactlab.contracts.status import Status
 from contactlab.impact.normal_spin import nodes
-from tests.laws.square_grid import SquareGrid, rebound
-from tests.laws.test_halfspace import CHI, simulation
-from tests.laws.torsion import torsion
+from contactlab_halfspace import checks
+from tests.halfspace.square_grid import SquareGrid, rebound
+from tests.halfspace.test_halfspace import CHI, simulation
+from tests.halfspace.torsion import torsion
+from tests.house.test_guide import rows
 from tests.longer import longer
 
 NU = 0.3
@@ -290,3 +292,7 @@ def test_fast_spin_slows_slip_less_and_less_and_never_speeds_it_up(psi1):
     assert 0.999 < kept[-1] <= 1.0
     if psi1 == 0.5:
         assert result.psi2[0] == pytest.approx(0.4277, abs=1e-3)  # of 32 and 64 rings
+
+
+def test_what_validation_compares_with_is_in_the_theory():
+    assert set(checks.TORSION) < {tuple(row) for row in rows("17")}

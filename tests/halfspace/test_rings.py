@@ -6,9 +6,9 @@ from scipy.integrate import quad
 
 import contactlab
 from contactlab_halfspace.rings import rings, settle
-from tests.laws import other_march
-from tests.laws.by_rings import rebound
-from tests.laws.other_march import motion
+from tests.halfspace import other_march
+from tests.halfspace.by_rings import rebound
+from tests.halfspace.other_march import motion
 
 CHI = 49 / 34
 #: psi2, theory §11, by rings of another program: normal law, e, chi, psi1.

@@ -1,5 +1,6 @@
 """The commands take the law of the half-space like any other."""
 
+import json
 import math
 import re
 
@@ -9,6 +10,7 @@ from contactlab.study.bench_methods import Method
 from contactlab.study.stability_cases import cases
 from contactlab.study.stability_judge import ANSWERED, judge
 from tests.cli.conftest import EXAMPLES
+from tests.cli.test_normal_spin import BODIES, CAUTION, IMPACT, SWEEP
 
 BALL, MEASURED = EXAMPLES / "steel_ball.toml", EXAMPLES / "kharaz2001.toml"
 
@@ -31,6 +33,7 @@ def test_bench(run, tmp_path):
 
 @pytest.mark.slow
 def test_report(run, tmp_path):
+    pytest.importorskip("contactlab_pages")
     page = tmp_path / "report.html"
     ran = run("report", BALL, "--tangential", "fronts,halfspace", "--out", page)
     assert ran.status == 0
@@ -40,6 +43,7 @@ def test_report(run, tmp_path):
 @pytest.mark.slow
 def test_fit(run):
     """The axisymmetric problem: the friction of the exact law."""
+    pytest.importorskip("contactlab_fit")
     laws = ("--laws", "halfspace", "--set", "tangential.angles=1", "--set", "tangential.rings=8")
     ran = run("fit", MEASURED, "--quantity", "tangential_restitution", "--bootstrap", 0, *laws)
     assert ran.status == 0
@@ -54,3 +58,24 @@ def test_stability_judges_it_by_itself_at_twice_its_resolution():
     found = [judge(case) for case in [*cases(method, quick=True)][::5]]
     assert {each.outcome for each in found} == {ANSWERED}
     assert sum(math.isfinite(each.error) for each in found) > 10
+
+
+@pytest.mark.slow
+def test_the_half_space_answers_and_nothing_is_cautioned(run, tmp_path):
+    path = tmp_path / "one.toml"
+    path.write_text(BODIES["sphere"] + IMPACT)
+    law = ("--tangential", "halfspace", "--set", "tangential.rings=8")
+    ran = run("run", path, *law)
+    assert ran.status == 0
+    assert "spin about the normal: friction of slip and of spin is one" in ran.out
+    assert CAUTION not in ran.out + ran.err
+    content = json.loads(run("run", path, *law, "--json").out)
+    assert content["normal_spin"] == -100.0
+    assert -100.0 < content["rebound_normal_spin"] < -98.0
+    (tmp_path / "sweep.toml").write_text(BODIES["sphere"] + IMPACT + SWEEP)
+    swept = run("sweep", tmp_path / "sweep.toml", *law, "--out", tmp_path / "sweep.csv")
+    assert swept.status == 0
+    assert CAUTION not in swept.out + swept.err
+    assert "rebound_normal_spin (rad/s)" in (tmp_path / "sweep.csv").read_text()
+    both = run("compare", path, "--tangential", "halfspace,fronts", "--json")
+    assert CAUTION in both.err
