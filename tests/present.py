@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import contactlab
+from contactlab.registration.manager import commands
 
 #: The repository or source archive that the tests stand in, and the package that they test.
 ROOT, PACKAGE = Path(__file__).parents[1], Path(contactlab.__file__).parent
@@ -19,3 +20,18 @@ def extra(module):
 
 
 needs_sources = pytest.mark.skipif(not (ROOT / "contactlab").is_dir(), reason=INSTALLED)
+
+
+def of_commands(*rows):
+    """Return those rows of a table, words or parameters, whose command is installed.
+
+    The first word of a row is the command; its folder under plugins may be taken out.
+    """
+    return [row for row in rows if command_of(row) in commands("contactlab")]
+
+
+def command_of(row):
+    """Return the first word of a row of words, of a line, or of parameters."""
+    while not isinstance(row, str):
+        row = getattr(row, "values", row)[0]
+    return row.split()[0]

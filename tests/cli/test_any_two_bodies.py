@@ -11,6 +11,7 @@ from PIL import Image
 import contactlab
 from contactlab import Scene, Simulation, read_scene
 from tests.longer import longer
+from tests.present import of_commands
 from tests.short_animations import shorten
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -132,11 +133,11 @@ def test_an_integrator_alone_has_the_friction_law_that_it_marches(run, file, int
 
 @pytest.mark.parametrize(
     ("command", "word"),
-    [
+    of_commands(
         (("run", FOOT, "--stick-slip", "m.png"), "step by step"),
         (("fit", FOOT, "drops.csv"), "along = [x, y, z]"),
         (("animate", EXAMPLES / "sweep.toml", "--out", "m.gif"), "single impact"),
-    ],
+    ),
 )
 def test_what_is_for_spheres_says_so(run, tmp_path, monkeypatch, command, word):
     monkeypatch.chdir(tmp_path)

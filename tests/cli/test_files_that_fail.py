@@ -10,6 +10,7 @@ from contactlab.outcome import files
 from tests.cli.conftest import EXAMPLES, partial
 from tests.full_disk import full_disk
 from tests.longer import longer
+from tests.present import of_commands
 
 SWEEP = ("sweep", "--psi1", "0:9:3000", "--chi", "1.4412", "--tangential", "linear_spring")
 FULL = "No space left on device"
@@ -129,7 +130,7 @@ KHARAZ = EXAMPLES / "kharaz2001.toml"
 
 @pytest.mark.parametrize(
     "words",
-    [
+    of_commands(
         ("run", "--psi1", 1, "--chi", 1, "--out", "a.csv"),
         ("run", "--psi1", 1, "--chi", 1, "--history", "a.csv", "--figure", "a.png"),
         ("sweep", "--psi1", "0:1:3", "--chi", 1, "--csv", "--figure", "a.pdf"),
@@ -144,7 +145,7 @@ KHARAZ = EXAMPLES / "kharaz2001.toml"
             (("figures", "--only", 2, "--tangential", "coulomb", "--out", "."),),
             (("animate", "--psi1", 1, "--chi", 1, "--out", "a.gif"),),
         ),
-    ],
+    ),
 )
 def test_no_command_says_that_a_file_is_written_which_is_not(run, tmp_path, monkeypatch, words):
     monkeypatch.chdir(tmp_path)

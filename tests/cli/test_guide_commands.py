@@ -13,6 +13,8 @@ from contactlab.registration.names import KINDS, full_name, kind_of
 from contactlab.registry.registry import REGISTRY
 
 COMMANDS = commands("contactlab")
+#: Commands of folders that can be taken out.
+OF_FOLDERS = {"explore", "fit", "report"}
 EXAMPLES = Path(__file__).parents[2] / "examples"
 PAGE = text("command-line")
 SECTIONS = dict(re.findall(r"^## `(\w+)`\n(.*?)(?=^## )", PAGE, re.MULTILINE | re.DOTALL))
@@ -23,9 +25,10 @@ def lines(markdown):
 
 
 def test_every_command_has_a_section_and_a_row_in_the_table():
-    assert sorted(SECTIONS) == sorted(COMMANDS)
+    """The page is of a whole installation: folders of plugins may be taken out."""
+    assert COMMANDS.keys() <= SECTIONS.keys() <= COMMANDS.keys() | OF_FOLDERS
     rows = re.findall(r"^\| [^|`]+ \| `(\w+)` \|$", PAGE, re.MULTILINE)
-    assert sorted(rows) == sorted(COMMANDS)
+    assert sorted(rows) == sorted(SECTIONS)
 
 
 @pytest.mark.parametrize("command", COMMANDS)

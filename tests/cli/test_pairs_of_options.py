@@ -5,6 +5,8 @@ import json
 
 import pytest
 
+from tests.present import of_commands
+
 #: Options with a value that serves; ``{}`` is a folder of the test.
 LAWS = (
     "--normal hertz", "--tangential springs", "--integrator symplectic",
@@ -70,7 +72,7 @@ ALWAYS = {
 }
 PAIRS = [
     (command, pair)
-    for command, options in COMMANDS.items()
+    for command, options in of_commands(*COMMANDS.items())
     for count in range(3)
     for pair in itertools.combinations(options, count)
 ]

@@ -14,6 +14,7 @@ from contactlab.cli import progress as module
 from contactlab.cli.progress import in_words, progress
 from contactlab.cli.terminal import fit_terminal
 from tests.longer import longer
+from tests.present import of_commands
 
 
 class Screen(io.StringIO):
@@ -55,7 +56,7 @@ def test_short_work_says_nothing(begin, terminal):
 
 @pytest.mark.parametrize(
     ("words", "what"),
-    [
+    of_commands(
         ("sweep {short} --out o.csv", "impacts"),
         ("compare {short}", "runs"),
         ("stability --quick --law tangential.coulomb", "stability"),
@@ -65,7 +66,7 @@ def test_short_work_says_nothing(begin, terminal):
             ("fit {impacts} {ball} --laws coulomb,mindlin_cap", "laws"),
             ("validate", "checks"),
         ),
-    ],
+    ),
 )
 def test_commands_tell_what_is_done(
     run, short_sweep, impacts, ball, tmp_path, monkeypatch, words, what

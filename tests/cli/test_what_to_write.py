@@ -1,7 +1,5 @@
 """Mistakes that many make on the command line, each told what to write."""
 
-import shlex
-
 import pytest
 
 from contactlab.cli.main import main
@@ -50,28 +48,6 @@ def test_words_are_no_range(capsys):
     )
 
 
-def test_headings_in_other_words_are_told_with_a_command_that_runs(tmp_path, capsys):
-    table, bodies = tmp_path / "mine.csv", tmp_path / "bodies.toml"
-    rows = "10,3.9,6.7,a\n20,3.9,12.2,b\n30,3.9,21.8,c\n39,3.9,32.6,d\n50,3.9,45,e\n"
-    table.write_text(f"angle (deg),v_in,angle_out,note\n{rows}", encoding="utf-8")
-    bodies.write_text(
-        "[sphere]\nradius = 0.01\nmaterial = 'steel'\n[target]\nmaterial = 'steel'\n"
-        "kind = 'half-space'\n", encoding="utf-8"
-    )  # fmt: skip
-    told_so = told(capsys, "fit", table, bodies, "--bootstrap", 0)
-    assert told_so.count("\n") == 1
-    command = shlex.split(told_so.partition("paste: contactlab ")[2])
-    assert command[:5] == ["fit", str(table), str(bodies), "--bootstrap", "0"]
-    assert command[5:] == [
-        "--column",
-        "v_in=speed (m/s)",
-        "--column",
-        "angle_out=rebound_angle_deg",
-    ]
-    assert main(command) == 0
-    assert "note: left out, for nothing here has such names: note" in capsys.readouterr().out
-
-
 def test_a_missing_friction_is_told_where_to_find(tmp_path, capsys):
     bodies = tmp_path / "bodies.toml"
     bodies.write_text(
@@ -83,10 +59,3 @@ def test_a_missing_friction_is_told_where_to_find(tmp_path, capsys):
     told = capsys.readouterr().err
     assert "write friction_coefficient = ...: a number such as 0.2" in told
     assert "contactlab fit" in told
-
-
-def test_the_page_to_play_with_has_a_name_of_its_own(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    assert main(["explore"]) == 0
-    assert capsys.readouterr().out == "explore.html\n"
-    assert (tmp_path / "explore.html").exists()

@@ -137,3 +137,22 @@ def test_what_is_missing_is_named(files, capsys):
     assert main(["compare", ball, "--column", "a=b"]) == 2
     assert "--measured DATA.csv, which is missing" in capsys.readouterr().err
     assert not Path("a").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--measured", "a.csv"],
+         "--measured: needs a SCENE.toml with the bodies of the experiment"),
+        (["SWEEP", "--column", "a=b"],
+         "--column: names headings of --measured DATA.csv, which is missing"),
+        (["SWEEP", "--columns", "a,b"],
+         "--columns: names headings of --measured DATA.csv, which is missing"),
+        (["SWEEP", "--measured", "a.csv", "--column", "a=b", "--column", "a=c"],
+         "--column: 'a' is named twice; leave one of them out"),
+    ],
+)  # fmt: skip
+def test_a_refusal_is_one_line(run, short_sweep, words, told):
+    ran = run("compare", *(short_sweep if word == "SWEEP" else word for word in words))
+    assert (ran.status, ran.out) == (2, "")
+    assert ran.err == f"contactlab compare: error: {told}\n"

@@ -8,6 +8,7 @@ from zipfile import ZipFile
 
 import pytest
 
+from tests.conftest import SHELVES
 from tests.present import ROOT, needs_sources
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
@@ -105,7 +106,18 @@ def test_whoever_contributes_finds_a_word_on_each_step():
 def test_the_workflow_runs_what_a_change_must_pass():
     text = (GITHUB / "workflows" / "ci.yml").read_text("utf-8")
     assert "- run: .ci/run\n" in text
-    assert os.access(ROOT / ".ci" / "run", os.X_OK)
+    assert "- run: .ci/without_shelves ${{ matrix.shelf }}\n" in text
+    for script in ("run", "without_shelves"):
+        assert os.access(ROOT / ".ci" / script, os.X_OK)
+
+
+def test_the_workflow_takes_out_each_folder_whose_tests_stand_apart():
+    text = (GITHUB / "workflows" / "ci.yml").read_text("utf-8")
+    (listed,) = re.findall(r"shelf: \[(.*)\]", text)
+    (tests,) = re.findall(
+        r"^shelves=\((.*)\)$", (ROOT / ".ci" / "without_shelves").read_text("utf-8"), re.M
+    )
+    assert listed.split(", ") == tests.split() == [*SHELVES]
 
 
 def test_a_commit_is_checked_by_ruff_and_mypy():

@@ -266,6 +266,7 @@ def test_every_command_takes_a_law_in_a_file(files, capsys):
     assert {"sliding_impulse": "expected failure"}.items() <= {
         each["check"]: each["outcome"] for each in checked["checks"]
     }.items()
+    pytest.importorskip("contactlab_fit")
     table = "psi1,chi,psi2\n9,1,8\n8,1,7\n8.5,1,7.5\n"
     (files / "data.csv").write_text(table)
     (files / "scene.toml").write_text("[nondimensional]\npsi1 = 9\nchi = 1\n")

@@ -9,6 +9,7 @@ import pytest
 from contactlab import Simulation, create, read_scene
 from contactlab.cli.main import main
 from tests.longer import longer
+from tests.present import of_commands
 from tests.short_animations import shorten
 
 #: A friction law that says whether its file ran.
@@ -160,7 +161,7 @@ def command(capsys, *words):
     return status, capsys.readouterr().err
 
 
-@pytest.mark.parametrize(("name", "case"), COMMANDS.items())
+@pytest.mark.parametrize(("name", "case"), of_commands(*COMMANDS.items()))
 def test_every_command_needs_the_users_word(tmp_path, ran, capsys, name, case):
     scene, options = case
     written(tmp_path / "scenes", "../beside/evil.py:Evil", scene=scene)
@@ -176,6 +177,7 @@ def test_every_command_needs_the_users_word(tmp_path, ran, capsys, name, case):
 @pytest.mark.parametrize("kind", ["normal", "integrator"])
 def test_fit_needs_the_users_word(tmp_path, ran, capsys, kind):
     """It takes the normal law of a scene, and neither of the others."""
+    pytest.importorskip("contactlab_fit")
     written(tmp_path / "scenes", "../beside/evil.py:Evil", kind=kind)
     (tmp_path / "scenes" / "data.csv").write_text("psi1,chi,psi2\n9,1,5\n8,1,4\n8.5,1,4.5\n")
     words = ("fit", "data.csv", "scene.toml", "--laws", "coulomb", "--bootstrap", "0")
@@ -213,6 +215,8 @@ REPLACED = (
 def test_a_law_that_the_command_line_replaces_is_not_run(
     tmp_path, ran, capsys, monkeypatch, scene, name, kind, words
 ):
+    if name == "report":
+        pytest.importorskip("contactlab_pages")
     shorten(monkeypatch)
     written(tmp_path / "scenes", "../beside/evil.py:Evil", kind=kind, scene=scene)
     status, told = command(capsys, name, "scene.toml", *words)

@@ -130,6 +130,7 @@ def test_stability_of_them(capsys):
 
 @pytest.mark.usefixtures("theirs")
 def test_a_report_page_of_them(tmp_path, capsys):
+    pytest.importorskip("contactlab_pages")
     scene = tmp_path / "scene.toml"
     scene.write_text("[nondimensional]\npsi1 = 1.2\nchi = 1.44\n")
     out = tmp_path / "page.html"

@@ -16,6 +16,7 @@ from contactlab.study.posed import pose
 from contactlab.study.work_precision import bench
 from contactlab_laws.springs.law import Springs
 from tests.laws.normal_laws import LinearSpring, in_si
+from tests.present import of_commands
 
 BARE = Scene.nondimensional(psi1=1.2, chi=1.4412)
 STEEL = Material.named("steel")
@@ -125,7 +126,7 @@ def test_files_and_the_command_line_tell_it(tmp_path, capsys):
     several = tmp_path / "sweep.toml"
     several.write_text(FILE + "[sweep]\npsi1 = [0.2, 1.2]\n", encoding="utf-8")
     groups = ["--psi1", "0.2:5:4", "--chi", "1.4412", "--tangential", "annulus"]
-    for words in (
+    for words in of_commands(
         ["run", str(path)],
         ["sweep", str(several)],
         ["report", str(path), "--out", str(tmp_path / "page.html")],
