@@ -1,5 +1,6 @@
 """What some tests need and may be missing: an extra, or the repository around the package."""
 
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -35,3 +36,19 @@ def command_of(row):
     while not isinstance(row, str):
         row = getattr(row, "values", row)[0]
     return row.split()[0]
+
+
+@contextmanager
+def column(*columns):
+    """Have columns of a plug-in while a test runs."""
+
+    class Brings:
+        @contactlab.hookimpl
+        def contactlab_columns(self):
+            return columns
+
+    name = contactlab.register(Brings(), "columns of a test")
+    try:
+        yield
+    finally:
+        contactlab.plugin_manager().unregister(name=name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import warnings
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
@@ -12,6 +13,7 @@ from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.material import Entry, Material
 from contactlab.impact.scene import Scene
 from contactlab.registration.hooks import PluginError, guard
+from contactlab.registration.installed import PluginWarning
 from contactlab.registration.manager import MANAGER, Told
 from contactlab.registration.names import COMMAND, PluginInfo
 
@@ -109,25 +111,33 @@ def _material(item: Any) -> str:
 
 
 def _column(item: Any) -> str:
-    from contactlab.outcome.columns import Column
+    from contactlab.outcome.columns import NEEDS, Column
     from contactlab.runs.simulation import Simulation
 
     if not isinstance(item, Column):
         return f"is {type(item).__name__}, no Column"
-    scenes = [reference(), Scene.nondimensional(psi1=[0.5, 3.0], chi=1.44)]
-    for scene in scenes:
-        result = Simulation().run(scene).check()
-        value = item.read(result)
-        if value is None or not item.unit:
-            continue
-        together = np.asarray(value, dtype=float)
-        if together.shape[: len(scene.shape)] not in ((), scene.shape):
-            return f"has shape {together.shape} for impacts of shape {scene.shape}"
-        for place in range(scene.shape[0]):
-            alone = np.asarray(item.read(Simulation().run(scene.take(place)).check()), dtype=float)
-            both = np.broadcast_to(together, scene.shape)[place] if together.ndim < 2 else alone
-            if not np.allclose(alone, both, rtol=1e-12, equal_nan=True):
-                return f"gives {alone!r} for one impact and {both!r} for the same in a batch"
+    if unknown := set(item.needs) - set(NEEDS):
+        return f"needs {min(unknown)!r}, which is none of {', '.join(NEEDS)}"
+    alone_only = "history" in item.needs  # a batch has one only where all last equally long
+
+    def read(scene: Scene) -> Any:
+        return item.read(Simulation().run(scene, history=alone_only).check())
+
+    for scene in (reference(), Scene.nondimensional(psi1=[0.5, 3.0], chi=1.44)):
+        each = [scene.take(place) for place in range(scene.shape[0])]
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", PluginWarning)  # a function that fails is told here
+            value = read(each[0] if alone_only else scene)
+            if value is None or not item.unit or alone_only:
+                continue
+            together = np.asarray(value, dtype=float)
+            if together.shape[: len(scene.shape)] not in ((), scene.shape):
+                return f"has shape {together.shape} for impacts of shape {scene.shape}"
+            for place, one in enumerate(each):
+                alone = np.asarray(read(one), dtype=float)
+                both = np.broadcast_to(together, scene.shape)[place] if together.ndim < 2 else alone
+                if not np.allclose(alone, both, rtol=1e-12, equal_nan=True):
+                    return f"gives {alone!r} for one impact and {both!r} for the same in a batch"
     return ""
 
 

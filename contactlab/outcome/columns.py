@@ -53,6 +53,10 @@ class Column(NamedTuple):
         Returns the values from a result, in place of ``path``: numbers of the scene's shape.
     meaning : str
         A sentence for ``contactlab plugins show``.
+    needs : tuple of str
+        What ``value`` reads beside velocities and spins: ``"sizes"`` (duration and maxima of the
+        normal motion), ``"motion"`` (what friction does meanwhile, such as its work) or
+        ``"history"``. A fit follows impacts for it where its table has none.
     """
 
     name: str
@@ -63,10 +67,19 @@ class Column(NamedTuple):
     part: int | None = None
     value: Callable[[Any], Any] | None = None
     meaning: str = ""
+    needs: tuple[str, ...] = ()
 
     def read(self, result: WithScene) -> Any:
-        """Return the values with the result's own type, or None if the scene defines no value."""
-        value = attrgetter(self.path)(result) if self.value is None else self.value(result)
+        """Return the values with the result's own type, or None if the scene defines no value.
+
+        Where the function of a plug-in fails, its number is NaN, and a warning tells it.
+        """
+        if self.value is None:
+            value = attrgetter(self.path)(result)
+        else:
+            from contactlab.outcome.functions_of_results import values_of  # for plug-ins alone
+
+            value = values_of(self.name, self.value, self.needs, result)
         if self.part is not None and value is not None:
             vectors = np.ndim(value) > len(result.scene.shape)
             value = np.asarray(value)[..., self.part] if vectors else None
@@ -90,6 +103,9 @@ class Column(NamedTuple):
         """Return the unit of the values in ``scene``."""
         return unit_in(self.unit, scene)
 
+
+#: What a column may need: ``Column.needs``.
+NEEDS = ("sizes", "motion", "history")
 
 #: The columns of every file, in order: name, unit, attribute of the result. A vector or a matrix
 #: has one column for each of its components.

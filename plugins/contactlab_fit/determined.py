@@ -11,6 +11,7 @@ import numpy as np
 from contactlab.impact.body_contact import seen
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array
+from contactlab.outcome.columns import foreign
 from contactlab_fit.intervals import Spread, spread
 from contactlab_fit.model import Model
 from contactlab_fit.parameters import Parameter, in_words
@@ -63,6 +64,10 @@ def check_defined(problem: Problem) -> None:
     ends = np.array([[parameter.starts[0] for parameter in problem.model.parameters]])
     for name, residuals in problem.residuals(ends).items():
         lost = np.flatnonzero(np.isfinite(problem.measured[name]) & ~np.isfinite(residuals[0]))
+        if lost.size and name in foreign():
+            remedy = "write needs=('motion',) into its Column, or give simulation=Simulation()"
+            table = f" by the table of rebounds; {remedy}" if problem.model.tabled else ""
+            raise ValueError(f"{name}: its column has no number for impact {lost[0] + 1}{table}")
         if lost.size:
             raise ValueError(
                 f"{name}: impact {lost[0] + 1} has none to be measured: it is a quotient, by zero "

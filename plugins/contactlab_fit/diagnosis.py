@@ -12,11 +12,12 @@ import numpy as np
 from contactlab.impact.cautions import OUTSIDE
 from contactlab.impact.coupling import LEFT_OUT, coupling_measured, coupling_shift
 from contactlab.numeric.types import Array, Real
-from contactlab.outcome.columns import QUANTITIES
-from contactlab_fit import outliers, patterns, plausible
+from contactlab.outcome.columns import QUANTITIES, foreign
+from contactlab_fit import outliers, patterns, plausible, tabulated
 from contactlab_fit.f_test import CHANCE
 from contactlab_fit.fit_result import Estimate
 from contactlab_fit.measurements import Measurements
+from contactlab_fit.model import FOLLOWED
 from contactlab_fit.parameters import SHEAR_LOSS
 from contactlab_fit.problem import Problem, fewer
 from contactlab_fit.slips import loosen, lossy, slips
@@ -128,6 +129,9 @@ def cautions(problem: Problem, values: Array, *, of_any_friction: bool = False) 
     said += _caution_of_shear(problem)
     if not (any(text.startswith(LEFT_OUT) for text in said) and result.scene.planar):
         return said
+    if theirs := [name for name in problem.measured if name in foreign()]:
+        by = f"by amounts that no table has for {', '.join(theirs)}"
+        return [*said, f"left out, the coupling of unlike bodies moves the values {by}"]
     if not np.all(coupling_measured(result.scene)):
         return [
             *said,
@@ -211,6 +215,17 @@ def table_notes(table: Measurements, parameters: Collection[str]) -> list[str]:
             "new, and make the intervals too narrow"
         )
     return notes
+
+
+def followed_notes(problem: Problem) -> list[str]:
+    """Return a sentence on columns for which impacts are followed, not tabulated."""
+    model = problem.model
+    if model.tabled or not tabulated.holds(model.setup.simulation):
+        return []
+    names = [name for name in problem.measured if FOLLOWED & {*QUANTITIES[name].needs}]
+    needs = sorted(FOLLOWED & model.needs)
+    told = f"{', '.join(names)}: read from the {' and '.join(needs)} of an impact"
+    return [f"{told}; impacts are followed, their rebound is not tabulated"] if names else []
 
 
 def end_notes(problem: Problem, values: Array, freedom: int) -> list[str]:

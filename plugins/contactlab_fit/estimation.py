@@ -15,6 +15,7 @@ from contactlab.numeric.arrays import common_shape
 from contactlab.numeric.checks import real, refuse, whole
 from contactlab.numeric.types import Array, Numbers, Real
 from contactlab.outcome.answer import ImpactError
+from contactlab.outcome.columns import QUANTITIES
 from contactlab.outcome.result import ImpactResult
 from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import SceneFile
@@ -27,6 +28,7 @@ from contactlab_fit.diagnosis import (
     diagnose,
     end_notes,
     error_notes,
+    followed_notes,
     lost,
     table_notes,
 )
@@ -134,7 +136,7 @@ def fit(
         problem = _problem(table, scene, parameters, laws)
     determined.check_enough(problem)
     determined.check_defined(problem)
-    said = (*table.notes, *table_notes(table, parameters))
+    said = (*table.notes, *table_notes(table, parameters), *followed_notes(problem))
     counted = None if samples else progress
     values, *others = minima(problem, counted)
     slipped: list[str] = []
@@ -290,7 +292,8 @@ def _problem(
     names = [parameter.name for parameter in fitted]
     if len(set(names)) < len(names):
         raise refuse("parameters", list(parameters), "names one of them twice")
-    model = Model(setup=setup, parameters=fitted)
+    needs = frozenset(need for name in table.measured for need in QUANTITIES[name].needs)
+    model = Model(setup=setup, parameters=fitted, needs=needs)
     return Problem(model=model, measured=table.measured, errors=table.errors)
 
 

@@ -10,7 +10,6 @@ import attrs
 import numpy as np
 
 from contactlab.numeric.types import Array, Real
-from contactlab_fit.model import Model
 from contactlab_fit.problem import Problem, minimum
 
 #: Share of each tail beyond a 95 % interval.
@@ -162,7 +161,8 @@ def _with(
         return at
     model = problem.model
     rest = [k for k in range(len(values)) if k != place]
-    fixed = Model(
+    fixed = attrs.evolve(
+        model,
         setup=model.parameters[place].applied(model.setup, x),
         parameters=tuple(model.parameters[k] for k in rest),
     )

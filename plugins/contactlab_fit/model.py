@@ -11,7 +11,7 @@ import numpy as np
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array
-from contactlab.outcome.columns import QUANTITIES
+from contactlab.outcome.columns import QUANTITIES, Column
 from contactlab.outcome.result import ImpactResult
 from contactlab.registry.law_words import in_words
 from contactlab.runs.simulation import Simulation
@@ -35,14 +35,17 @@ TABULATED = "exact elastic law (tabulated rebound)"
 DIGITS = 7
 #: The quantity that takes the course of the normal motion, not its restitution alone.
 CONTACT_TIME = "contact_time"
+#: What a column may need and no table has: impacts are followed for it.
+FOLLOWED = {"motion", "history"}
 
 
 @attrs.frozen(kw_only=True, eq=False)
 class Model:
-    """A scene, laws, and the parameters to fit."""
+    """A scene, laws, and the parameters to fit; ``needs`` are those of the measured columns."""
 
     setup: Setup
     parameters: tuple[Parameter, ...]
+    needs: frozenset[str] = frozenset()
     tabled: bool = attrs.field(init=False)
     _repeated: dict[int, Scene] = attrs.field(factory=dict, init=False, repr=False)
     _known: dict[bytes, dict[str, Array]] = attrs.field(factory=dict, init=False, repr=False)
@@ -50,7 +53,7 @@ class Model:
     @tabled.default
     def _(self) -> bool:
         """Return whether the table of rebounds holds at all values of the parameters."""
-        if self.setup.scene.inverse_mass is not None:
+        if self.setup.scene.inverse_mass is not None or self.needs & FOLLOWED:
             return False
         kinds = {getattr(parameter, "kind", "normal") for parameter in self.parameters}
         return kinds <= {"normal"} and tabulated.holds(self.setup.simulation)
@@ -116,7 +119,8 @@ class Model:
             result = self._impacts(setup)
         else:
             result = tabulated.rebounds(setup.scene, restitution)
-        return {name: QUANTITIES[name].of(result).reshape(many, count) for name in quantities}
+        read = {name: _read(QUANTITIES[name], result, setup.simulation) for name in quantities}
+        return {name: values.reshape(many, count) for name, values in read.items()}
 
     def at_once(self, quantities: Sequence[str]) -> bool:
         """Return whether any points run in one batch: no option of a law differs in them."""
@@ -125,7 +129,7 @@ class Model:
 
     def _common_restitution(self, quantities: Sequence[str]) -> Parameter | None:
         """Return the restitution if each impact of a batch may have its own; else None."""
-        if not self.tabled or CONTACT_TIME in quantities:
+        if not self.tabled or CONTACT_TIME in quantities or self.needs:
             return None
         return next((p for p in self.parameters if p.name == f"normal.{RESTITUTION}"), None)
 
@@ -169,6 +173,15 @@ class Model:
         if self.tabled:
             return f"{in_words(simulation.normal)}, partial slip (tabulated rebound)"
         return ", ".join(map(in_words, simulation.laws))
+
+
+def _read(column: Column, result: ImpactResult, simulation: Simulation | None) -> Array:
+    """Return the numbers of a column; impacts are run again, each alone, if it needs a history."""
+    if "history" not in column.needs:
+        return column.of(result)
+    laws, scene = simulation or Simulation(), result.scene
+    impacts = (scene.take(place) for place in range(scene.shape[0]))
+    return np.array([float(column.of(laws.run(one, history=True).check())) for one in impacts])
 
 
 def opened(scene: object, given: Mapping[str, Array]) -> Scene | SceneFile:

@@ -15,7 +15,6 @@ from contactlab.registry.registry import REGISTRY
 from contactlab_fit import tabulated
 from contactlab_fit.csv_columns import MEASURABLE
 from contactlab_fit.f_test import SPARE, chance_of
-from contactlab_fit.model import Model
 from contactlab_fit.parameters import (
     RESTITUTION,
     SHEAR_LOSS,
@@ -114,7 +113,7 @@ def _elastic(problem: Problem) -> Problem:
     names = ["friction_coefficient"]
     names += [p.name for p in model.parameters if p.name == "stiffness_ratio"]
     parameters = tuple(find_parameter(name, setup) for name in names)
-    return attrs.evolve(problem, model=Model(setup=setup, parameters=parameters))
+    return attrs.evolve(problem, model=attrs.evolve(model, setup=setup, parameters=parameters))
 
 
 def _better(problem: Problem, values: Array, candidates: Iterable[Reading]) -> list[Read]:
@@ -317,7 +316,8 @@ def _of_the_batch(problem: Problem, values: Array) -> tuple[Problem, Array]:
         else:
             setup = parameter.applied(setup, float(values[place]))
     parameters = tuple(model.parameters[place] for place in kept)
-    return attrs.evolve(problem, model=Model(setup=setup, parameters=parameters)), values[kept]
+    fixed = attrs.evolve(model, setup=setup, parameters=parameters)
+    return attrs.evolve(problem, model=fixed), values[kept]
 
 
 def _of_law(law: str) -> str:
@@ -345,7 +345,8 @@ def _free_restitution(problem: Problem, values: Array) -> Wider:
     if f"normal.{RESTITUTION}" in names or not known:
         return None, values, words
     wider = setup._replace(simulation=laws)
-    model = Model(setup=wider, parameters=(*parameters, find_parameter(RESTITUTION, wider)))
+    parameters = (*parameters, find_parameter(RESTITUTION, wider))
+    model = attrs.evolve(problem.model, setup=wider, parameters=parameters)
     return attrs.evolve(problem, model=model), np.append(values, SOME_LOSS), words
 
 
@@ -392,7 +393,9 @@ def _elasticity(problem: Problem, values: Array, reaches: Array) -> list[str]:
     sentence: list[str] = []
     for restitution in LOSSES:
         laws = more.applied(wider.model.setup, restitution)
-        fixed = attrs.evolve(problem, model=Model(setup=laws, parameters=tuple(parameters)))
+        fixed = attrs.evolve(
+            problem, model=attrs.evolve(problem.model, setup=laws, parameters=tuple(parameters))
+        )
         best = solve_problem(fixed, values)
         if _score(fixed, best, problem) > limit:
             break

@@ -42,8 +42,10 @@ HEAVY = ("Viscoelastic", "Brush", "Bristle", "Leapfrog", "OneSpring")
 WITH_CODE = [page for page in guide_pages() if BLOCKS.search(text(page))]
 #: Pages whose code takes longer than a third of a second.
 LONG_CODE = ("many-machines", "any-two-bodies", "beyond-the-paper")
-#: Extras that the code of a page needs.
+#: Extras that the code of a page needs, or folders of plugins.
 EXTRAS = {
+    "beyond-the-paper": ("contactlab_halfspace",),
+    "units-and-signs": ("contactlab_halfspace",),
     "for-a-paper": ("pandas",),
     "getting-started": ("xarray",),
     "many-machines": ("xarray", "dask"),

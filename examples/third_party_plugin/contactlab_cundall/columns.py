@@ -23,5 +23,6 @@ def contactlab_columns():
             "K",
             value=flash_temperature,
             meaning="friction work over the heat capacity of a hemisphere on the contact",
+            needs=("sizes", "motion"),
         )
     ]

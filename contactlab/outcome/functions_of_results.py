@@ -1,0 +1,47 @@
+"""The values of a plug-in's column, NaN and told where its function fails."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from contactlab.registration.hooks import short
+from contactlab.registration.installed import PluginWarning
+
+HISTORY = "history"
+
+
+def values_of(name: str, value: Callable[[Any], Any], needs: Sequence[str], result: Any) -> Any:
+    """Return the values of a function of a result, NaN and a warning for impacts where it fails.
+
+    A function that needs a history has no value without.
+    """
+    if HISTORY in needs and not result.history:
+        return None
+    said: list[str] = []
+    values = _each(value, result, said)
+    if said:
+        many = f"{len(said)} of {math.prod(result.scene.shape)} impacts"
+        text = f"column {name}: NaN for {many}, its function failed: {said[0]}"
+        warnings.warn(text, PluginWarning, stacklevel=4)
+    return values
+
+
+def _each(value: Callable[[Any], Any], result: Any, said: list[str]) -> Any:
+    """Return the values of a function; where it fails for a batch it is asked for each impact."""
+    shape = result.scene.shape
+    try:
+        return value(result)
+    except Exception as error:
+        if not shape:
+            said.append(short(error))
+            return np.nan
+    numbers = np.full(shape, np.nan)
+    for place in range(shape[0]):
+        one = _each(value, result[place], said)
+        numbers[place] = np.nan if one is None else one
+    return numbers
