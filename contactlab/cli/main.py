@@ -103,7 +103,8 @@ def _execute(words: list[str], parsed: argparse.Namespace) -> int:
 
 @contextlib.contextmanager
 def _print_warnings() -> Iterator[None]:
-    """Print warnings about plug-ins on one line, as errors."""
+    """Print each warning about plug-ins once, on one line, as errors."""
+    said: set[str] = set()
     with warnings.catch_warnings():
         show_other = warnings.showwarning
 
@@ -116,7 +117,9 @@ def _print_warnings() -> Iterator[None]:
             line: str | None = None,
         ) -> None:
             if issubclass(category, PluginWarning):
-                print(f"contactlab: warning: {message}", file=sys.stderr)
+                if str(message) not in said:
+                    print(f"contactlab: warning: {message}", file=sys.stderr)
+                said.add(str(message))
             else:
                 show_other(message, category, filename, lineno, file, line)
 

@@ -133,3 +133,44 @@ def test_unknown_name(run):
     assert "did you mean 'tangential.annulus'" in ran.err
     assert run("plugins").status == 2
     assert run("plugins", "remove").status == 2
+
+
+FAILS = """
+import contactlab
+from contactlab.plugin import Column
+
+def odd(result):
+    return 1.0 / (float(result.psi1) - 1.2)
+
+@contactlab.hookimpl
+def contactlab_columns():
+    return [Column("odd", "1", value=odd, needs={needs})]
+"""
+
+
+def test_a_column_that_fails_for_an_impact_is_told_once_and_the_others_stand(
+    run, install, tmp_path
+):
+    install("lab", "lab_columns", FAILS.format(needs=()), "columns.lab")
+    out = tmp_path / "swept.csv"
+    ran = run("sweep", "--psi1", "0.2:2.2:3", "--chi", 1.44, "--out", out)
+    assert ran.status == 0
+    assert ran.err.splitlines() == [
+        "contactlab: warning: column odd: NaN for 1 of 3 impacts, its function failed: "
+        "ZeroDivisionError: float division by zero"
+    ]
+    heading, *rows = (line.split(",") for line in out.read_text("utf-8").splitlines())
+    values = [float(row[heading.index("odd (1)")] or "nan") for row in rows]
+    assert values == pytest.approx([-1.0, float("nan"), 1.0], nan_ok=True)
+
+
+@pytest.mark.parametrize(
+    ("needs", "told"),
+    [((), "ZeroDivisionError"), (("sizez",), "needs 'sizez', which is none of sizes, motion")],
+)
+def test_the_check_of_a_column_tells_what_is_wrong(run, install, needs, told):
+    source = FAILS.replace("1.2", "0.5").format(needs=needs)  # psi1 of an impact of the check
+    install("lab", "lab_columns", source, "columns.lab")
+    ran = run("plugins", "check", "columns.lab")
+    assert ran.status == 1
+    assert told in ran.out
