@@ -12,10 +12,13 @@ from contactlab.contracts import AllStepsResponse, NormalMotion, Steps
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array, Real
 from contactlab_laws.jaeger.step import ROUNDING
-from contactlab_laws.springs import viscous
-from contactlab_laws.springs.turning import Vectors
-from contactlab_laws.springs.viscous import TINY
+from contactlab_laws.springs import kelvin_voigt, viscous
+from contactlab_laws.springs.directions import Line, relax_limit
+from contactlab_laws.springs.slip_velocity import Slip, share_of_edge, solve_slip
+from contactlab_laws.springs.turning import TINY, Vectors
 
+#: Rounding errors up to which impacts of a batch count as alike: their contacts come of a table.
+ALIKE = 1e3
 #: Most springs times steps, or impacts times steps, of a run; longer ones go step by step.
 LARGEST_RUN = 4_000_000
 
@@ -68,11 +71,11 @@ def advance_all(
             return table.reshape(count, 1)
         return np.broadcast_to(table, (count, *shape)).reshape(wide)
 
-    contact = viscous.told(state, steps.contact, (steps.approach, steps.rate), rows)
+    contact = viscous.read_contact(state, steps.contact, (steps.approach, steps.rate), rows)
     drift, kick, acting = (rows(each) for each in (steps.drift, steps.kick, steps.friction_load))
     time = contact.time
-    middle = np.concatenate((time[:1], 0.5 * (time[1:] + time[:-1])))
-    decay = drift / np.maximum(middle, TINY)
+    earlier = np.concatenate((0.0 * time[:1], time[:-1]))
+    decay = drift / np.maximum(kelvin_voigt.average_times(earlier, time), TINY)
     columns = contact.edge, contact.excess, decay
     if not all(map(_alike, columns)):
         return None
@@ -85,23 +88,23 @@ def advance_all(
 def _alike(rows: Array) -> bool:
     """Return whether all impacts agree, to rounding, in each row."""
     first = rows[:, :1]
-    near = np.abs(rows - first) <= viscous.ALIKE * ROUNDING * np.abs(rows).max()
+    near = np.abs(rows - first) <= ALIKE * ROUNDING * np.abs(rows).max()
     return rows.shape[1] == 1 or bool(near.all())
 
 
 def _grid(springs: int, edge: Array, excess: Array, decay: Array) -> _Grid | None:
     """Return the springs of every step; None if springs leave and come again."""
-    squares = np.square((np.arange(springs) + 0.5) / springs)
+    squares = np.square((np.arange(springs) + kelvin_voigt.MIDDLE) / springs)
     edges, excesses = edge[:, None], excess[:, None]
-    most = viscous.profile(squares, edges, excesses)
+    most = kelvin_voigt.limit_springs(squares, edges, excesses)
     least = np.concatenate((np.zeros((1, springs)), most[:-1]))
     touching = (most > 0.0).sum(axis=1)
     top = int(touching.argmax())
     if (np.diff(touching[: top + 1]) < 0).any() or (np.diff(touching[top:]) > 0).any():
         return None
     born = np.concatenate(([[0.0]], edges[:-1])), np.concatenate(([[0.0]], excesses[:-1]))
-    part, first = viscous.enter_step(squares, least, born, edges, excesses)
-    gone, span = viscous.relaxing(first, most, part * decay[:, None])
+    part, first = kelvin_voigt.enter_springs(squares, least, born, edges, excesses)
+    gone, span = relax_limit(first, most, part * decay[:, None])
     total = most.sum(axis=1)
     earlier = np.concatenate(([0], touching[:-1]))
     return _Grid(
@@ -136,7 +139,7 @@ def _march(
     mass = np.reshape(np.asarray(scene.pair.tangential_mass, dtype=float), (1, -1))
     velocity = np.broadcast_to(np.asarray(scene.slip_velocity, dtype=float), shape).reshape(-1)
     acting, limit = friction * acting, friction * rows(steps.contact.friction_load)
-    acted = viscous.share_under_force(kick, drift)
+    acted = viscous.divide_drift(kick, drift)
     mobility, drift, lead = 0.5 * kick / mass, drift * scale, time * scale
     springs = len(state.memory.deflection)
     w, moved, traction, before = np.zeros((4, springs, items))
@@ -164,13 +167,10 @@ def _march(
         energy = np.einsum("ij,ij->j", before[:both], step[:both])
         energy *= (1.0 - acted[k]) * weight
         slip = slip - mobility[k] * force
-        drive = viscous.Drive(
-            move, drift[k], acted[k], slip, force, mobility[k], limit[k], acting[k], scale
-        )
-        most = grid.most[k, :now, None]
-        share, _, _ = viscous.solve_slip(held, most, lead[k], drive, grid.per_total[k], out=f)
+        most, found = grid.most[k, :now, None], Slip(slip, force, mobility[k], acting[k])
+        share, _, _ = solve_slip(held, most, lead[k], found, grid.per_total[k], Line(), out=f)
         if grid.per_total[k] == 0.0:
-            share = viscous.alone(lead[k] * drive.slip, grid.excess[k], last_share)
+            share = share_of_edge(lead[k] * slip, grid.excess[k], last_share)
         last_share = share
         weight = limit[k] * grid.per_total[k]
         total = np.einsum("ij,ij->j", f, step)

@@ -1,0 +1,112 @@
+"""Slip along one line, or in the tangent plane: what viscous springs do in the one or the other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.numeric.arrays import shape_as
+from contactlab.numeric.types import Array, Real
+from contactlab_laws.springs.turning import TINY, Vectors, beyond, drag_springs, relax, stretch
+
+
+class Line(NamedTuple):
+    """Slip along one line: displacements and forces are real numbers."""
+
+    def of(self, _: NDArray[np.intp]) -> Line:
+        """Return the direction of some impacts."""
+        return self
+
+    def rows(self, value: Real, row: Callable[[Real], Array]) -> Vectors:
+        """Return numbers of a batch in the arrangement of ``row``."""
+        return row(value)
+
+    def shaped(self, force: Vectors, shape: tuple[int, ...]) -> Any:
+        """Return forces in the shape of the batch."""
+        return shape_as(force, shape)
+
+    def stretch(self, move: Vectors) -> Vectors:
+        """Return displacements times the stiffness over that along the first axis."""
+        return move
+
+    def relax(self, force: Vectors) -> Vectors:
+        """Return the displacements that ``stretch`` made forces of."""
+        return force
+
+    def product(self, first: Vectors, second: Vectors) -> Any:
+        """Return force times displacement."""
+        return first * second
+
+    def cut(self, force: Vectors, limit: Array) -> Vectors:
+        """Cut forces to their limit, in place, and return them."""
+        np.minimum(force, limit, out=force)
+        return np.maximum(force, -limit, out=force)
+
+    def drag(
+        self, w: Vectors, move: Vectors, _: Vectors, first: Array, last: Array, decay: Array
+    ) -> Vectors:
+        """Return w1 = clip(w0 + v h, w0 E - q, w0 E + q), theory §15, E = exp(-``decay``)."""
+        gone, q = relax_limit(first, last, decay)
+        free = w * (1.0 - gone)
+        return np.asarray(np.minimum(np.maximum(w + move, free - q), free + q))
+
+
+class Plane(NamedTuple):
+    """Slip in the tangent plane: displacements and forces are complex numbers.
+
+    ``cross`` is the stiffness along the second axis over that along the first, shape (items,); None
+    where both are equal.
+    """
+
+    cross: Array | None
+
+    def of(self, where: NDArray[np.intp]) -> Plane:
+        """Return the direction of some impacts."""
+        return self if self.cross is None else Plane(self.cross[where])
+
+    def rows(self, value: Real, row: Callable[[Real], Array]) -> Vectors:
+        """Return vectors of a batch, shape (..., 2), in the arrangement of ``row``."""
+        value = np.asarray(value)
+        return row(value[..., 0]) + 1j * row(value[..., 1])
+
+    def shaped(self, force: Vectors, shape: tuple[int, ...]) -> Any:
+        """Return forces in the shape of the batch, (..., 2)."""
+        return np.stack((force.real, force.imag), axis=-1).reshape(*shape, 2)
+
+    def stretch(self, move: Vectors) -> Vectors:
+        """Return displacements times the stiffness over that along the first axis."""
+        return stretch(move, self.cross)
+
+    def relax(self, force: Vectors) -> Vectors:
+        """Return the displacements that ``stretch`` made forces of."""
+        return relax(force, self.cross)
+
+    def product(self, first: Vectors, second: Vectors) -> Any:
+        """Return the inner products of forces and displacements."""
+        return (np.conj(first) * second).real
+
+    def cut(self, force: Vectors, limit: Array) -> Vectors:
+        """Cut forces to their limit, in place, and return them."""
+        return np.subtract(force, beyond(force, limit, self.cross), out=force)
+
+    def drag(
+        self, w: Vectors, move: Vectors, pull: Vectors, first: Array, last: Array, decay: Array
+    ) -> Vectors:
+        """Return w of springs that stick or slip along their force, ``pull`` being A v."""
+        return drag_springs(w, move, pull, first, last, decay, self.cross)
+
+
+#: Where springs move.
+Direction: TypeAlias = Line | Plane
+
+
+def relax_limit(first: Array, last: Array, decay: Array) -> tuple[Array, Array]:
+    """Return 1 - E and q of theory §15: the share of w that relaxes, and what may take its place.
+
+    The limit goes evenly from ``first`` to ``last``; ``decay`` is the time of the step over A.
+    """
+    gone = -np.expm1(-decay)
+    return gone, first * gone + (last - first) * (1.0 - gone / np.maximum(decay, TINY))

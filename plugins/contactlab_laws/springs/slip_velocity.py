@@ -1,0 +1,119 @@
+"""The force f1 = w1 + A v1 of viscous springs at the slip velocity to which it leads (§15)."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlab.numeric.types import Array, Real
+from contactlab_laws.springs.directions import Direction
+from contactlab_laws.springs.turning import Vectors
+
+#: Turns of Newton's method for the slip velocity where the force acts.
+TURNS = 3
+#: Feedback of the force on the slip velocity in a step, over the force, from which they are taken.
+STIFF = 0.05
+
+
+class Slip(NamedTuple):
+    """The slip velocity where the force of a step acts, each of shape (items,).
+
+    Attributes
+    ----------
+    velocity : array
+        That under the force of the last step, in m/s.
+    force : array
+        The force of the last step, in N.
+    mobility : array
+        What a force takes off the velocity, in m/(s N).
+    acting : array
+        Coulomb's limit of the force, in N.
+    """
+
+    velocity: Vectors
+    force: Vectors
+    mobility: Array
+    acting: Array
+
+    def of(self, where: NDArray[np.intp]) -> Slip:
+        """Return that of some impacts."""
+        shape = np.shape(self.velocity)
+        few: Any = (np.broadcast_to(each, shape)[where] for each in self)
+        return Slip(*few)
+
+
+def solve_slip(
+    w: Vectors,
+    limit: Array,
+    lead: Array,
+    slip: Slip,
+    per_total: Real,
+    direction: Direction,
+    *,
+    out: Vectors,
+) -> tuple[Vectors, Vectors, Vectors]:
+    """Return share of Coulomb's limit, tractions, and the slip velocity that they belong to.
+
+    From the force of the last step one turn is of second order; where the force moves the slip
+    velocity much, as by a long relaxation in a light body, Newton's method is. ``out`` takes the
+    tractions.
+    """
+    traction = np.add(w, lead * direction.stretch(slip.velocity), out=out)
+    direction.cut(traction, limit)
+    share = np.ones(len(traction)).dot(traction) * per_total
+    velocity = np.broadcast_to(slip.velocity, share.shape)
+    feedback = lead * slip.mobility * slip.acting * per_total  # of one spring that sticks
+    hard = np.flatnonzero(feedback * np.count_nonzero(limit, axis=0) > STIFF)
+    if not hard.size:
+        return share, traction, velocity
+
+    columns = (np.broadcast_to(each, share.shape)[hard] for each in (lead, feedback, per_total))
+    few = Newton(
+        w[:, hard],
+        limit[:, hard if limit.shape[1] > 1 else 0, ...].reshape(len(limit), -1),
+        np.array([*columns]),
+        slip.of(hard),
+        direction.of(hard),
+    )
+    velocity = velocity.copy()
+    share[hard], traction[:, hard], velocity[hard] = few.solve()
+    return share, traction, velocity
+
+
+class Newton(NamedTuple):
+    """Impacts whose force moves their slip velocity much in a step, arguments of ``solve_slip``.
+
+    ``columns`` are ``lead``, what a spring that sticks feeds back, and ``per_total``.
+    """
+
+    w: Vectors
+    limit: Array
+    columns: Array
+    slip: Slip
+    direction: Direction
+
+    def solve(self) -> tuple[Vectors, Vectors, Vectors]:
+        """Return share, tractions and slip velocity by Newton's method."""
+        lead, feedback, per_total = self.columns
+        slip, direction, acting = self.slip, self.direction, self.slip.acting
+        share = np.divide(slip.force, acting, out=0.0 * slip.force, where=acting > 0.0)
+        push, after = slip.mobility * acting, slip.velocity
+        for _ in range(TURNS):
+            velocity = after
+            traction = self.w + lead * direction.stretch(velocity)
+            sticks = (np.abs(traction) < self.limit).sum(axis=0)
+            direction.cut(traction, self.limit)
+            off = traction.sum(axis=0) * per_total - share
+            found = share + off / (1.0 + feedback * sticks)
+            share, after = found, velocity + (share - found) * push
+        return share, traction, velocity
+
+
+def share_of_edge(pull: Vectors, excess: Real, share: Vectors) -> Vectors:
+    """Return the share of a contact that is smaller than a cell: of its edge, or as it was."""
+    pressed = excess > 0.0
+    ratio = pull / np.where(pressed, excess, 1.0)
+    ratio = ratio / np.maximum(np.abs(ratio), 1.0)
+    return np.asarray(np.where(pressed, ratio, share))
