@@ -117,10 +117,10 @@ def execute(arguments: argparse.Namespace) -> int:
             fitted = fit(impacts, path, progress=progress, **reported)
         with shared.progress(arguments.progress, "laws") as progress:
             for done, name in enumerate(others, start=1):
-                if progress is not None:
-                    progress(done, len(simulations))
                 law = {name: simulations[name]}
                 ranked += rank(impacts, path, law, parameters=own[name], **selection)
+                if progress is not None:
+                    progress(done, len(others))
         if samples:
             with shared.progress(arguments.progress, "bootstrap") as progress:
                 options: dict[str, Any] = {"bootstrap": samples, "progress": progress}

@@ -55,29 +55,37 @@ def test_short_work_says_nothing(begin, terminal):
 
 
 @pytest.mark.parametrize(
-    ("words", "what"),
+    ("words", "what", "items"),
     of_commands(
-        ("sweep {short} --out o.csv", "impacts"),
-        ("compare {short}", "runs"),
-        ("stability --quick --law tangential.coulomb", "stability"),
-        ("bench --quick --law tangential.coulomb", "bench"),
+        ("sweep {short} --out o.csv", "impacts", 3),
+        ("compare {short}", "runs", 2),
+        ("fit {impacts} {ball} --laws exact,coulomb,walton --bootstrap 0", "laws", 2),
+        ("bench --quick --law tangential.coulomb", "bench", 1),
+        ("stability --quick --law tangential.coulomb", "stability", None),
         *longer(
-            ("figures --out . --only 2", "figures"),
-            ("fit {impacts} {ball} --laws coulomb,mindlin_cap", "laws"),
-            ("validate", "checks"),
+            ("figures --out . --only 2", "figures", 1),
+            ("validate", "checks", None),
         ),
     ),
 )
 def test_commands_tell_what_is_done(
-    run, short_sweep, impacts, ball, tmp_path, monkeypatch, words, what
+    run, short_sweep, impacts, ball, tmp_path, monkeypatch, words, what, items
 ):
-    """By a clock that goes on by half a minute whenever somebody looks at it."""
+    """By a clock that goes on by half a minute whenever somebody looks at it.
+
+    Each line counts one item more, up to the last of those that were asked for.
+    """
     clock = itertools.count(0, 30)
     monkeypatch.setattr(module.time, "perf_counter", lambda: next(clock))
     monkeypatch.chdir(tmp_path)
     ran = run(*words.format(short=short_sweep, impacts=impacts, ball=ball).split(), "--progress")
     assert ran.status == 0
-    assert re.search(rf"^{what}: \d+ % \(\d+/\d+\), ", ran.err, flags=re.MULTILINE)
+    line = rf"^{what}: (\d+) % \((\d+)/(\d+)\), "
+    lines = [[*map(int, numbers)] for numbers in re.findall(line, ran.err, flags=re.MULTILINE)]
+    shares, counts, (total, *_) = zip(*lines, strict=True)
+    assert list(counts) == [*range(counts[0], total), total]
+    assert shares == tuple(100 * count // total for count in counts)
+    assert items is None or total == items
 
 
 def test_nothing_is_shown_unasked_elsewhere_and_where_it_is_not_wanted(begin):
