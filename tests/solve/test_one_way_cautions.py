@@ -23,7 +23,6 @@ from tests.solve.any_scene import (
     NAMES,
     OFF_CENTRE,
     ONES,
-    every_scene,
     meeting,
 )
 
@@ -106,11 +105,3 @@ def test_cautions_of_a_restitution(met, restitution):
     assert told is not slides
     assert not any("default" in text for text in made.cautions)
     assert not any("default" in str(clause) for clause in made.result.plan.computed)
-
-
-@every_scene
-@pytest.mark.slow
-def test_a_restitution_that_is_given_is_not_by_default(scene):
-    given = Simulation(normal=create("normal.tsuji", restitution=0.9)).run(scene)
-    assert "by default" not in str(given)
-    assert "by default" in str(Simulation(normal="tsuji").run(scene))
