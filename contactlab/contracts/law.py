@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from abc import ABC
-from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, ClassVar
 
@@ -69,11 +68,12 @@ class Law(ABC):
     #: Words that the law claims.
     offers: ClassVar[frozenset[str]] = frozenset()
     #: Words of the normal law, and classes of the other laws, that it runs beside.
-    needs: ClassVar[frozenset[str | type]] = frozenset()
+    #: ``Any``, as a checker would refuse ``needs: ClassVar = frozenset({"radius"})`` in a law.
+    needs: ClassVar[Any] = frozenset()
     #: Parameter that makes answers finer.
     resolution: ClassVar[str | None] = None
     #: Checks that it fails by its nature, with the reasons.
-    expected_failures: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    expected_failures: ClassVar[Any] = MappingProxyType({})
 
     def __init_subclass__(cls, *, kind: str | None = None, **options: Any) -> None:
         """Set the kind of the laws of a contract."""

@@ -4,7 +4,7 @@ from contactlab.plugin import Entry, hookimpl
 
 
 @hookimpl
-def contactlab_materials():
+def contactlab_materials() -> list[Entry]:
     """Return the material, in SI units, with the source of each number."""
     return [
         Entry(

@@ -1,5 +1,6 @@
 """Cases for ``contactlab stability``; a check and a measured set for ``contactlab validate``."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 from contactlab import Scene, Simulation
@@ -7,12 +8,12 @@ from contactlab.plugin import Case, Finding, Source, hookimpl
 
 
 @hookimpl
-def contactlab_cases():
+def contactlab_cases() -> list[Case]:
     """Return a scene that every law is to survive, by family and label."""
     return [Case("heavy", "chi=500", lambda: Scene.nondimensional(psi1=2.0, chi=500.0))]
 
 
-def gross_slip():
+def gross_slip() -> Finding:
     """Return the distance of a grazing impact from psi1 - 4 chi."""
     psi1, chi = 50.0, 1.44
     psi2 = Simulation().run(Scene.nondimensional(psi1=psi1, chi=chi)).psi2
@@ -21,13 +22,13 @@ def gross_slip():
 
 
 @hookimpl
-def contactlab_checks():
+def contactlab_checks() -> list[Callable[[], Finding]]:
     """Return the functions that ``contactlab validate`` calls."""
     return [gross_slip]
 
 
 @hookimpl
-def contactlab_measurements():
+def contactlab_measurements() -> list[Source]:
     """Return the set: a scene file with [[measured]] tables beside this module."""
     path = Path(__file__).with_name("drops.toml")
     return [Source(name="drops", kind="experiment", path=path)]
