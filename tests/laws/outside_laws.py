@@ -211,7 +211,6 @@ class Heun(Integrator):
     resolution: ClassVar[str] = "steps"
     needs: ClassVar[frozenset[type]] = frozenset({SteppedTangentialLaw})
     expected_failures: ClassVar[dict] = {
-        "order": "a memory that jumps between stages leaves an error of first order",
         "faults_named": "what a law raises it leaves to the simulation, which knows no culprit",
     }
 
