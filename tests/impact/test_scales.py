@@ -16,6 +16,7 @@ ALL = {
     "annulus": {"annuli": 12},
     "mindlin_cap": {},
     "mindlin_deresiewicz": {},
+    "thornton_yin": {},
     "linear_spring": {},
     "stronge": {},
     "walton": {},

@@ -166,7 +166,9 @@ def test_tsujis_law_names_the_law_that_is_furthest():
 
 
 @pytest.mark.parametrize("name", ["tsuji", "hunt_crossley", "linear", "kuwabara_kono", "jkr"])
-@pytest.mark.parametrize("tangential", [ELASTIC, "annulus", "mindlin_deresiewicz"], ids=str)
+@pytest.mark.parametrize(
+    "tangential", [ELASTIC, "annulus", "mindlin_deresiewicz", "thornton_yin"], ids=str
+)
 def test_an_assumed_hemisphere_is_a_caution(name, tangential):
     law = contactlab.create(f"normal.{name}")
     assert "hemispherical pressure" in str(

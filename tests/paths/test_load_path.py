@@ -36,7 +36,7 @@ def share(reach):
     return 1.0 - (1.0 - np.minimum(reach, 1.0)) ** 1.5
 
 
-@pytest.mark.parametrize("law", [springs(200), "annulus", "mindlin_deresiewicz"])
+@pytest.mark.parametrize("law", [springs(200), "annulus", "mindlin_deresiewicz", "thornton_yin"])
 def test_cattaneo(law):
     reach = np.linspace(0.0, 1.3, 131)
     path = load_path(SCENE, np.full(131, DEEP), reach * FULL, tangential=law).check()
@@ -256,11 +256,12 @@ def test_a_path_says_where_a_law_does_not_hold():
     held = np.concatenate((0.0 * press, np.linspace(0.0, 2.2e-7, 100), np.full(3000, 2.2e-7)))
     paths = {
         name: load_path(scene, load, held, tangential=name)
-        for name in ("springs", "mindlin_deresiewicz", "mindlin_cap")
+        for name in ("springs", "mindlin_deresiewicz", "thornton_yin", "mindlin_cap")
     }
     last = {name: path.friction_force[-1] for name, path in paths.items()}
-    assert not paths["springs"].cautions
-    for name in ("mindlin_deresiewicz", "mindlin_cap"):
+    assert last["mindlin_deresiewicz"] == pytest.approx(last["springs"], rel=2e-3)
+    assert not (*paths["springs"].cautions, *paths["mindlin_deresiewicz"].cautions)
+    for name in ("thornton_yin", "mindlin_cap"):
         assert abs(last[name] / last["springs"] - 1.0) > 0.1
         assert "a held displacement" in str(paths[name])
         with pytest.raises(ImpactError, match="caution"):

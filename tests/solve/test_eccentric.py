@@ -609,7 +609,9 @@ def test_a_stopped_sweep_keeps_what_is_done_and_resumes_on_other_workers(tmp_pat
         RIGID.sweep(random_planar(2500, 16), keep=folder)
 
 
-@pytest.mark.parametrize("name", ["linear_spring", "mindlin_cap", "mindlin_deresiewicz"])
+@pytest.mark.parametrize(
+    "name", ["linear_spring", "mindlin_cap", "mindlin_deresiewicz", "thornton_yin"]
+)
 def test_laws_that_need_no_future_run_in_the_plane(name):
     result = Simulation(tangential=name).run(rod(30.0, slip=2.0).scene).check()
     throughout = EXACT.run(rod(-30.0, slip=0.5).scene)

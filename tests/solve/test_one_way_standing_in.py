@@ -54,6 +54,7 @@ IN_SPACE_ALONE = [
     {"integrator": "events"},
     {"tangential": "fronts"},
     {"tangential": "mindlin_deresiewicz"},
+    {"tangential": "thornton_yin"},
 ]
 
 

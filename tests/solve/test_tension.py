@@ -14,6 +14,7 @@ LAWS = {
     "annulus": {"annuli": 20},
     "mindlin_cap": {},
     "mindlin_deresiewicz": {},
+    "thornton_yin": {},
     "linear_spring": {"damping": 0.1},
     "coulomb": {},
 }

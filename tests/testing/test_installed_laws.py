@@ -48,7 +48,7 @@ LONGER = {
     "Viscoelastic": "ends_unloaded rebounds",
     "MindlinCap": "impact_odd impact_units vectors_on_a_line vectors_rotate whole_impact_form "
     "whole_impacts",
-    "MindlinDeresiewicz": "begin_is_start impact_bounds impact_odd impact_units unlike_bodies",
+    "ThorntonYin": "begin_is_start impact_bounds impact_odd impact_units unlike_bodies",
     "Coulomb": "whole_impact_form",
     "Frictionless": "whole_impact_form",
     "PaperSteps": "books_by impact_batch impact_odd spin unlike_bodies",

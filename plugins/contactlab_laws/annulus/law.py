@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from contactlab.contracts import (
     AllStepsResponse,
+    AllStepsTangentialLaw,
     Increment,
     NormalContact,
     NormalMotion,
@@ -36,7 +37,7 @@ class State(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class Annulus(PartialSlip):
+class Annulus(PartialSlip, AllStepsTangentialLaw):
     """Mindlin's partial slip by the paper's concentric annuli.
 
     Each step solves (33) where the surfaces stick and (34) where they slip, tests the

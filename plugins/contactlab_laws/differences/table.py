@@ -74,8 +74,8 @@ def rows() -> dict[str, tuple[Row, ...]]:
     return {law: tuple(sorted(each)) for law, each in table.items()}
 
 
-def springs(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-    """Return the caution that separately limited springs are not Coulomb's law, with its size."""
+def springs(scene: Scene, normal: NormalMotion, *, part: str = "spring") -> tuple[str, ...]:
+    """Return the caution that separately limited parts are not Coulomb's law, with its size."""
     if "elastic_hertz" in normal.claims or not kinetics.rubs(scene):
         return ()
     own, e, chi = rows().get(key(normal.law)), _restitution(normal), np.asarray(scene.chi)
@@ -87,7 +87,7 @@ def springs(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
             return ()
         told = f"psi2 is off by up to {_above(size, AROUND)}"
     return (
-        "each spring is limited separately, which is not Coulomb's law at every point under this "
+        f"each {part} is limited separately, which is not Coulomb's law at every point under this "
         f"normal law: {told} (model, not numerical error); tangential.annulus has the right limit",
     )
 

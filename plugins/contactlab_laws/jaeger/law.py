@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from contactlab.contracts import (
     AllStepsResponse,
+    AllStepsTangentialLaw,
     Increment,
     NormalContact,
     NormalMotion,
@@ -37,7 +38,7 @@ class State(NamedTuple):
     memory: step.SpringState
 
 
-class ProfileLaw(PartialSlip):
+class ProfileLaw(PartialSlip, AllStepsTangentialLaw):
     """A law of independent springs; a subclass gives their number."""
 
     expected_failures: ClassVar[Mapping[str, str]] = {

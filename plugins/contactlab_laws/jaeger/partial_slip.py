@@ -7,7 +7,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from contactlab.contracts import AllStepsTangentialLaw, NormalMotion, WholeImpact
+from contactlab.contracts import NormalMotion, SteppedTangentialLaw, WholeImpact
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
 from contactlab_laws.jaeger.gross_slip import gross_slip
@@ -68,7 +68,7 @@ class Scales(NamedTuple):
         return metres
 
 
-class PartialSlip(AllStepsTangentialLaw):
+class PartialSlip(SteppedTangentialLaw):
     """Base of laws that divide the contact into parts, each of them stuck or slipping."""
 
     offers: ClassVar[frozenset[str]] = frozenset({"partial_slip", "elliptic"})

@@ -2,7 +2,7 @@
 
 import pytest
 
-from contactlab_laws.deresiewicz.branches import (
+from contactlab_laws.thornton_yin.branches import (
     LOADING,
     RELOADING,
     UNLOADING,

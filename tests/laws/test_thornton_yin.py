@@ -1,4 +1,4 @@
-"""Mindlin and Deresiewicz by turning points: their closed forms, springs, and the exact law."""
+"""Thornton and Yin's turning points: closed forms, springs, and the exact law."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from contactlab.testing.load_paths import Bench, Path, drive, straight
 from tests.laws.exact_laws import CHI, order, rms
 from tests.longer import longer
 
-LAW = contactlab.create("tangential.mindlin_deresiewicz")
+LAW = contactlab.create("tangential.thornton_yin")
 #: Fine enough that its own error is 1e-3 of mu P_max and less.
 SPRINGS = contactlab.create("tangential.springs", springs=400)
 

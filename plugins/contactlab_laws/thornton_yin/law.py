@@ -19,7 +19,7 @@ from contactlab.contracts import (
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
-from contactlab_laws.deresiewicz.branches import ContactState, Step, follow_step
+from contactlab_laws.thornton_yin.branches import ContactState, Step, follow_step
 from contactlab_laws.differences import table as differences
 from contactlab_laws.jaeger.partial_slip import hemisphere
 
@@ -41,7 +41,7 @@ class State(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class MindlinDeresiewicz(CausalTangentialLaw):
+class ThorntonYin(CausalTangentialLaw):
     """Partial slip by increments: dT = 2 G* b theta dD +- (1 - theta) mu dP.
 
     theta, the stick radius over b, follows from the force and from two turning points, which move

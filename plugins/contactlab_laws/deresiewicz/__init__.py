@@ -1,1 +1,0 @@
-"""Mindlin and Deresiewicz's partial slip, increment by increment, with turning points."""

@@ -1,0 +1,1 @@
+"""Mindlin and Deresiewicz's partial slip with its whole history: a stack of components."""
