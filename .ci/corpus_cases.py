@@ -25,7 +25,7 @@ TANGENTIAL = [
     ("linear_spring", {}), ("linear_spring", {"damping": 0.1}),
     ("mindlin_cap", {}), ("mindlin_cap", {"form": "increment"}),
     ("thornton_yin", {}), ("mindlin_cap", {"form": "displacement_rescaled"}),
-    ("mindlin_deresiewicz", {}), ("mindlin_deresiewicz", {"merging": 1e-4}),
+    ("mindlin_deresiewicz", {}), ("mindlin_deresiewicz", {"components": 32}),
     ("springs", {"springs": 8}), ("springs", {"springs": 8, "grid": "doubling"}),
     ("stronge", {}), ("stronge", {"stiffness_ratio": 0.9}),
     ("walton", {"slip_restitution": 0.3}), ("mindlin_cap", {"form": "increment_rescaled"}),

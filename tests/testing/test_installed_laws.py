@@ -48,6 +48,9 @@ LONGER = {
     "Viscoelastic": "ends_unloaded rebounds",
     "MindlinCap": "impact_odd impact_units vectors_on_a_line vectors_rotate whole_impact_form "
     "whole_impacts",
+    "MindlinDeresiewicz": "batch begin_is_start books closed_cycles impact_batch impact_books "
+    "impact_bounds impact_coulomb_limit impact_odd impact_reference impact_repeatable impact_units "
+    "random_paths spin stiffness units unlike_bodies whole_impacts",
     "ThorntonYin": "begin_is_start impact_bounds impact_odd impact_units unlike_bodies",
     "Coulomb": "whole_impact_form",
     "Frictionless": "whole_impact_form",

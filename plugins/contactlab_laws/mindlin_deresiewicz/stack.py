@@ -25,8 +25,6 @@ NODES = 0.5 + np.array([-0.5, 0.0, 0.5]) * 0.6**0.5
 WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
 #: Rounding of w over its limit where the surfaces slip.
 CLOSE = 1e-12
-#: Knots up to which nothing is merged: numpy takes as long for fewer.
-FEW_KNOTS = 40
 
 
 class Stack(NamedTuple):
@@ -51,21 +49,21 @@ class Stack(NamedTuple):
         limit = self.steepness * (self.squares[-1] - at)
         return np.asarray(np.sign(moved) * (np.abs(moved) >= (1.0 - CLOSE) * limit))
 
-    def merge(self, tolerance: float) -> Stack:
-        """Return the stack without every other knot that its neighbours' chord nearly meets.
+    def merge(self, most: int) -> Stack:
+        """Return the stack with at most ``most`` components, by the merges that move it least.
 
-        ``tolerance`` is the distance from the chord over the limit at the centre. The limit is
-        linear, so a chord between two knots within the limit stays within it.
+        A merge drops a knot: w becomes the chord of its neighbours, which stays within the limit,
+        as the limit is linear.
         """
         squares, moved = self.squares, self.moved
-        if len(squares) <= FEW_KNOTS:
-            return self
-        odd = np.arange(1, len(squares) - 1, 2)
-        share = (squares[odd] - squares[odd - 1]) / (squares[odd + 1] - squares[odd - 1])
-        chord = moved[odd - 1] + share * (moved[odd + 1] - moved[odd - 1])
-        kept = np.ones(len(squares), bool)
-        kept[odd] = np.abs(chord - moved[odd]) > tolerance * self.steepness * squares[-1]
-        return Stack(squares[kept], moved[kept], self.steepness)
+        while len(squares) - 1 > most:
+            share = (squares[1:-1] - squares[:-2]) / (squares[2:] - squares[:-2])
+            chord = moved[:-2] + share * (moved[2:] - moved[:-2])
+            roots = np.sqrt(squares)
+            lost = np.abs(chord - moved[1:-1]) * (roots[2:] - roots[:-2])  # twice the force
+            least = 1 + int(np.argmin(lost))
+            squares, moved = np.delete(squares, least), np.delete(moved, least)
+        return Stack(squares, moved, self.steepness)
 
 
 EMPTY = Stack(np.zeros(1), np.zeros(1))

@@ -19,9 +19,9 @@ from contactlab.contracts import (
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
-from contactlab_laws.thornton_yin.branches import ContactState, Step, follow_step
 from contactlab_laws.differences import table as differences
 from contactlab_laws.jaeger.partial_slip import hemisphere
+from contactlab_laws.thornton_yin.branches import ContactState, Step, follow_step
 
 #: Bound of the imbalance of the energy books, over the energy at the start: from the short memory.
 LARGEST_IMBALANCE = 0.1
