@@ -21,7 +21,7 @@ from contactlab.contracts import (
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
 from contactlab_laws.differences import table as differences
-from contactlab_laws.jaeger.partial_slip import PartialSlip, hemisphere
+from contactlab_laws.jaeger.partial_slip import PartialSlip, Scales, hemisphere
 from contactlab_laws.mindlin_deresiewicz.stack import EMPTY, Stack, follow_step
 
 #: Radii over b at which the fields tell the traction.
@@ -33,10 +33,10 @@ FEWEST = 8
 
 
 class State(NamedTuple):
-    """kappa in Pa, the friction coefficient, and the stacks of a batch of shape ``shape``."""
+    """Scales, kappa in Pa, and the stacks of a batch of shape ``shape``."""
 
+    scales: Scales
     modulus: Real
-    friction_coefficient: Real
     stacks: tuple[Stack, ...]
     shape: tuple[int, ...]
 
@@ -85,7 +85,7 @@ class MindlinDeresiewicz(PartialSlip, CausalTangentialLaw):
         """Return contacts without traction."""
         modulus = scene.pair.tangential_stiffness(1.0)
         stacks = (EMPTY,) * math.prod(scene.shape)
-        return State(modulus, scene.friction_coefficient, stacks, scene.shape)
+        return State(Scales.of(scene, normal), modulus, stacks, scene.shape)
 
     def fields(self, state: State) -> Mapping[str, NDArray[Any]]:
         """Return radius (m), traction (Pa), stuck and slipping at 50 radii, and the components."""
@@ -95,9 +95,11 @@ class MindlinDeresiewicz(PartialSlip, CausalTangentialLaw):
         shape = (*state.shape, len(PLACES))
         traction = np.reshape([stack.traction(places) for stack, places in pairs], shape)
         slipping = np.reshape([stack.slipping(places) for stack, places in pairs], shape)
+        unit = np.asarray(state.scales.radius)
+        strength = np.asarray(state.modulus * state.scales.metres / unit) / math.pi
         return {
-            "radius": radius.reshape(shape),
-            "traction": np.asarray(state.modulus)[..., None] / math.pi * traction,
+            "radius": unit[..., None] * radius.reshape(shape),
+            "traction": strength[..., None] * traction,
             "stuck": slipping == 0.0,
             "slipping": slipping,
             "components": np.reshape([len(one.squares) - 1 for one in state.stacks], state.shape),
@@ -107,11 +109,16 @@ class MindlinDeresiewicz(PartialSlip, CausalTangentialLaw):
         self, state: State, increment: Increment, before: NormalContact, after: NormalContact
     ) -> tuple[TangentialResponse, State]:
         """Return the force after the step, and the work of the slipping annuli."""
-        shape = np.shape(increment.displacement)
-        load: Any = 1.5 * state.friction_coefficient * after.friction_load / state.modulus
-        columns = np.broadcast_arrays(increment.displacement, after.radius, load)
+        shape, scales = np.shape(increment.displacement), state.scales
+        radius: Any = after.radius / scales.radius
+        pressure = scales.pressure(radius, after.friction_load)
+        columns = np.broadcast_arrays(
+            increment.displacement * scales.displacement, radius, pressure
+        )
         rows = zip(state.stacks, *(each.ravel().tolist() for each in columns), strict=True)
         stacks, *sums = zip(*(follow_step(*row) for row in rows), strict=True)
         stacks = tuple(stack.merge(self.components) for stack in stacks)
-        force, work = ((state.modulus * np.reshape(each, shape))[()] for each in sums)
-        return TangentialResponse(force, work), state._replace(stacks=stacks)
+        # mu P is 3/2 of the integral of the limit.
+        force, work = (1.5 * np.reshape(each, shape)[()] for each in sums)
+        response = TangentialResponse(force * scales.force, work * scales.work)
+        return response, state._replace(stacks=stacks)

@@ -1,5 +1,6 @@
 """The traction of a contact as a sum of Hertz-like components, and its change over a step.
 
+Lengths are over the largest radius and displacements in ``Scales``, so that no square underflows.
 A component of radius r_k and strength c_k has the traction (kappa/pi) c_k sqrt(r_k² - r²) and moves
 springs along the radius by c_k (r_k² - x²). Their sum w is linear in x² between the radii, so a
 stack is told by its knots: r_k², and w there. The limit of a hemispherical pressure, A (b² - x²),
@@ -25,17 +26,19 @@ NODES = 0.5 + np.array([-0.5, 0.0, 0.5]) * 0.6**0.5
 WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
 #: Rounding of w over its limit where the surfaces slip.
 CLOSE = 1e-12
+#: Rounding of squares at the edge, over b².
+EDGE = 1e-15
 
 
 class Stack(NamedTuple):
-    """Knots of one contact: squares of radii from 0 to b² in m², w in m, 0 at the edge; and A."""
+    """Knots of one contact: squares of radii from 0 to b², w there, 0 at the edge; and A."""
 
     squares: Array
     moved: Array
     steepness: float = 0.0
 
     def traction(self, radius: Array) -> Array:
-        """Return the traction at radii in m, over kappa/pi."""
+        """Return the traction at radii, over kappa/pi."""
         if len(self.squares) == 1:
             return np.zeros_like(radius)
         strengths = np.diff(np.diff(self.moved) / np.diff(self.squares), append=0.0)
@@ -43,7 +46,7 @@ class Stack(NamedTuple):
         return np.asarray(np.sqrt(inside) @ strengths)
 
     def slipping(self, radius: Array) -> Array:
-        """Return the sign of the slip at radii in m, 0 where the surfaces stick."""
+        """Return the sign of the slip at radii, 0 where the surfaces stick."""
         at = np.square(radius)
         moved = np.interp(at, self.squares, self.moved)
         limit = self.steepness * (self.squares[-1] - at)
@@ -70,17 +73,15 @@ EMPTY = Stack(np.zeros(1), np.zeros(1))
 
 
 def follow_step(
-    old: Stack, displacement: float, radius: float, load: float
+    old: Stack, displacement: float, radius: float, steepness: float
 ) -> tuple[Stack, float, float]:
-    """Return the stack after a step, its force in m² and the friction work in m³, over kappa.
+    """Return the stack after a step, and the integrals over the radius of force and work.
 
-    ``displacement`` is dD in m; ``radius``, b in m, and ``load``, 3 mu L/(2 kappa) in m², are at
-    the end.
+    ``displacement`` is dD; ``radius``, b, and ``steepness``, A, are at the end.
     """
-    if not math.isfinite(displacement + radius + load):
+    if not math.isfinite(displacement + radius + steepness):
         return old, math.nan, math.nan
     square = radius * radius
-    steepness = load / radius / square if square > 0.0 else 0.0
     squares, trial = old.squares, old.moved + displacement
     if square > squares[-1]:
         squares, trial = np.append(squares, square), np.append(trial, 0.0)
@@ -90,7 +91,10 @@ def follow_step(
         side = np.sign(gap)
         meets = np.flatnonzero(side[:-1] * side[1:] < 0.0)
         share = gap[meets] / (gap[meets] - gap[meets + 1])
-        places.append(squares[meets] + share * (squares[meets + 1] - squares[meets]))
+        place = squares[meets] + share * (squares[meets + 1] - squares[meets])
+        # A slip zone too thin to resolve begins at the last square before b².
+        thin = np.abs(place - square) <= EDGE * square
+        places.append(np.where(thin, np.nextafter(square, 0.0), place))
     at: Array = np.unique(np.concatenate(places))  # equal squares would have no slope
     limit = np.maximum(steepness * (square - at), 0.0)
     trial = np.interp(at, squares, trial)
