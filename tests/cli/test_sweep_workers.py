@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from contactlab.solve import solve
+from contactlab.runs import pieces
 
 SWEEP = ("sweep", "--psi1", "0:9:3000", "--chi", "1.4412", "--tangential", "linear_spring")
 
@@ -76,7 +76,7 @@ def test_killed_and_resumed_it_writes_the_same_file(run, tmp_path, workers):
 
 
 def test_interrupted_it_keeps_what_is_done(run, monkeypatch, tmp_path):
-    outcome, calls = solve.outcome, []
+    outcome, calls = pieces.outcome, []
 
     def interrupted(*arguments, **keywords):
         calls.append(None)
@@ -84,7 +84,7 @@ def test_interrupted_it_keeps_what_is_done(run, monkeypatch, tmp_path):
             raise KeyboardInterrupt
         return outcome(*arguments, **keywords)
 
-    monkeypatch.setattr(solve, "outcome", interrupted)
+    monkeypatch.setattr(pieces, "outcome", interrupted)
     out = tmp_path / "a.npz"
     out.write_text("earlier")
     ran = run(*SWEEP, "--out", out, "--resume")

@@ -18,6 +18,8 @@ from matplotlib.image import imread
 from matplotlib.text import Text
 
 import contactlab.figures
+import contactlab.outcome
+import contactlab.study
 from contactlab import Scene, Simulation, create
 from contactlab.figures import paper
 from contactlab.figures.comparison import all_laws
@@ -35,10 +37,16 @@ LEGIBLE = 6.0
 
 
 def figure_functions():
-    """The public functions of ``contactlab.figures`` whose first argument is Axes, to draw on."""
+    """The public functions of figures whose first argument is Axes, to draw on."""
     found = {}
-    for module in pkgutil.iter_modules(contactlab.figures.__path__, "contactlab.figures."):
-        functions = inspect.getmembers(importlib.import_module(module.name), inspect.isfunction)
+    places = [
+        each.name
+        for room in (contactlab.figures, contactlab.outcome, contactlab.study)
+        for each in pkgutil.iter_modules(room.__path__, f"{room.__name__}.")
+        if room is contactlab.figures or each.name.endswith("_figure")
+    ]
+    for place in places:
+        functions = inspect.getmembers(importlib.import_module(place), inspect.isfunction)
         for name, function in functions:
             first = next(iter(inspect.signature(function).parameters.values()), None)
             of_axes = first is not None and "Axes" in str(first.annotation)
@@ -46,8 +54,8 @@ def figure_functions():
                 "float",
                 "bool",
             )
-            if draws and not name.startswith("_") and function.__module__ == module.name:
-                found[f"{module.name}.{name}"] = function
+            if draws and not name.startswith("_") and function.__module__ == place:
+                found[f"{place}.{name}"] = function
     return found
 
 

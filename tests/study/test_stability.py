@@ -1,5 +1,6 @@
 """The stability report: nothing silently wrong on the reduced set, and it can fail."""
 
+from collections import Counter
 from types import SimpleNamespace
 from typing import ClassVar
 
@@ -211,7 +212,7 @@ def test_answers_that_are_coarse_and_cases_left_out_are_counted_apart():
     )  # fmt: skip
     found = Stability(outcomes=outcomes, complete=True)
     assert (found.tried(), found.count(SKIPPED)) == (4, 1)
-    assert found.counts("a / b") == {ANSWERED: 3, "coarse": 1, SKIPPED: 1, REFUSED: 1}
+    assert found.counts("a / b") == Counter({ANSWERED: 3, "coarse": 1, SKIPPED: 1, REFUSED: 1})
     assert found.worst("a / b", "speed") == 2e-3
 
 

@@ -95,4 +95,4 @@ def test_a_law_that_claims_partial_slip_expects_to_fail_under_damping_at_most(la
 
 def test_the_laws_of_partial_slip_claim_it():
     names = {type(law).__name__ for law in CLAIMING}
-    assert names == {"Annulus", "Fronts", "Springs"}
+    assert names == {"Annulus", "Fronts", "MindlinDeresiewicz", "Springs"}
