@@ -105,7 +105,7 @@ def test_where_friction_could_jam():
 @pytest.mark.parametrize(
     ("scene", "springs"),
     [(in_space(414, 24), 20), (in_space(416, 8, high=10.0, ellipse=True), 20),
-     *longer((in_space(415, 2000), 50), (in_space(417, 200, ellipse=True), 50))],
+     *longer((in_space(415, 500), 50), (in_space(417, 60, ellipse=True), 50))],
 )  # fmt: skip
 def test_of_bodies_in_space_beside_four_times_finer_ones(scene, springs):
     found = simulation(springs, 4 * springs).run(scene).check()
