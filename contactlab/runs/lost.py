@@ -1,6 +1,8 @@
 """Parts of a sweep that an executor lost: solved again alone, in halves where a process ends.
 
-So a law that ends its process at one impact costs that impact.
+So a law that ends its process at one impact of a pool costs that impact. An executor of another
+library is asked once more for the whole part: it has tried it several times itself, and dask's,
+asked for halves again and again, runs out of workers and waits for ever.
 """
 
 from __future__ import annotations
@@ -19,8 +21,6 @@ from contactlab.runs.pieces import Part, Piece, leave_open
 
 #: Processes that may end before the rest is given up: each takes a second to start.
 MOST_ENDS = 64
-#: Calls that an executor of another library may lose: it may have tried each several times.
-MOST_LOST = 16
 MAIN_REMEDY = 'in a script, call sweep under if __name__ == "__main__":'
 
 
@@ -50,7 +50,7 @@ class Rescue:
         """Yield pieces of lost parts; return the parts that have ended no process."""
         pool: Any = self.calls.executor
         broken = isinstance(lost[0].error, BrokenExecutor)
-        if self.ends >= self._most or (broken and not self._replace(pool, 1)):
+        if self.ends >= MOST_ENDS or (broken and not self._replace(pool, 1)):
             for part, error in lost:
                 yield self._given_up(part, error)
             return []
@@ -63,10 +63,6 @@ class Rescue:
         if broken:
             self._replace(pool, pool._max_workers)
         return [part for part, _ in lost[suspects:]]
-
-    @property
-    def _most(self) -> int:
-        return MOST_LOST if self._pool is None else MOST_ENDS
 
     def _given_up(self, part: Part, error: Exception) -> Piece:
         """Return the piece of a part that the same sweep tries again."""
@@ -82,9 +78,10 @@ class Rescue:
         if isinstance(answer, Piece):
             return answer
         self.ends += 1
-        if isinstance(answer, BrokenExecutor):
-            self._replace(self.calls.executor, 1)
-        if part.chunk.size == 1 or self.ends >= self._most:
+        if not isinstance(answer, BrokenExecutor):
+            return self._given_up(part, answer)
+        self._replace(self.calls.executor, 1)
+        if part.chunk.size == 1 or self.ends >= MOST_ENDS:
             return self._given_up(part, answer)
         return Piece.joined([self._alone(half) for half in halves(part)])
 
