@@ -126,4 +126,5 @@ def requirements(law: Law) -> frozenset[str | type]:
     ----------
     law : Law
     """
-    return law.needs.difference(law.waives())
+    required: frozenset[str | type] = law.needs.difference(law.waives())
+    return required
