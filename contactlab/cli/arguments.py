@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any, TypedDict
 
 import attrs
 
-from contactlab.cli.progress import progress as progress  # exported to the subcommands
 from contactlab.cli.statuses import BAD_INPUT as BAD_INPUT
 from contactlab.cli.statuses import FAILED as FAILED
 from contactlab.cli.statuses import INTERRUPTED as INTERRUPTED
 from contactlab.cli.statuses import OK as OK
+from contactlab.numeric.progress import progress as progress  # exported to the subcommands
 from contactlab.outcome.files import distinct, unwritable, write_table
 from contactlab.registration.hooks import Execute
 from contactlab.registration.manager import MANAGER

@@ -19,10 +19,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 import attrs
+import numpy as np
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.describe import describe
 from contactlab.cli.scene import add_scene, inputs
+from contactlab.contracts.status import Status
 from contactlab.numeric.types import Real
 from contactlab.outcome import export
 from contactlab.outcome.columns import json_value
@@ -30,7 +32,6 @@ from contactlab.outcome.export import WRITERS
 from contactlab.outcome.numerical_error import error_cautions
 from contactlab.outcome.result import ImpactResult
 from contactlab.registration.hooks import Execute, hookimpl
-from contactlab.study.interrupts import was_interrupted
 
 if TYPE_CHECKING:
     from contactlab.collisions.collision import Collision
@@ -68,7 +69,7 @@ def execute(arguments: argparse.Namespace) -> int:
             )
     with shared.working(arguments.progress, "impacts" if scene.shape else "impact") as progress:
         if scene.shape:
-            result = simulation.sweep(scene, progress=progress)
+            result = simulation.sweep(scene, progress=progress, return_partial=True)
         else:
             history = bool(arguments.history or arguments.figure)
             result = simulation.run(
@@ -138,3 +139,8 @@ def report(
     word = "interrupted" if interrupted else "failed"
     print(f"contactlab: {word}: {which}{next(iter(failures.values()))}", file=sys.stderr)
     return shared.INTERRUPTED if interrupted else shared.FAILED
+
+
+def was_interrupted(result: ImpactResult) -> bool:
+    """Return whether Ctrl-C left impacts out."""
+    return Status.INTERRUPTED in np.ravel(np.array(result.status, dtype=object))

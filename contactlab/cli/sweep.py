@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.run import draw, report
+from contactlab.cli.run import draw, report, was_interrupted
 from contactlab.cli.scene import (
     MOST_IMPACTS,
     add_file,
@@ -48,7 +48,6 @@ from contactlab.outcome.tables import evenly, sweep_section
 from contactlab.outcome.text_table import table
 from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.scene_file import LawChoice, SceneFile
-from contactlab.study.interrupts import was_interrupted
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -102,7 +101,9 @@ def execute(arguments: argparse.Namespace) -> int:
         contextlib.redirect_stdout(sys.stderr),  # plug-ins may print
         _executor(arguments.workers) as executor,
     ):
-        result = simulation.sweep(scene, progress=progress, executor=executor, keep=keep)
+        result = simulation.sweep(
+            scene, progress=progress, executor=executor, keep=keep, return_partial=True
+        )
     if before:
         print(f"contactlab sweep: {before} impacts were done before", file=sys.stderr)
     varied = file.varied if file else {}
@@ -176,7 +177,9 @@ def _into_folder(arguments: argparse.Namespace, file: SceneFile | None) -> int:
         contextlib.redirect_stdout(sys.stderr),  # plug-ins may print
         _executor(arguments.workers) as executor,
     ):
-        folder = simulation.sweep(scenes, progress=progress, executor=executor, into=arguments.out)
+        folder = simulation.sweep(
+            scenes, progress=progress, executor=executor, into=arguments.out, return_partial=True
+        )
     print(folder)
     if failed := len(folder) - folder.statuses.get(Status.SUCCESS.name, 0):
         try:

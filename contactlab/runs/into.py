@@ -29,6 +29,8 @@ from contactlab.solve.solve import accept_scene
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
+    from contactlab.numeric.progress import Count
+
 #: Least impacts of a file where impacts are marched, which takes longer.
 MARCHED_AT_A_TIME = 1000
 #: Chunks that an executor has before they are answered: memory is that of so many.
@@ -41,9 +43,10 @@ def swept_into(
     folder: str | Path,
     *,
     result_of: Callable[[Scene, Piece], ImpactResult],
-    progress: Callable[[int, int], object] | None,
+    progress: Count | None,
     chunk: int | None,
     executor: Executor | None,
+    return_partial: bool,
 ) -> SweepFolder:
     """Return the folder with the columns of a sweep; see ``Simulation.sweep``.
 
@@ -106,8 +109,10 @@ def swept_into(
             if failed is not None:
                 raise failed
             target.finish(stop)
-        except KeyboardInterrupt:
-            pass  # finished chunks are in the folder, which tells that it is not complete
+        except KeyboardInterrupt:  # the folder tells that it is not complete
+            if not return_partial:
+                words = f"{done} impacts are in {folder}: the same sweep goes on"
+                raise KeyboardInterrupt(words) from None
         finally:
             pieces.close()
     return SweepFolder(path)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from contactlab.impact.grid import GridParts
+    from contactlab.numeric.progress import Count
     from contactlab.outcome.sweep_folder import SweepFolder
     from contactlab.runs.pieces import Piece
 
@@ -178,32 +179,35 @@ class Simulation:
         self,
         scenes: Scene | Sequence[Scene],
         *,
-        progress: Callable[[int, int], object] | None = None,
+        progress: bool | Count | None = None,
         chunk: int | None = None,
         executor: Executor | None = None,
         keep: str | Path | None = None,
         into: None = None,
+        return_partial: bool = False,
     ) -> ImpactResult[Array]: ...
     @overload
     def sweep(
         self,
         scenes: Scene | GridParts | Iterable[Scene],
         *,
-        progress: Callable[[int, int], object] | None = None,
+        progress: bool | Count | None = None,
         chunk: int | None = None,
         executor: Executor | None = None,
         keep: None = None,
         into: str | Path,
+        return_partial: bool = False,
     ) -> SweepFolder: ...
     def sweep(
         self,
         scenes: Any,
         *,
-        progress: Callable[[int, int], object] | None = None,
+        progress: bool | Count | None = None,
         chunk: int | None = None,
         executor: Executor | None = None,
         keep: str | Path | None = None,
         into: str | Path | None = None,
+        return_partial: bool = False,
     ) -> ImpactResult | SweepFolder:
         """Run many impacts, vectorised, a block at a time.
 
@@ -219,8 +223,9 @@ class Simulation:
         scenes : sequence of Scene, or a batch scene; with ``into`` any iterable
             With ``into`` batches come one after another too, as from ``Scene.grid_in_parts`` or a
             generator; blocks are then counted from the first impact of each.
-        progress : callable, optional
-            Called as ``progress(done, total)`` after each chunk; total is done where a generator
+        progress : True or callable, optional
+            True prints share and time left on stderr, as the command line does; a function is
+            called as ``progress(done, total)`` after each chunk. Total is done where a generator
             does not tell it.
         chunk : int, optional
             Impacts of a chunk, rounded up to whole blocks; one block by default, with ``into``
@@ -249,12 +254,15 @@ class Simulation:
             executor of 32. The same sweep resumes as with ``keep``; each column has a checksum.
             Files are NPZ, or Parquet where
             the name of the folder ends with ``.parquet``, which needs pyarrow.
+        return_partial : bool
+            Whether an interruption (Ctrl-C) returns what is finished, where it is raised otherwise.
+            The other impacts of a result then have the status ``INTERRUPTED``, which ``.check()``
+            raises; a folder is not ``complete``.
 
         Returns
         -------
         ImpactResult, or with ``into`` SweepFolder
-            A batch, or the folder, which reads its columns. An interruption (Ctrl-C) keeps finished
-            chunks; the other impacts have the status ``INTERRUPTED``, which ``.check()`` raises.
+            A batch, or the folder, which reads its columns.
 
         Raises
         ------
@@ -268,28 +276,31 @@ class Simulation:
         OSError
             If a chunk cannot be written into ``keep`` or ``into``. Those before stay there, and the
             same sweep resumes from them.
+        KeyboardInterrupt
+            Of Ctrl-C, when finished chunks are in ``keep`` or ``into``.
         """
         from contactlab.impact.grid import GridParts
+        from contactlab.numeric.progress import follow
         from contactlab.runs.sweep import one_axis, swept  # a single run needs none of this
 
         started, laws = time.perf_counter(), self.laws
-        if not (progress is None or callable(progress)):
-            remedy = "give a function of done and total"
-            raise refuse("progress", progress, "must be callable", remedy)
-        options: dict[str, Any] = {"progress": progress, "chunk": chunk}
-        options["executor"] = executor
+        options: dict[str, Any] = {"chunk": chunk, "executor": executor}
         if isinstance(scenes, str | Path) or hasattr(scenes, "scene"):
             remedy = "give its .scene" if hasattr(scenes, "scene") else FOR_FILES
             raise refuse("scenes", scenes, "must be a Scene, or a sequence of them", remedy)
         if into is not None:
-            return self._into(into, keep, scenes, options)
+            with follow(progress, "impacts") as count:
+                options |= {"progress": count, "return_partial": return_partial}
+                return self._into(into, keep, scenes, options)
         if isinstance(scenes, GridParts):
             rule = "is a grid in parts, which needs a folder"
             raise refuse("scenes", scenes, rule, "give into=folder, or Scene.grid")
         batch = scenes if isinstance(scenes, Scene) else Scene.stack(scenes)
         one_axis(batch.shape)
         ways = solve.accept_scene(laws, batch)
-        columns, motion = swept(laws, batch, keep=keep, **options)
+        with follow(progress, "impacts") as count:
+            options |= {"progress": count, "return_partial": return_partial}
+            columns, motion = swept(laws, batch, keep=keep, **options)
         return _result(ways, batch, plan_of(laws, batch, columns, motion), motion, started)
 
     def _into(

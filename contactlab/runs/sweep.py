@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import itertools
 import math
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Generator, Iterable, Iterator
 from contextlib import AbstractContextManager
 from functools import partial
 from pathlib import Path
@@ -24,6 +24,7 @@ from contactlab.runs.pieces import Part, Piece, leave_open, solve_chunk
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
+    from contactlab.numeric.progress import Count
     from contactlab.runs.kept import Kept
 
 #: Impacts of a block if nothing is marched: as many as fit into the cache.
@@ -59,10 +60,11 @@ def swept(
     laws: Laws,
     scene: Scene,
     *,
-    progress: Callable[[int, int], object] | None,
+    progress: Count | None,
     chunk: int | None,
     executor: Executor | None,
     keep: str | Path | None,
+    return_partial: bool,
 ) -> tuple[PlanColumns, Motion]:
     """Return columns of the plan and motion of a batch of one axis; see ``Simulation.sweep``."""
     size, block = scene.shape[0], block_for(laws, scene)
@@ -88,6 +90,9 @@ def swept(
         except KeyboardInterrupt:
             if kept is not None and finished:
                 kept.keep(finished[-1])  # which may have been on its way to the disk
+            if not return_partial:
+                where = f" are in {keep}: the same sweep goes on" if keep else ""
+                raise KeyboardInterrupt(f"{done} of {size} impacts{where}") from None
             gaps = _gaps(finished, size)
             finished += [
                 leave_open(gap, kinetics.slip_axes(scene), Status.INTERRUPTED) for gap in gaps

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Set
+from collections.abc import Iterable, Mapping, Set
 from typing import TYPE_CHECKING, Any, overload
 
 import attrs
@@ -12,13 +12,13 @@ from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import attributes_told
+from contactlab.numeric.progress import Count, follow
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.result import ImpactResult
 from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import SceneFile
 from contactlab.solve.error_estimate import estimate_errors
 from contactlab.study.agreement import Agreement, LawRun, values_of
-from contactlab.study.interrupts import require_all
 from contactlab.study.side_by_side import default_quantities, describe
 
 if TYPE_CHECKING:
@@ -170,7 +170,7 @@ def compare(
     *,
     history: bool = False,
     estimate_error: bool = False,
-    progress: Callable[[int, int], object] | None = None,
+    progress: bool | Count | None = None,
 ) -> Comparison:
     """Return the results of each simulation on ``scene``, and at the measured points of a file.
 
@@ -184,8 +184,9 @@ def compare(
         Keep the history of a single impact; a sweep has none.
     estimate_error : bool
         Estimate the numerical error of psi2 of each law, from runs at finer resolutions.
-    progress : callable, optional
-        Called as ``progress(done, total)`` after each run.
+    progress : True or callable, optional
+        True prints share and time left on stderr; a function is called as ``progress(done, total)``
+        after each run.
 
     Returns
     -------
@@ -208,21 +209,22 @@ def compare(
     predicted: list[dict[str, ImpactResult]] = [{} for _ in series]
     interrupted = False
     try:
-        for name, simulation in simulations.items():
-            answers: list[ImpactResult] = []
-            for job in (None, *series):
-                if job is None:
-                    run = _time(name, simulation, single, history=history and not single.shape)
-                    run = _estimate(run, simulation) if estimate_error else run
-                else:
-                    assert file is not None
-                    answers.append(_run(simulation, file.scene_at(**job.entries)))
-                done += 1
-                if progress is not None:
-                    progress(done, total)
-            runs.append(run)
-            for results, answer in zip(predicted, answers, strict=True):
-                results[name] = answer
+        with follow(progress, "runs") as count:
+            for name, simulation in simulations.items():
+                answers: list[ImpactResult] = []
+                for job in (None, *series):
+                    if job is None:
+                        run = _time(name, simulation, single, history=history and not single.shape)
+                        run = _estimate(run, simulation) if estimate_error else run
+                    else:
+                        assert file is not None
+                        answers.append(_run(simulation, file.scene_at(**job.entries)))
+                    done += 1
+                    if count is not None:
+                        count(done, total)
+                runs.append(run)
+                for results, answer in zip(predicted, answers, strict=True):
+                    results[name] = answer
     except KeyboardInterrupt:
         if not runs:
             raise
@@ -284,7 +286,7 @@ def _failure(name: str, result: ImpactResult) -> str:
 
 
 def _run(simulation: Simulation, scene: Scene) -> ImpactResult:
-    return require_all(simulation.sweep(scene)) if scene.shape else simulation.run(scene)
+    return simulation.sweep(scene) if scene.shape else simulation.run(scene)
 
 
 def _time(name: str, simulation: Simulation, scene: Scene, *, history: bool) -> LawRun:

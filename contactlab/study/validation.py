@@ -15,12 +15,12 @@ from contactlab.impact.elliptic import ellipse
 from contactlab.impact.hertz import hertz_scales, rigid_body_rebound
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
+from contactlab.numeric.progress import Count
 from contactlab.registration.hooks import hookimpl
 from contactlab.registration.manager import MANAGER
 from contactlab.registry.registry import REGISTRY
 from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import read_scene
-from contactlab.study.interrupts import require_all
 from contactlab.study.scores import DEFAULT_SCENE
 from contactlab.study.stability_coupled import RIGID_DISTANCE, STIFF, distance, rod
 
@@ -117,7 +117,7 @@ class Finding:
         return self.difference <= self.bound
 
 
-def validate(progress: Callable[[int, int], object] | None = None) -> Iterator[Finding]:
+def validate(progress: Count | None = None) -> Iterator[Finding]:
     """Iterate over all comparisons as they are done; ``progress(done, total)`` follows each."""
     checks = [told.item for told in MANAGER.brought("checks")]
     for done, check in enumerate(checks, start=1):
@@ -173,7 +173,7 @@ def _rigid() -> Finding:
     chi = 49 / 34
     psi1 = np.linspace(-8.0, 8.0, 65)
     sim = Simulation(tangential="coulomb", integrator="symplectic")
-    psi2 = require_all(sim.sweep(Scene.nondimensional(psi1=psi1, chi=chi))).psi2
+    psi2 = sim.sweep(Scene.nondimensional(psi1=psi1, chi=chi)).psi2
     off = psi2 - rigid_body_rebound(psi1, chi)
     return finding("coulomb: psi2", "slip, then rolling", off, 1e-12)
 
@@ -244,7 +244,7 @@ def _reference(
         integrator=REGISTRY.create(f"integrator.{integrator}", **settings),
     )
     off = [
-        require_all(sim.sweep(Scene.nondimensional(psi1=np.array(REFERENCE_PSI1), chi=chi))).psi2
+        sim.sweep(Scene.nondimensional(psi1=np.array(REFERENCE_PSI1), chi=chi)).psi2
         - np.array(expected)
         for chi, expected in REFERENCE_PSI2.items()
     ]
@@ -260,11 +260,9 @@ def _loss() -> Finding:
         "integrator": REGISTRY.create("integrator.symplectic", steps=LOSS_STEPS),
     }
     off = [
-        require_all(
-            Simulation(normal=law(restitution=e), **parts).sweep(
-                Scene.nondimensional(psi1=np.array(REFERENCE_PSI1), chi=chi)
-            )
-        ).psi2
+        Simulation(normal=law(restitution=e), **parts)
+        .sweep(Scene.nondimensional(psi1=np.array(REFERENCE_PSI1), chi=chi))
+        .psi2
         - np.array(expected)
         for (e, chi), expected in LOSS_PSI2.items()
     ]
@@ -295,7 +293,7 @@ def _codes(number: int, form: str) -> Finding:
     series = file.measured[number]
     law = REGISTRY.create("tangential.mindlin_cap", form=form)
     sim = Simulation(tangential=law, integrator="symplectic")
-    psi2 = require_all(sim.sweep(file.scene_at(psi1=series.x))).psi2
+    psi2 = sim.sweep(file.scene_at(psi1=series.x)).psi2
     what = f"mindlin_cap, form={form}: psi2"
     return finding(what, series.label, psi2 - series.values, CODE_BOUND)
 

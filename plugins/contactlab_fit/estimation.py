@@ -13,6 +13,7 @@ import numpy as np
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import common_shape
 from contactlab.numeric.checks import real, refuse, whole
+from contactlab.numeric.progress import Count, follow
 from contactlab.numeric.types import Array, Numbers, Real
 from contactlab.outcome.answer import ImpactError
 from contactlab.outcome.columns import QUANTITIES
@@ -68,7 +69,7 @@ def fit(
     quantities: Sequence[str] | None = None,
     bootstrap: int = 0,
     seed: int = 1976,
-    progress: Callable[[int, int], object] | None = None,
+    progress: bool | Count | None = None,
 ) -> Fit:
     """Fit numbers of a scene and of laws to measured impacts, by least squares.
 
@@ -91,9 +92,9 @@ def fit(
         Samples of the bootstrap; 0 for none.
     seed : int
         Seed of the bootstrap's random numbers.
-    progress : callable, optional
-        Called as ``progress(done, total)`` after each sample; without a bootstrap after each
-        search, and after the diagnosis.
+    progress : True or callable, optional
+        True prints share and time left on stderr; a function is called as ``progress(done, total)``
+        after each sample, without a bootstrap after each search and the diagnosis.
 
     Returns
     -------
@@ -119,6 +120,21 @@ def fit(
     An interruption (Ctrl-C) keeps the finished samples of the bootstrap if there are at least a
     hundred; ``samples`` and a note of the fit state their number.
     """
+    with follow(progress, "samples" if bootstrap else "searches") as count:
+        return _fit(measurements, scene, parameters, simulation, quantities, bootstrap, seed, count)
+
+
+def _fit(
+    measurements: str | Path | Mapping[str, object] | SceneFile | Measurements,
+    scene: Scene | SceneFile | str | Path | None,
+    parameters: Sequence[str],
+    simulation: Simulation | None,
+    quantities: Sequence[str] | None,
+    bootstrap: int,
+    seed: int,
+    progress: Count | None,
+) -> Fit:
+    """Return the fit; ``progress`` is called after each step."""
     if scene is None and isinstance(measurements, SceneFile):
         scene = measurements
     if scene is None:
@@ -209,7 +225,7 @@ def _with_bootstrap(
     samples: int,
     *,
     seed: int,
-    progress: Callable[[int, int], object] | None,
+    progress: Count | None,
 ) -> Fit:
     """Return the fit with the intervals of the bootstrap added.
 
@@ -250,7 +266,7 @@ def _drawn(
     values: Array,
     samples: int,
     generator: np.random.Generator,
-    progress: Callable[[int, int], object] | None,
+    progress: Count | None,
 ) -> Array:
     """Return the best values for each sample, shape (m, parameters), fewer if interrupted."""
     residuals = {name: rows[0] for name, rows in problem.residuals(values[None]).items()}
@@ -375,7 +391,7 @@ def rank(
     scene: Scene | SceneFile | str | Path | None,
     simulations: Mapping[str, Simulation | None],
     *,
-    progress: Callable[[int, int], object] | None = None,
+    progress: bool | Count | None = None,
     parameters: Sequence[str] = ("friction_coefficient",),
     quantities: Sequence[str] | None = None,
     bootstrap: int = 0,
@@ -389,8 +405,8 @@ def rank(
         As for ``fit``. A parameter that some of the laws have is fitted under those alone.
     simulations : mapping of str to Simulation
         Laws by the names to report; None stands for the exact elastic laws.
-    progress : callable, optional
-        Called as ``progress(done, total)`` after each law.
+    progress : True or callable, optional
+        As for ``fit``, counted by laws.
     quantities, bootstrap, seed
         As for ``fit``.
 
@@ -402,22 +418,23 @@ def rank(
     table = as_met(read_measurements(measurements), scene)
     own = parameters_of(table, scene, simulations, parameters)
     ranked = []
-    for done, (name, simulation) in enumerate(simulations.items(), start=1):
-        try:
-            fitted = fit(
-                table,
-                scene,
-                parameters=own[name],
-                simulation=simulation,
-                quantities=quantities,
-                bootstrap=bootstrap,
-                seed=seed,
-            )
-            ranked.append(Ranked(name=name, fit=fitted))
-        except (ValueError, ImpactError) as error:
-            ranked.append(Ranked(name=name, fit=None, refusal=str(error)))
-        if progress is not None:
-            progress(done, len(simulations))
+    with follow(progress, "laws") as count:
+        for done, (name, simulation) in enumerate(simulations.items(), start=1):
+            try:
+                fitted = fit(
+                    table,
+                    scene,
+                    parameters=own[name],
+                    simulation=simulation,
+                    quantities=quantities,
+                    bootstrap=bootstrap,
+                    seed=seed,
+                )
+                ranked.append(Ranked(name=name, fit=fitted))
+            except (ValueError, ImpactError) as error:
+                ranked.append(Ranked(name=name, fit=None, refusal=str(error)))
+            if count is not None:
+                count(done, len(simulations))
     return in_order(ranked)
 
 

@@ -17,7 +17,6 @@ from contactlab.registry.law_words import in_words
 from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import SceneFile, read_scene
 from contactlab.scene_file.entries import CARTESIAN, POLAR
-from contactlab.study.interrupts import require_all
 from contactlab_fit import tabulated
 from contactlab_fit.parameters import RESTITUTION, Parameter, Setup
 
@@ -138,7 +137,7 @@ class Model:
         if self.tabled:
             return tabulated.impacts(setup.scene, setup.simulation)
         laws = setup.simulation or Simulation()
-        return require_all(laws.sweep(setup.scene)).check()
+        return laws.sweep(setup.scene).check()
 
     def impacts(self, values: Array) -> ImpactResult:
         """Return the impacts, shape (n,), at values of the parameters, shape (parameters,)."""

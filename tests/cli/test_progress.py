@@ -8,11 +8,13 @@ import itertools
 import re
 import sys
 
+import numpy as np
 import pytest
 
-from contactlab.cli import progress as module
-from contactlab.cli.progress import in_words, progress
+from contactlab import Scene, Simulation, compare
 from contactlab.cli.terminal import fit_terminal
+from contactlab.numeric import progress as module
+from contactlab.numeric.progress import in_words, progress
 from tests.longer import longer
 from tests.present import of_commands
 
@@ -154,3 +156,50 @@ def test_times():
     assert [in_words(seconds) for seconds in (0.2, 89.0, 600.0, 7200.0)] == [
         "0 s", "89 s", "10 min", "2.0 h",
     ]  # fmt: skip
+
+
+class Bar:
+    """A bar as tqdm's: it has the count ``n``, and is moved by ``update``."""
+
+    def __init__(self, iterable=None, desc=None):
+        self.n = 0
+
+    def update(self, steps):
+        self.n += steps
+
+
+SOME = Scene.nondimensional(psi1=np.linspace(0.1, 4.0, 5), chi=1.44)
+LONG = {
+    "impacts": lambda progress: Simulation(tangential="coulomb").sweep(SOME, progress=progress),
+    "runs": lambda progress: compare(SOME, {"exact": Simulation()}, progress=progress),
+}
+
+
+@pytest.mark.parametrize("what", LONG)
+@pytest.mark.parametrize("terminal", [True, False])
+def test_true_is_the_line_of_the_command_line(begin, monkeypatch, terminal, what):
+    screen, clock = begin(terminal=terminal)
+    put = module.Progress.__call__
+
+    def slow(line, done, total):
+        clock[0] += 60.0
+        put(line, done, total)
+        put(line, done, 2 * total)
+
+    monkeypatch.setattr(module.Progress, "__call__", slow)
+    LONG[what](True)
+    lines = screen.getvalue()
+    assert f"{what}: 50 % (" in lines
+    assert lines.endswith("\r\x1b[K") if terminal else "took 60 s\n" in lines
+
+
+@pytest.mark.parametrize("what", LONG)
+@pytest.mark.parametrize("progress", [Bar, Bar(), "yes", 1])
+def test_a_bar_is_refused_with_lines_that_work(what, progress):
+    with pytest.raises(ValueError, match="must be True or a function") as refused:
+        LONG[what](progress)
+    lines = str(refused.value).split("or: ")[1].replace("progress=", "progress = ")
+    made = {"tqdm": Bar}
+    exec(lines.replace("; ", "\n"), made)
+    LONG[what](made["progress"])
+    assert made["bar"].n == (5 if what == "impacts" else 1)

@@ -174,7 +174,9 @@ def test_a_sweep_goes_on_where_it_stopped(tmp_path, monkeypatch, scenes):
     monkeypatch.setattr("contactlab.runs.into.MARCHED_AT_A_TIME", 40)
     simulation, target = Simulation(tangential="springs"), tmp_path / "swept"
     options = {"into": target, "chunk": 40}
-    half = simulation.sweep(scenes(), **options, progress=stopped(80))
+    with pytest.raises(KeyboardInterrupt, match=f"80 impacts are in {target}: the same sweep"):
+        simulation.sweep(scenes(), **options, progress=stopped(80))
+    half = SweepFolder(target)
     assert (len(half), half.complete, half.impacts, half.missing) == (80, False, None, [])
     assert half["psi1"].tolist() == scene().psi1[:80].tolist()
     with pytest.raises(ImpactError, match=r"not complete: it stopped after impact 79; the same"):
@@ -194,7 +196,7 @@ def test_a_sweep_goes_on_where_it_stopped(tmp_path, monkeypatch, scenes):
 def test_a_sweep_that_grows_is_finished_once_more(tmp_path):
     simulation, target = Simulation(**RIGID), tmp_path / "swept"
     assert simulation.sweep([*parts()][:2], into=target).complete
-    half = simulation.sweep(parts(), into=target, progress=stopped(120))
+    half = simulation.sweep(parts(), into=target, progress=stopped(120), return_partial=True)
     assert (len(half), half.complete) == (120, False)
     with pytest.raises(ImpactError, match=r"not complete: it stopped after impact 119"):
         half.check()

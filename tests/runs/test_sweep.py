@@ -155,7 +155,9 @@ def test_ctrl_c_keeps_what_is_done_and_gives_up_the_rest(monkeypatch):
 
     with Slow(1) as executor:
         executor.submit(lambda: None)
-        result = Simulation(**RIGID).sweep(scene(100), executor=executor, progress=stop)
+        result = Simulation(**RIGID).sweep(
+            scene(100), executor=executor, progress=stop, return_partial=True
+        )
     names = [status.name for status in result.status]
     assert names.count("INTERRUPTED") == 80
     assert all(future.done() for future in handed_in)
@@ -175,8 +177,10 @@ def test_ctrl_c_that_reaches_a_worker_ends_the_sweep(monkeypatch):
                 future.set_exception(KeyboardInterrupt())
             return future
 
-    result = Simulation(**RIGID).sweep(scene(), executor=Interrupted(1))
+    result = Simulation(**RIGID).sweep(scene(), executor=Interrupted(1), return_partial=True)
     assert [status.name for status in result.status] == ["SUCCESS"] * 100 + ["INTERRUPTED"] * 50
+    with pytest.raises(KeyboardInterrupt, match=r"^100 of 150 impacts$"):
+        Simulation(**RIGID).sweep(scene(), executor=Interrupted(1))
 
 
 @pytest.mark.parametrize("writes", [False, True])
@@ -395,7 +399,7 @@ if __name__ == "__main__":
     scene = Scene.nondimensional(psi1=np.linspace(0.3, 9.0, 150), chi=1.4411764706)
     simulation = Simulation(tangential=Waiting(folder=sys.argv[1]), integrator="symplectic")
     with processes(2) as two:
-        result = simulation.sweep(scene, executor=two)
+        result = simulation.sweep(scene, executor=two, return_partial=True)
     print([status.name for status in result.status].count("INTERRUPTED"))
 """
 

@@ -590,7 +590,7 @@ def test_a_stopped_sweep_keeps_what_is_done_and_resumes_on_other_workers(tmp_pat
         assert total == 2500
         raise KeyboardInterrupt
 
-    stopped = RIGID.sweep(scene, progress=stop, keep=folder)
+    stopped = RIGID.sweep(scene, progress=stop, keep=folder, return_partial=True)
     assert [each is Status.INTERRUPTED for each in stopped.status[[0, 999, 1000, -1]]] == [
         False, False, True, True,
     ]  # fmt: skip

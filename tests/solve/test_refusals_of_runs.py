@@ -167,7 +167,8 @@ REFUSED = [
     ),
     (
         lambda: Simulation().sweep([BARE], progress=5),
-        "progress = 5: must be callable; give a function of done and total",
+        "progress = 5: must be True or a function of done and total; give True, or: "
+        "bar = tqdm(); progress=lambda done, total: bar.update(done - bar.n)",
     ),
     (
         lambda: Simulation().sweep([BARE], chunk=0),

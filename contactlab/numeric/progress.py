@@ -6,8 +6,14 @@ import contextlib
 import sys
 import time
 from collections.abc import Callable
-from typing import Self
+from typing import Self, TypeAlias
 
+from contactlab.numeric.checks import refuse
+
+#: What is called after each item, as ``count(done, total)``.
+Count: TypeAlias = Callable[[int, int], object]
+#: How a bar that is no function, as tqdm's, is moved by one.
+OF_A_BAR = "give True, or: bar = tqdm(); progress=lambda done, total: bar.update(done - bar.n)"
 #: Work shorter than this shows no progress, in s.
 QUIET = 2.0
 #: Least time between updates of the line on a terminal, and between lines elsewhere, in s.
@@ -25,7 +31,7 @@ class Progress:
         self._what, self._terminal = what, terminal
         self._started = time.perf_counter()
         self._next = self._started + QUIET
-        self._share = ""
+        self._share = self._shown = ""
 
     def __enter__(self) -> Self:
         """Return the progress line."""
@@ -51,19 +57,38 @@ class Progress:
     def _put(self, text: str) -> None:
         """Print one state of the line."""
         if self._terminal:
-            getattr(sys.stderr, "overwrite", lambda _: None)(text)
+            overwrite = getattr(sys.stderr, "overwrite", None)  # of the command line's own stream
+            if overwrite is not None:
+                overwrite(text)
+            elif text or self._shown:
+                print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
+            self._shown = text
         else:
             print(text, file=sys.stderr, flush=True)
 
 
-def progress(
-    wanted: bool | None, what: str
-) -> contextlib.AbstractContextManager[Callable[[int, int], object] | None]:
-    """Return the progress line, or a context of None; by default only a terminal has the line."""
-    terminal = sys.stderr.isatty()
-    if not (terminal if wanted is None else wanted):
+def follow(
+    wanted: bool | Count | None, what: str
+) -> contextlib.AbstractContextManager[Count | None]:
+    """Return a context of what is called after each item: a function, the progress line, or None.
+
+    Raises
+    ------
+    ValueError
+        If ``wanted`` is neither True, False, None nor a function.
+    """
+    if wanted is True:
+        return Progress(what, terminal=sys.stderr.isatty())
+    if wanted is None or wanted is False:
         return contextlib.nullcontext()
-    return Progress(what, terminal=terminal)
+    if isinstance(wanted, type) or not callable(wanted):
+        raise refuse("progress", wanted, "must be True or a function of done and total", OF_A_BAR)
+    return contextlib.nullcontext(wanted)
+
+
+def progress(wanted: bool | None, what: str) -> contextlib.AbstractContextManager[Count | None]:
+    """Return the progress line, or a context of None; by default only a terminal has the line."""
+    return follow(sys.stderr.isatty() if wanted is None else wanted, what)
 
 
 def in_words(seconds: float) -> str:
