@@ -56,8 +56,7 @@ def name_curves(
     alike : sequence of sequences of Line2D
         Groups of curves that share a name: a name may be as near to another of its group.
     """
-    figure = axes.get_figure(root=True)
-    assert figure is not None
+    figure = axes.figure.figure  # of a subfigure too, in matplotlib of any age
     # limits and layout come first
     if (layout := figure.get_layout_engine()) is not None:
         layout.execute(figure)

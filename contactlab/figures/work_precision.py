@@ -203,8 +203,7 @@ def _limits(axes: Axes) -> tuple[float, float]:
 
 def _write_beside(axes: Axes, names: Sequence[Name]) -> None:
     """Write the names beside their points, where they cover no curve and no other name."""
-    figure = axes.get_figure(root=True)
-    assert figure is not None
+    figure = axes.figure.figure  # of a subfigure too, in matplotlib of any age
     figure.canvas.draw()
     to_share = axes.transData + axes.transAxes.inverted()
     drawn = np.concatenate([_along(to_share.transform(line.get_xydata())) for line in axes.lines])

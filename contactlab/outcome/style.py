@@ -133,8 +133,7 @@ def figure_size(width: Width | None) -> tuple[float, float]:
 
 def figure_width(axes: Axes) -> float:
     """Return the width of the figure of the axes, in inches."""
-    figure = axes.get_figure(root=True)
-    assert figure is not None
+    figure = axes.figure.figure  # of a subfigure too, in matplotlib of any age
     return float(figure.get_figwidth())
 
 

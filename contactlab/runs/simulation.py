@@ -59,7 +59,8 @@ class Simulation:
         The default is exact: Hertz's closed form and the slip front followed event by event.
         A law that is left out is the first in ``contactlab.registry.composition.PREFERRED`` that
         fits the others; where friction changes the approach, and that law has no answer, the first
-        in ``FOR_COUPLED`` stands in for it.
+        in ``FOR_COUPLED`` stands in for it. ``attrs.evolve(simulation, tangential="springs")``
+        swaps a law: of the others those that were given stay, and the rest is chosen anew.
 
     Raises
     ------
@@ -67,9 +68,13 @@ class Simulation:
         If a name is not installed, or the laws do not fit together (naming what would).
     """
 
-    normal: NormalLaw
-    tangential: TangentialLaw
-    integrator: Integrator
+    # Laws that were given, which attrs.evolve passes on, and None for the others.
+    _normal: str | NormalLaw | None = attrs.field(eq=False, repr=False)
+    _tangential: str | TangentialLaw | None = attrs.field(eq=False, repr=False)
+    _integrator: str | Integrator | None = attrs.field(eq=False, repr=False)
+    normal: NormalLaw = attrs.field(init=False)
+    tangential: TangentialLaw = attrs.field(init=False)
+    integrator: Integrator = attrs.field(init=False)
     #: The three laws, and the kinds of those that were given.
     laws: Laws = attrs.field(init=False, eq=False, repr=False)
 
@@ -102,8 +107,11 @@ class Simulation:
         return simulation
 
     def _set(self, laws: Laws) -> None:
-        self.__attrs_init__(**laws.by_kind())
-        object.__setattr__(self, "laws", laws)
+        composed = laws.by_kind()
+        given = {kind: law if kind in laws.named else None for kind, law in composed.items()}
+        self.__attrs_init__(**given)
+        for name, value in (*composed.items(), ("laws", laws)):
+            object.__setattr__(self, name, value)
 
     def plan(self, scene: Scene, *, history: bool | str = False) -> Plan:
         """Return what ``run`` would compute for ``scene``, what it would leave out and why.

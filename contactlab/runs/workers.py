@@ -23,6 +23,13 @@ from contactlab.runs.pieces import Part, Piece, solve_chunk
 #: Most processes: more than any machine has processors.
 MOST_PROCESSES = 1024
 
+#: What has a method submit: in general, and of libraries whose pools have none.
+USUAL = "give ProcessPoolExecutor(4), or client.get_executor() of dask"
+GIVE = {
+    "joblib": "give joblib.externals.loky.get_reusable_executor(4)",
+    "ray": "give an object with submit = lambda call, *its: ray.remote(call).remote(*its).future()",
+}
+
 
 def pieces_of(
     laws: Laws, parts: Iterable[Part], executor: Executor, *, ahead: int | None = None
@@ -33,8 +40,8 @@ def pieces_of(
     the executor loses are solved once more, alone and then in halves (``lost.py``).
     """
     if isinstance(executor, type) or not callable(getattr(executor, "submit", None)):
-        remedy = "give ProcessPoolExecutor(4), or client.get_executor() of dask"
-        raise refuse("executor", executor, "must have a method submit", remedy)
+        library = type(executor).__module__.partition(".")[0]
+        raise refuse("executor", executor, "must have a method submit", GIVE.get(library, USUAL))
     if isinstance(executor, ThreadPoolExecutor) and _runs_in(executor):
         # A sweep inside a thread of its executor would wait for a thread, perhaps its own.
         yield from (solve_chunk(laws, scene, chunk, block) for chunk, scene, block in parts)

@@ -100,7 +100,8 @@ def test_interrupted_sweep_reports_what_is_done(tmp_path):
     )
     # It waits for the signal after its first line, however fast it is.
     talkative = (
-        "import signal, sys; from contactlab.cli import main, progress; progress.QUIET = 1e6; "
+        "import signal, sys; from contactlab.cli import main; "
+        "from contactlab.numeric import progress; progress.QUIET = 1e6; "
         "usual = progress.Progress.__call__; progress.Progress.__call__ = "
         "lambda self, *counts: usual(self, *counts) or self._what == 'impacts' and "
         "(self._put(self._share), signal.pause()); "

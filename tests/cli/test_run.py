@@ -10,7 +10,7 @@ import time
 import numpy as np
 import pytest
 
-from contactlab.cli import progress
+from contactlab.numeric import progress
 from tests.full_disk import full_disk
 
 RIGID = ("--tangential", "coulomb", "--integrator", "symplectic")

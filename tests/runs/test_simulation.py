@@ -225,3 +225,15 @@ def test_fields_are_followed_where_the_impact_is_known_as_a_whole(psi1):
     assert result.plan.marched.all()
     assert set(result.history.fields) >= {"radius", "displacement", "limit"}
     assert len(result.history.fields["limit"]) == len(result.history.time)
+
+
+def test_evolve_swaps_a_law_and_carries_only_what_was_given():
+    tsuji = attrs.evolve(Simulation(normal="tsuji"), tangential="springs")
+    assert tsuji == Simulation(normal="tsuji", tangential="springs")
+    assert tsuji.laws.named == {"normal", "tangential"}
+    back = attrs.evolve(attrs.evolve(Simulation(), tangential="springs"), tangential=None)
+    assert (back, back.laws.named) == (Simulation(), frozenset())
+    assert pickle.loads(pickle.dumps(tsuji)).laws == tsuji.laws
+    steps = contactlab.create("integrator.symplectic", steps=400)
+    with pytest.raises(ValueError, match=r"integrator = Symplectic: runs .*integrator\.events"):
+        attrs.evolve(Simulation(tangential="springs", integrator=steps), tangential="fronts")

@@ -2,6 +2,7 @@
 
 import os
 import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -462,3 +463,17 @@ def alive(pid):
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except OSError:
         return False
+
+
+@pytest.mark.parametrize(
+    ("library", "line"),
+    [
+        ("joblib.parallel", "joblib.externals.loky.get_reusable_executor(4)"),
+        ("ray.util.multiprocessing", "ray.remote(call).remote(*its).future()"),
+        ("mine", "ProcessPoolExecutor(4)"),
+    ],
+)
+def test_a_pool_without_submit_is_refused_with_what_has_one(library, line):
+    pool = type("Pool", (), {"__module__": library})()
+    with pytest.raises(ValueError, match=re.escape(line)):
+        Simulation(**RIGID).sweep(scene(3), executor=pool)
