@@ -29,6 +29,7 @@ from contactlab.scene_file.entries import (
 )
 from contactlab.scene_file.laws import LawChoice, read_laws
 from contactlab.scene_file.measured import Measured, read_measured
+from contactlab.scene_file.quantities import read_units
 from contactlab.scene_file.sweep import Sweep, read_sweep
 from contactlab.scene_file.table import Table
 
@@ -138,6 +139,7 @@ def read_scene(
         raise refuse("path", path, "must not hold a null character")
     document = _document(file)
     try:
+        document = read_units(document)
         root = Table(document, "", known=SECTIONS)
         about = Table(document.get("about", {}), "about", known=ABOUT_KEYS)
         sweep = read_sweep(document.get("sweep", {}))

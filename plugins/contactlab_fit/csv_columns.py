@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from contactlab.impact.scene import entry_unit
 from contactlab.numeric.names import nearest
+from contactlab.numeric.units import CONVERSIONS, SAME_UNITS
 from contactlab.outcome.columns import QUANTITIES, foreign
 from contactlab.outcome.files import content
 from contactlab.scene_file.entries import ENTRIES
@@ -22,23 +23,6 @@ MEASURABLE = (
     "rebound_normal_velocity", "rebound_tangential_velocity", "rebound_slip_velocity",
     "rebound_spin", "contact_time", "psi2",
 )  # fmt: skip
-#: Factors from the unit of a column to the unit of the quantity.
-CONVERSIONS = {
-    ("rad", "deg"): math.degrees(1.0), ("deg", "rad"): math.radians(1.0),
-    ("mm/s", "m/s"): 1e-3, ("cm/s", "m/s"): 1e-2, ("mm", "m"): 1e-3, ("g", "kg"): 1e-3,
-    ("km/h", "m/s"): 1.0 / 3.6, ("mph", "m/s"): 0.44704, ("ft/s", "m/s"): 0.3048,
-    ("cm", "m"): 1e-2, ("in", "m"): 0.0254, ("ft", "m"): 0.3048,
-    ("oz", "kg"): 0.028349523125, ("lb", "kg"): 0.45359237,
-    ("rpm", "rad/s"): 2.0 * math.pi / 60.0, ("rev/s", "rad/s"): 2.0 * math.pi,
-    ("1/min", "rad/s"): 2.0 * math.pi / 60.0, ("deg/s", "rad/s"): math.radians(1.0),
-    ("ms", "s"): 1e-3, ("µs", "s"): 1e-6, ("us", "s"): 1e-6,
-}  # fmt: skip
-#: Other ways to write a unit.
-SAME_UNITS = {
-    "°": "deg", "degrees": "deg", "degree": "deg", "-": "1", "°/s": "deg/s", "dps": "deg/s",
-    "mps": "m/s", "kph": "km/h", "kmh": "km/h", "fps": "ft/s", "inch": "in", "inches": "in",
-    "rps": "rev/s", "r/min": "rpm",
-}  # fmt: skip
 #: Endings of a name that state its unit, the longest first: ``_rad_s`` before ``_s``. A name such
 #: as ``v_in`` is of the way in, not in inches.
 ENDINGS = sorted(

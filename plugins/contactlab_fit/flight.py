@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array
+from contactlab.numeric.units import CONVERSIONS
 from contactlab_fit.csv_columns import (
-    CONVERSIONS,
     name_and_unit,
     read_numbers,
     read_text,

@@ -10,10 +10,10 @@ import numpy as np
 
 from contactlab.impact.scene import entry_unit
 from contactlab.numeric.names import nearest
+from contactlab.numeric.units import CONVERSIONS
 from contactlab.outcome.columns import QUANTITIES
 from contactlab.scene_file.entries import ENTRIES
 from contactlab_fit.csv_columns import (
-    CONVERSIONS,
     HEADING,
     measurable,
     name_and_unit,

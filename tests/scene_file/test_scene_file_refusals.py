@@ -42,7 +42,7 @@ def test_the_good_document_is_good(tmp_path):
     assert contactlab.read_scene(path).scene.shape == ()
 
 
-NOT_NUMBERS = ["nan", "inf", "-inf", '"5 mm"', "true", "[1.0, 2.0]", "1979-05-27", "{a = 1}"]
+NOT_NUMBERS = ["nan", "inf", "-inf", '"five mm"', "true", "[1.0, 2.0]", "1979-05-27", "{a = 1}"]
 NUMBERS = [key for key in GOOD if key != "target.kind"]
 
 
