@@ -20,14 +20,13 @@ from contactlab_fit.csv_columns import (
     read_numbers,
     read_text,
 )
+from contactlab_fit.drops import GRAVITY
 from contactlab_fit.measurements import Measurements, column_of
 
 #: Columns of a film and their units; without z the flight stays in the plane of x and y.
 FILM = {"t": "s", "x": "m", "y": "m", "z": "m", "angle": "rad"}
 #: Other names of columns.
 ALSO = {"time": "t", "angle_deg": "angle", "rotation": "angle", "height": "y"}
-#: Standard gravity in m/s²; on the ground it differs from it by up to 0.3 %.
-GRAVITY = 9.80665
 #: Shares by which the flights may fall faster or slower before it is told, and before the film is
 #: refused.
 TOLD, REFUSED = 0.03, 0.15

@@ -19,6 +19,7 @@ from contactlab_fit.csv_columns import (
     read_heading,
     read_text,
 )
+from contactlab_fit.drops import TAKEN, find_drops, restitutions, tell_restitutions
 from contactlab_fit.foreign_headings import ForeignHeadingsError, foreign
 from contactlab_fit.struck import VELOCITY, to_the_struck_body
 
@@ -105,7 +106,9 @@ def read_measurements(
         unit ``(1)`` may be left out. ``<quantity>_error`` holds standard errors. A column whose
         heading begins with ``#`` is not read. A column of unknown meaning is left out with a
         note; one whose heading looks like other words for a quantity is refused with its name
-        here, to be confirmed by ``columns``.
+        here, to be confirmed by ``columns``. Of a ball that is dropped either ``drop_height`` and
+        ``bounce_height``, or the times ``t_bounce`` of its taps on the floor, give the normal
+        restitution and the speed of each bounce.
     columns : mapping of str to str, or sequence of str, optional
         Names for headings of another kind: ``{"impact angle [deg]": "incidence_angle"}``. The
         unit is that of the name, else that of the heading. ``"-rebound_spin"`` turns the sign,
@@ -162,6 +165,8 @@ def _from_columns(
     for text in names:
         if text not in stripped:
             raise refuse("columns", text, "is not a heading", f"had: {', '.join(stripped)}")
+    if drops := find_drops({text: names.get(text.strip(), text) for text in headings}):
+        return _of_drops(columns, drops, source)
     parts: dict[str, dict[str, Array]] = {"given": {}, "measured": {}, "error": {}}
     unused: list[str] = []
     unknown: dict[str, object] = {}
@@ -208,6 +213,27 @@ def _from_columns(
         source=source,
         notes=notes,
         struck=struck,
+    )
+
+
+def _of_drops(
+    columns: Mapping[str, object], drops: Mapping[str, tuple[str, float]], source: str
+) -> Measurements:
+    """Return the bounces of a ball that is dropped."""
+    si = {
+        name: column_of(text, columns[text], gaps=False) * factor
+        for name, (text, factor) in drops.items()
+    }
+    speed, restitution = restitutions(si)
+    used = {text for text, _ in drops.values()}
+    return Measurements(
+        given={"normal_speed": speed, "tangential_velocity": np.zeros_like(speed)},
+        measured={"normal_restitution": restitution},
+        errors={},
+        unused=tuple(text for text in columns if text not in used),
+        source=source,
+        notes=(tell_restitutions(speed, restitution),),
+        taken=TAKEN,
     )
 
 
