@@ -24,7 +24,7 @@ from contactlab.cli import guide
 from contactlab.cli.main import main
 from contactlab.impact.hertz import peak_pressure
 from contactlab.registry.registry import REGISTRY
-from contactlab.testing import CHECKS, Verdict, check_law, examine
+from contactlab.testing import CHECKS, Verdict, examine
 from tests.present import ROOT, needs_sources
 
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -75,6 +75,7 @@ def test_the_law_of_ones_own_is_checked_and_priced_as_told():
     told = " ".join(TEXT.split())
     assert f"{verdicts.count(Verdict.PASSED)} checks pass. One fails, `turning_points`," in told
     assert [item.check for item in found if item.verdict is Verdict.FAILED] == ["turning_points"]
+    assert f"The kit has {len(CHECKS)} named checks" in told
     scene = Scene.nondimensional(psi1=np.linspace(0.0, 6.0, 121), chi=1.4412)
     laws = {"exact": Simulation(), "smooth": Simulation(tangential=law)}
     compared = compare(scene, laws | {"annulus": Simulation(tangential="annulus")})
@@ -168,16 +169,6 @@ def test_the_table_of_errors_names_every_law():
         if info.kind == "tangential" and info.distribution == "contactlab"
     }
     assert told == ours - {"frictionless"}
-
-
-def test_the_law_of_ones_own_passes_the_kit_as_it_stands():
-    blocks = re.findall(r"```python\n(.*?)```", LAWS, re.DOTALL)
-    module, _ = run(next(code for code in blocks if "Smoothed" in code))
-    found = check_law(module.Smoothed())
-    assert {item.verdict for item in found} >= {Verdict.PASSED, Verdict.EXPECTED_FAILURE}
-    told = re.search(r"conformance kit: (\d+) of its (\d+) small named checks", LAWS)
-    assert told, "the guide should say how many checks apply"
-    assert (len(found), len(CHECKS)) == (int(told[1]), int(told[2]))
 
 
 def printed(*arguments):

@@ -1,7 +1,6 @@
 """`integrator.adaptive`: as many steps as keep psi2 within a tolerance, over any laws."""
 
 import math
-import re
 from functools import cache
 from typing import ClassVar
 
@@ -11,7 +10,6 @@ import pytest
 
 import contactlab
 from contactlab import Scene, Simulation, Status
-from contactlab.cli.guide import text
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 from contactlab.impact.hertz import rigid_body_rebound
 from tests.laws.law_files import EXAMPLES, of_file
@@ -25,13 +23,12 @@ PSI1, CHIS = (0.5, 0.9, 2.0, 3.0), (CHI, 3.0)
 
 
 @cache
-def of_guide(name):
-    """Return the class of that name from the code of the guide."""
-    blocks = re.findall(r"```python\n(.*?)```", text("laws"), re.S)
-    (code,) = [block for block in blocks if f"class {name}(" in block]
-    namespace = {"__name__": "guide_laws"}
-    exec(compile(code, "laws.md", "exec"), namespace)
-    return namespace[name]
+def smoothed():
+    """Return the class of the example of a law in five minutes, without what the example draws."""
+    code = (EXAMPLES / "law_in_five_minutes.py").read_text("utf-8").partition("\n\nSHARES")[0]
+    namespace = {"__name__": "law_in_five_minutes"}
+    exec(compile(code, "law_in_five_minutes.py", "exec"), namespace)
+    return namespace["Smoothed"]
 
 
 def mindlin(form):
@@ -49,7 +46,7 @@ LAWS = {
         EXAMPLES / "third_party_plugin/contactlab_cundall/law.py", "CundallStrack"
     )(),
     "rescaled": RescaledSpring,
-    "smoothed": lambda: of_guide("Smoothed")(),
+    "smoothed": lambda: smoothed()(),
 }
 #: Of second order in the step; the others jump as they come to slip, and are of first.
 SECOND = ("springs", "displacement", "increment", "increment_rescaled", "smoothed")
