@@ -45,7 +45,6 @@ LONG_CODE = ("many-machines", "any-two-bodies", "beyond-the-paper")
 #: Extras that the code of a page needs, or folders of plugins.
 EXTRAS = {
     "beyond-the-paper": ("contactlab_halfspace",),
-    "units-and-signs": ("contactlab_halfspace",),
     "for-a-paper": ("pandas",),
     "getting-started": ("xarray",),
     "many-machines": ("xarray", "dask"),
