@@ -24,11 +24,12 @@ def lines(markdown):
     return re.findall(r"^    contactlab (.*)$", markdown, re.MULTILINE)
 
 
-def test_every_command_has_a_section_and_a_row_in_the_table():
+def test_every_command_has_a_row_in_the_table():
     """The page is of a whole installation: folders of plugins may be taken out."""
-    assert COMMANDS.keys() <= SECTIONS.keys() <= COMMANDS.keys() | OF_FOLDERS
     rows = re.findall(r"^\| [^|`]+ \| `(\w+)` \|$", PAGE, re.MULTILINE)
-    assert sorted(rows) == sorted(SECTIONS)
+    assert len(rows) == len(set(rows))
+    assert COMMANDS.keys() <= set(rows) <= COMMANDS.keys() | OF_FOLDERS
+    assert set(SECTIONS) <= set(rows)
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -43,7 +44,7 @@ def test_the_laws_in_the_examples_of_a_help_text_are_installed(command):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", [name for name in COMMANDS if name in SECTIONS])
 def test_the_examples_of_a_command_run(run, command, tmp_path, monkeypatch):
     shutil.copytree(EXAMPLES, tmp_path / "examples", ignore=shutil.ignore_patterns("*_plugin"))
     monkeypatch.chdir(tmp_path)
