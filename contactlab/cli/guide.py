@@ -5,6 +5,7 @@ Examples
   contactlab guide
   contactlab guide choosing
   contactlab guide theory 5
+  contactlab guide glossary slip
   contactlab guide theory-springs | less
 """
 
@@ -25,13 +26,16 @@ from contactlab.registration.manager import MANAGER
 from contactlab.registration.names import PAGE, short_name
 
 #: Topics in reading order by group; each is a file of ``contactlab/guide``.
-QUESTIONS = "Questions"
+USE = "Use"
 GROUPS = {
-    "Begin": ("getting-started", "units-and-signs", "choosing", "command-line"),
-    "Answers": ("how-far-to-trust", "plans-and-statuses", "for-a-paper", "glossary"),
-    QUESTIONS: ("any-two-bodies", "load-paths", "beyond-the-paper", "many-machines"),
-    "Laws and codes": ("laws", "extending", "engines", "theory"),
-}
+    USE: (
+        "getting-started", "choosing", "command-line", "any-two-bodies", "load-paths",
+        "many-machines", "engines", "for-a-paper",
+    ),
+    "Trust": ("how-far-to-trust", "plans-and-statuses", "units-and-signs"),
+    "Extend": ("laws", "extending"),
+    "Look up": ("glossary", "theory"),
+}  # fmt: skip
 #: Parts of the long topics, whose own pages begin with a table of them.
 PARTS = {
     "extending": (
@@ -41,7 +45,7 @@ PARTS = {
     "theory": (
         "theory-impact", "theory-springs", "theory-methods", "theory-coupling",
         "theory-normal-laws", "theory-more-laws", "theory-loss", "theory-elliptic", "theory-spin",
-        "theory-references",
+        "beyond-the-paper", "theory-references",
     ),
 }  # fmt: skip
 
@@ -64,8 +68,8 @@ def resource(package: str, name: str) -> Path | None:
 
 
 def groups() -> dict[str, tuple[str, ...]]:
-    """Return the topics by group; pages of plug-ins end the group of questions."""
-    return GROUPS | {QUESTIONS: GROUPS[QUESTIONS] + tuple(sorted(add_pages()))}
+    """Return the topics by group; pages of plug-ins end the first."""
+    return GROUPS | {USE: GROUPS[USE] + tuple(sorted(add_pages()))}
 
 
 def topics() -> tuple[str, ...]:
@@ -80,6 +84,7 @@ def pages() -> tuple[str, ...]:
 
 #: Longest line of prose, however wide the terminal is.
 WIDEST = 100
+GLOSSARY = "glossary"
 #: Signs of LaTeX that no word has: a page that has ``\\psi_1`` is found by psi1.
 LATEX = str.maketrans("", "", "\\_{}$")
 #: Heading of a numbered section, such as ``## 5. The slip front``.
@@ -93,8 +98,9 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         "topic", nargs="?", metavar="TOPIC", help="or a part of one; leave it out for the list"
     )
     parser.add_argument(
-        "section", nargs="?", metavar="SECTION", help="number of a section, for theory"
-    )
+        "section", nargs="?", metavar="SECTION",
+        help="number of a section, for theory; a word, for the glossary",
+    )  # fmt: skip
     return execute
 
 
@@ -110,14 +116,19 @@ def execute(arguments: argparse.Namespace) -> int:
         return 0
     shown = text(arguments.topic)
     if arguments.section is not None:
-        shown = sections(whole(arguments.topic)).get(arguments.section.lstrip("§"), "")
-        if not shown:
+        glossary = arguments.topic.removesuffix(".md") == GLOSSARY
+        parts = entries(shown) if glossary else sections(arguments.topic)
+        asked = arguments.section.lower().lstrip("§")
+        if asked not in parts:
+            what = "entry" if glossary else "section"
+            hint = nearest(asked, parts, alike=0.75) if glossary else ""
             raise refuse(
                 "section",
                 arguments.section,
-                f"is not a section of {arguments.topic!r}",
-                "leave it out for the whole topic",
+                f"is not {'an' if glossary else 'a'} {what} of {arguments.topic!r}",
+                hint or "leave it out for the whole topic",
             )
+        shown = parts[asked]
     width = min(shutil.get_terminal_size().columns, WIDEST)
     print(readable(shown.rstrip(), width))
     return 0
@@ -158,10 +169,27 @@ def summary(topic: str) -> str:
     return text(topic).split("\n", 3)[2]
 
 
-def sections(markdown: str) -> dict[str, str]:
-    """Return the numbered sections of a topic by number, each with its heading."""
-    starts = list(SECTION.finditer(markdown))
-    stops = [*(start.start() for start in starts), len(markdown)][1:]
-    return {
-        start[1]: markdown[start.start() : end] for start, end in zip(starts, stops, strict=True)
-    }
+def sections(topic: str) -> dict[str, str]:
+    """Return the numbered sections of a topic and its parts by number, each with its heading."""
+    found = {}
+    for page in (topic, *PARTS.get(topic.removesuffix(".md"), ())):
+        markdown = text(page)
+        starts = list(SECTION.finditer(markdown))
+        stops = [*(start.start() for start in starts), len(markdown)][1:]
+        for start, stop in zip(starts, stops, strict=True):
+            found[start[1]] = markdown[start.start() : stop]
+    return found
+
+
+def entries(markdown: str) -> dict[str, str]:
+    """Return the entries of the glossary by term, symbol and name in code, in small letters."""
+    found: dict[str, str] = {}
+    for row in re.findall(r"^\| (.* \|)$", markdown, re.MULTILINE):
+        cells = [cell.strip() for cell in row.removesuffix(" |").split(" |")]
+        between = ", ".join(cell for cell in cells[1:-1] if cell)
+        entry = f"{cells[0]} ({between}): {cells[-1]}".replace(" ()", "")
+        middle = " ".join(cells[1:-1]).replace("\\", "")
+        names = re.findall(r"(\w+)(?:\(\w+\))?`|\$(\w+)\$", middle)
+        for word in (*cells[0].split(", "), *map("".join, names)):
+            found.setdefault(word.lower(), entry)
+    return found

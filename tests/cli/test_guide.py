@@ -83,6 +83,32 @@ def test_columns_of_printed_formulas_stand_in_line(run):
     assert len({row.start(2) for row in rows}) == 1
 
 
+@pytest.mark.parametrize(
+    ("word", "told"),
+    [
+        ("slip", "slip (`slipping`): the surfaces move over each other"),
+        ("Slip velocity", "slip velocity (v_x, m/s,"),
+        ("microslip", "partial slip, microslip (`partial_slip`):"),
+        ("chi", "inertia ratio (χ, 1,"),
+        ("kappa", "stiffness ratio ("),
+        ("e_t", "tangential rest"),
+        ("traction", "traction (q, Pa,"),
+        ("psi_1", "angle of incidence, dimensionless ("),
+        ("tangential_stiffness", "tangential stiffness (k, N/m,"),
+    ],
+)
+def test_an_entry_of_the_glossary_is_printed_alone(run, word, told):
+    """By its term, or by its name in code."""
+    ran = run("guide", "glossary", word)
+    assert ran.status == 0
+    assert ran.out.startswith(told)
+    assert len(ran.out.splitlines()) < 4
+
+
+def test_the_last_numbered_section_ends_with_its_page(run):
+    assert "References" not in run("guide", "theory", "17").out
+
+
 def test_an_unknown_topic_is_refused_with_the_nearest(run):
     ran = run("guide", "teory")
     assert (ran.status, ran.out) == (2, "")
@@ -95,7 +121,7 @@ def test_an_unknown_topic_is_refused_with_the_nearest(run):
     [
         ("restitution", ("choosing",)), ("plugin", ("extending-kit",)),
         ("trust", ("how-far-to-trust",)), ("Hysteresis", ("load-paths",)), ("zzzzzz", ()),
-        ("psi1", ("getting-started",)), ("v_x", ("theory-impact", "units-and-signs")),
+        ("psi1", ("theory-impact",)), ("v_x", ("theory-impact", "units-and-signs")),
     ],
 )  # fmt: skip
 def test_a_word_is_refused_with_the_pages_that_have_it(run, word, pages):
@@ -108,7 +134,9 @@ def test_a_word_is_refused_with_the_pages_that_have_it(run, word, pages):
         assert word.lower() in run("guide", page).out.lower()
 
 
-@pytest.mark.parametrize("words", [("theory", "99"), ("theory", "five"), ("choosing", "1")])
+@pytest.mark.parametrize(
+    "words", [("theory", "99"), ("theory", "five"), ("choosing", "1"), ("glossary", "slipper")]
+)
 def test_an_unknown_section_is_refused(run, words):
     ran = run("guide", *words)
     assert (ran.status, ran.out) == (2, "")

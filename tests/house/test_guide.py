@@ -216,7 +216,7 @@ def test_sections_cited_within_the_theory_resolve():
 
 def rows(section):
     """The rows of numbers in the tables of a section of the theory."""
-    for line in sections(whole("theory"))[section].splitlines():
+    for line in sections("theory")[section].splitlines():
         cells = line.strip("| ").split(" | ")
         with contextlib.suppress(ValueError):
             yield [49 / 34 if cell == "49/34" else float(cell) for cell in cells]
