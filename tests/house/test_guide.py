@@ -34,7 +34,7 @@ BLOCKS = re.compile(r"```python\n(.*?)```\n(?:```text\n(.*?)```\n)?", re.DOTALL)
 CITATION = re.compile(r"\btheory(?:\.md`?)?\s+(?:#:?\s*)?(§§?\s*\d+(?:(?:,| and| to)\s+§?\d+)*)")
 DOI = re.compile(r"10\.\d{4,9}/[^\s,;]+")
 LAWS = (
-    "Viscoelastic", "Brush", "HardSphere", "RoughSphere", "SlipThenRoll", "Leapfrog", "Bristle",
+    "Viscoelastic", "Brush", "HardSphere", "SlipThenRoll", "Leapfrog", "Bristle",
     "OneSpring",
 )  # fmt: skip
 #: Laws whose checks take longer than a second.
