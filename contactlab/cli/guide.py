@@ -39,7 +39,7 @@ GROUPS = {
 #: Parts of the long topics, whose own pages begin with a table of them.
 PARTS = {
     "extending": (
-        "extending-contact", "extending-impacts", "extending-integrator", "extending-kit",
+        "extending-contact", "extending-impacts", "extending-kit", "extending-integrator",
         "extending-command", "extending-knowledge",
     ),
     "theory": (
