@@ -331,6 +331,10 @@ class SteppedTangentialLaw(TangentialLaw):
         """Return one sentence for each doubt about the law along a prescribed path; none here."""
         return ()
 
+    def field_cautions(self) -> tuple[str, ...]:
+        """Return one sentence for each doubt about ``fields`` in a history; none here."""
+        return ()
+
 
 class CausalTangentialLaw(SteppedTangentialLaw):
     """Base of stepped laws that take nothing of the motion to come, which friction may change.

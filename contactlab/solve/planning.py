@@ -12,6 +12,7 @@ from contactlab.contracts.law import claims
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
+from contactlab.contracts.tangential import SteppedTangentialLaw
 from contactlab.impact import kinetics
 from contactlab.impact.cautions import (
     of_ellipse,
@@ -141,7 +142,7 @@ def _words(
     if reason := _no_history(asked_for.history, columns, masks.marched):
         left_out.append(Clause(reason, masks.known))
     with np.errstate(under="ignore"):
-        cautions = _cautions(way, scene, motion, masks)
+        cautions = _cautions(way, scene, motion, masks, asked_for.history)
         if some(masks.marched):
             error = columns.psi2_error
             from contactlab.solve.error_cautions import of_errors  # of marches only
@@ -175,7 +176,9 @@ class _Asked(NamedTuple):
     estimate: bool
 
 
-def _cautions(way: Way, scene: Scene, motion: Motion | None, masks: Masks) -> Clauses:
+def _cautions(
+    way: Way, scene: Scene, motion: Motion | None, masks: Masks, history: bool | str
+) -> Clauses:
     """Return the cautions about numbers of the scene, of the laws, and of the energy books."""
     laws, part, central, known = way.laws, way.scene, way.scene_of_cautions, masks.known
     whole = central if every(known) else central.take(known)
@@ -191,6 +194,8 @@ def _cautions(way: Way, scene: Scene, motion: Motion | None, masks: Masks) -> Cl
         normal = _motion_of(laws, central, moved, masks.marched)
         remarks = laws.integrator.cautions
         of_laws += ask(laws.integrator, remarks, marched, normal, laws.tangential)
+        if history == "fields" and isinstance(laws.tangential, SteppedTangentialLaw):
+            of_laws += ask(laws.tangential, laws.tangential.field_cautions)
     for law in (laws.normal, laws.tangential):
         if "elliptic" not in claims(law):
             said += of_ellipse(whole, name_of(law))

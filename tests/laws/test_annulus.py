@@ -138,3 +138,44 @@ def test_many_annuli_have_the_answers_of_one_solve_a_step(displacement, monkeypa
     tables.tables.cache_clear()
     assert kept.psi2 == pytest.approx(solved.psi2, abs=1e-12)
     assert kept.motion.friction_work == pytest.approx(solved.motion.friction_work, abs=1e-12)
+
+
+def stuck_share(result):
+    """Return time over duration, and the share of the area in contact that sticks."""
+    fields = result.history.fields
+    stuck, slips = np.asarray(fields["stuck"], dtype=bool), np.asarray(fields["slipping"]) != 0
+    radius = np.asarray(fields["radius"])[0]
+    area = radius * np.gradient(radius)
+    share = (stuck * area).sum(axis=1) / ((stuck | slips) * area).sum(axis=1).clip(1e-12)
+    return result.history.time / result.motion.duration, share
+
+
+@pytest.mark.parametrize(("psi1", "took"), [(1.2, 0.17), (1.5, 0.24)])
+def test_outermost_annuli_stick_falsely_while_few_are_in_contact(psi1, took):
+    """From a tenth of the area to all of it; exactly, all sticks at once (theory §6)."""
+    scene = Scene.nondimensional(psi1=psi1, chi=CHI)
+    annuli = impact(psi1, CHI, 50, 1000, history="fields")
+    exact = Simulation().run(scene, history="fields").check()
+    springs = Simulation(tangential="springs").run(scene, history="fields").check()
+    for result, expected in ((annuli, took), (exact, 0.0), (springs, 0.0)):
+        time, share = stuck_share(result)
+        spread = time[np.argmax(share > 0.999)] - time[np.argmax(share > 0.1)]
+        assert spread == pytest.approx(expected, abs=0.01)
+        assert ("caution:  stick and slip of annuli" in str(result.plan)) is (result is annuli)
+    assert annuli.psi2 == pytest.approx(exact.psi2, abs=0.006)
+    without = impact(psi1, CHI, 50, 1000, history=True)
+    assert "stick and slip of annuli" not in str(without.plan)
+
+
+def test_microslip_begins_while_the_contact_grows_and_annuli_slip_before():
+    scene = Scene.nondimensional(psi1=1.2, chi=CHI)
+    begins = []
+    for result in (
+        Simulation().run(scene, history="fields").check(),
+        impact(1.2, CHI, 50, 1000, history="fields"),
+    ):
+        time, share = stuck_share(result)
+        full = np.argmax(share > 0.999)
+        begins.append(time[full + np.argmax(share[full:] < 0.999)])
+        assert time[np.argmax(result.history.contact_radius)] == pytest.approx(0.5, abs=0.01)
+    assert begins == pytest.approx([0.40, 0.19], abs=0.01)

@@ -90,6 +90,14 @@ class Annulus(PartialSlip, AllStepsTangentialLaw):
             "(numerical error; it falls with their number)",
         )
 
+    def field_cautions(self) -> tuple[str, ...]:
+        """Return the caution that maps of stick and slip have false spots, with their extent."""
+        return (
+            "stick and slip of annuli: while few are in contact the outermost stick or slip "
+            "falsely, for up to a quarter of an impact (numerical error, not in psi2); springs "
+            "and fronts do not",
+        )
+
     def start(self, scene: Scene, normal: NormalMotion) -> State:
         """Return a contact without traction."""
         memory = step.start(self.annuli, scene.shape)
