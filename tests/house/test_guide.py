@@ -42,6 +42,13 @@ HEAVY = ("Viscoelastic", "Brush", "Bristle", "Leapfrog", "OneSpring")
 WITH_CODE = [page for page in guide_pages() if BLOCKS.search(text(page))]
 #: Pages whose code takes longer than a third of a second.
 LONG_CODE = ("many-machines", "any-two-bodies", "beyond-the-paper")
+#: Pages to look something up: they are not read from end to end, and have no bound of words.
+LOOKED_UP = {
+    "glossary", "theory", *PARTS["theory"], "extending-integrator", "extending-command",
+    "extending-knowledge",
+}  # fmt: skip
+#: Words of all other pages, code and tables among them, above which nobody reads a guide.
+MOST_WORDS = 20_000
 #: Extras that the code of a page needs, or folders of plugins.
 EXTRAS = {
     "beyond-the-paper": ("contactlab_halfspace",),
@@ -117,6 +124,11 @@ def test_the_table_of_a_long_topic_leads_to_its_parts_of_a_thousand_words(topic)
         if topic == "theory":
             assert [int(number) for number in SECTION.findall(text(part))] == expected
         assert 300 < len(text(part).split()) < 1500
+
+
+def test_what_is_to_be_read_has_few_words():
+    read = {page: len(text(page).split()) for page in guide_pages() if page not in LOOKED_UP}
+    assert sum(read.values()) <= MOST_WORDS, read
 
 
 @pytest.mark.parametrize("topic", guide_topics())
