@@ -78,6 +78,9 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         metavar="FILM.csv",
         help="in place of DATA.csv: positions t, x, y (optional z, angle) of a ball that bounces",
     )
+    parser.add_argument(
+        "--fps", type=float, metavar="RATE", help="frames a second of a film with a column frame"
+    )
     add_columns(parser)
     shared.add_figure(parser, "draw measured values, laws and residuals")
     shared.add_file(parser, "--csv", ".csv", words="write the residuals")
@@ -95,10 +98,9 @@ def execute(arguments: argparse.Namespace) -> int:
     data, path = _files(arguments.files, arguments.flight)
     if arguments.flight is None:
         impacts = read_impacts(data, arguments)
-    elif arguments.columns:
-        raise ValueError("--columns: names those of DATA.csv; of a film --column 'HEADING=x' does")
     else:
-        impacts = read_flight(data, columns=dict(arguments.column))
+        names = arguments.columns or dict(arguments.column)
+        impacts = read_flight(data, columns=names, frame_rate=arguments.fps)
     impacts = as_met(impacts, path)
     samples = _samples(arguments.bootstrap, len(impacts))
     allow = arguments.allow_code

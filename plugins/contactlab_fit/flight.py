@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
@@ -12,10 +13,11 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.numeric.checks import refuse
-from contactlab.numeric.types import Array
+from contactlab.numeric.checks import POSITIVE, real, refuse
+from contactlab.numeric.types import Array, Real
 from contactlab.numeric.units import CONVERSIONS
 from contactlab_fit.csv_columns import (
+    NUMBER,
     name_and_unit,
     read_numbers,
     read_text,
@@ -24,7 +26,9 @@ from contactlab_fit.drops import GRAVITY
 from contactlab_fit.measurements import Measurements, column_of
 
 #: Columns of a film and their units; without z the flight stays in the plane of x and y.
-FILM = {"t": "s", "x": "m", "y": "m", "z": "m", "angle": "rad"}
+FILM = {"t": "s", "frame": "1", "x": "m", "y": "m", "z": "m", "angle": "rad"}
+#: Ways to write that a place is in pixels.
+PIXELS = ("px", "pixel", "pixels", "pix")
 #: Other names of columns.
 ALSO = {"time": "t", "angle_deg": "angle", "rotation": "angle", "height": "y"}
 #: Shares by which the flights may fall faster or slower before it is told, and before the film is
@@ -61,7 +65,10 @@ class Flight(NamedTuple):
 
 
 def read_flight(
-    content: str | Path | Mapping[str, object], *, columns: Mapping[str, str] | None = None
+    content: str | Path | Mapping[str, object],
+    *,
+    columns: Mapping[str, str] | Sequence[str] | None = None,
+    frame_rate: float | None = None,
 ) -> Measurements:
     """Return the bounces of a film as measured impacts, with standard errors.
 
@@ -70,9 +77,14 @@ def read_flight(
     content : path or mapping
         Columns ``t (s)``, ``x (m)`` and ``y (m)`` of the centre of the ball, ``y`` upwards from a
         level floor; optionally ``z (m)`` and ``angle (deg)``, which grows from x to y. Any number
-        of bounces. A time that goes back, or a pause, begins another throw.
-    columns : mapping of str to str, optional
-        Names for headings of another kind, ``{"frame time [ms]": "t"}``; ``"-y"`` turns a sign.
+        of bounces. A time that goes back, or a pause, begins another throw. Positions in ``(px)``
+        are scaled so that the flights fall with g, and y is turned if it grows downwards. Frames
+        in which the ball is held, or lies at rest, are left out and told.
+    columns : mapping of str to str, or sequence of str, optional
+        Names for headings of another kind, ``{"frame time [ms]": "t"}``; ``"-y"`` turns a sign. A
+        sequence names the columns of a file without headings.
+    frame_rate : float, optional
+        Frames a second, for a column ``frame`` in place of ``t``.
 
     Returns
     -------
@@ -94,26 +106,53 @@ def read_flight(
     all frames of the film about their parabolas. Errors of velocities before the impact are added
     to those after it.
     """
-    names = {text.strip(): name for text, name in (columns or {}).items()}
     source = ""
     table: Mapping[str, object]
     if isinstance(content, str | Path):
         source = str(content)
-        table = read_numbers(read_text(Path(content)), source)
+        table = read_numbers(_table_of(read_text(Path(content)), source, columns), source)
     elif isinstance(content, Mapping):
         table = content
     else:
         raise refuse("film", content, "must be a CSV file, or a mapping of columns")
+    names = columns if isinstance(columns, Mapping) else {}
+    names = {text.strip(): name for text, name in names.items()}
+    rate = None if frame_rate is None else real("frame_rate", frame_rate, rule=POSITIVE)
     try:
-        found = _bounces(_film(table, names))
+        film, in_pixels = _film(table, names, rate)
+        found = _bounces(film, in_pixels=in_pixels)
     except ValueError as error:
         raise ValueError(f"{source}: {error}" if source else str(error)) from None
     return attrs.evolve(found, source=source)
 
 
-def _film(table: Mapping[str, object], names: Mapping[str, str]) -> dict[str, Array]:
-    """Return the columns of a film in SI units, without frames that lack a number."""
+def _table_of(text: str, source: str, columns: object) -> str:
+    """Return the text of a film with one line of headings: the last before the numbers.
+
+    Programs that track marks write the names of marks above it, or below.
+    """
+    lines = [line for line in text.splitlines() if line.strip()]
+    cells = [re.split(r"[;\t]" if re.search(r"[;\t]", line) else ",", line) for line in lines]
+    first = next((place for place, row in enumerate(cells) if NUMBER.match(row[0].strip())), 0)
+    headings = [n for n in range(first) if len(cells[n]) == len(cells[first]) > 1]
+    if isinstance(columns, Mapping) or columns is None:
+        above = lines[:first] if not headings else [lines[headings[-1]]]
+        return "\n".join((*above, *lines[first:]))
+    if headings:
+        raise ValueError(f"{source}: has headings; name them by --column 'HEADING=x', a mapping in Python")
+    mark = next((mark for mark in (";", "\t") if mark in lines[first]), ",")
+    return "\n".join((mark.join(map(str, columns)), *lines[first:]))  # type: ignore[call-overload]
+
+
+def _film(
+    table: Mapping[str, object], names: Mapping[str, str], rate: Real | None
+) -> tuple[dict[str, Array], bool]:
+    """Return the columns of a film in SI, or with places in pixels, and whether they are.
+
+    Frames that lack a number are left out.
+    """
     film: dict[str, Array] = {}
+    in_pixels: set[bool] = set()
     for text, values in table.items():
         alias = names.get(text.strip(), text)
         sign = -1.0 if alias is not text and alias.startswith("-") else 1.0
@@ -125,10 +164,21 @@ def _film(table: Mapping[str, object], names: Mapping[str, str]) -> dict[str, Ar
         if name not in FILM or alias.strip().startswith("#"):
             continue
         own = FILM[name]
+        if name == "frame":
+            film["t"] = column_of(text, values, gaps=True) / _needed(rate, table)
+            continue
+        if own == "m":
+            in_pixels.add(unit in PIXELS)
+        if own == "m" and unit in PIXELS:
+            film[name] = sign * column_of(text, values, gaps=True)
+            continue
         if unit != own and (unit, own) not in CONVERSIONS:
             known = ", ".join(f"({each})" for each, to in CONVERSIONS if to == own)
             reason = f"is in {unit}, which is not known here" if unit else "has no unit"
-            raise ValueError(f"heading {text!r}: {reason}; write '{name} ({own})', or {known}")
+            more = ", (px)" if own == "m" else ""
+            raise ValueError(
+                f"heading {text!r}: {reason}; write '{name} ({own})', or {known}{more}"
+            )
         numbers = column_of(text, values, gaps=True)
         film[name] = sign * CONVERSIONS.get((unit, own), 1.0) * numbers
     for name in ("t", "x", "y"):
@@ -138,16 +188,33 @@ def _film(table: Mapping[str, object], names: Mapping[str, str]) -> dict[str, Ar
                 f"z (m) and angle (deg); name one by --column 'HEADING={name}'; "
                 f"had: {', '.join(table)}"
             )
+    if len(in_pixels) > 1:
+        raise ValueError("x, y, z: some are in pixels and some are not; give all in one unit")
     whole = np.all([np.isfinite(values) for values in film.values()], axis=0)
-    return {name: values[whole] for name, values in film.items()}
+    return {name: values[whole] for name, values in film.items()}, in_pixels == {True}
 
 
-def _bounces(film: dict[str, Array]) -> Measurements:
+def _needed(rate: Real | None, table: Mapping[str, object]) -> Real:
+    """Return the frame rate, or refuse frames without it."""
+    if rate is None:
+        raise ValueError(
+            "frame: needs the frames a second; give --fps 240 (frame_rate=240 in Python), or the "
+            f"times t (s); had: {', '.join(table)}"
+        )
+    return rate
+
+
+def _bounces(film: dict[str, Array], *, in_pixels: bool) -> Measurements:
     """Return the impacts of a film."""
     throws = list(_throws(film))
     step = float(np.median(np.concatenate([np.diff(throw["t"]) for throw in throws])))
     pairs: list[tuple[Flight, Flight, float, Flight | None]] = []
     notes: list[str] = []
+    if in_pixels:
+        throws, scale = _scaled(throws)
+        notes.append(scale)
+    throws, left_out = _in_flight(throws)
+    notes += left_out
     every: list[Flight] = []
     for throw in throws:
         flights, times = _flights(throw, step)
@@ -169,7 +236,7 @@ def _bounces(film: dict[str, Array]) -> Measurements:
         name: _scatter([flight.rests[name] for flight in every]) for name in film if name != "t"
     }
     noise = max(_noise(throw["t"], throw["y"]) for throw in throws if len(throw["t"]) > 2)
-    if scatter["y"] > ROUGH * noise + FLAT * float(np.ptp(film["y"])):
+    if scatter["y"] > ROUGH * noise + FLAT * max(float(np.ptp(throw["y"])) for throw in throws):
         raise ValueError(
             f"y: lies off the parabolas between touches by {scatter['y']:.2g} m (rms), the scatter "
             f"of frames in turn is {noise:.2g} m; check that y is the height of the centre and "
@@ -214,6 +281,64 @@ def _throws(film: dict[str, Array]) -> Iterator[dict[str, Array]]:
         if "angle" in throw:
             throw["angle"] = np.unwrap(throw["angle"])
         yield throw
+
+
+def _in_flight(throws: list[dict[str, Array]]) -> tuple[list[dict[str, Array]], list[str]]:
+    """Return throws without the frames in which the ball is held or at rest, and what was left out.
+
+    At its ends a throw stands still if its height does not change beyond the scatter for longer
+    than a flight could take within it.
+    """
+    kept, held, rested = [], 0, 0
+    for throw in throws:
+        t, y = throw["t"], throw["y"]
+        band = RISE * max(_noise(t, y), LEAST_RISE) if len(t) > 2 else 0.0
+        first, last = 0, len(t)
+        longest = 4.0 * math.sqrt(band / GRAVITY)  # up and down within twice the band
+        moved = np.flatnonzero(np.abs(y - np.median(y[:FRAMES])) > band)
+        if moved.size and t[moved[0]] - t[0] > longest:
+            first = int(moved[0])
+        moved = np.flatnonzero(np.abs(y - np.median(y[-FRAMES:])) > band)
+        if moved.size and t[-1] - t[moved[-1]] > longest:
+            last = int(moved[-1]) + 1
+        held, rested = held + first, rested + len(t) - last
+        kept.append({name: values[first:last] for name, values in throw.items()})
+    told = [(held, "before the ball is let go"), (rested, "after it has come to rest")]
+    return kept, [f"{count} frames {when} are left out" for count, when in told if count]
+
+
+def _scaled(throws: list[dict[str, Array]]) -> tuple[list[dict[str, Array]], str]:
+    """Return throws in m whose places are in pixels, so that flights fall with g, and a note."""
+    bends = np.concatenate([_bends(throw) for throw in throws])
+    free = np.abs(bends) > 0.5 * np.quantile(np.abs(bends), 0.9) if bends.size else bends
+    if not np.any(free):
+        raise ValueError("y (px): no flight is long enough to find the scale; give y in m")
+    bend = float(np.median(bends[free]))
+    scale = -GRAVITY / bend
+
+    def to_metres(throw: dict[str, Array]) -> dict[str, Array]:
+        sizes = {"x": abs(scale), "y": scale, "z": abs(scale)}
+        return {name: values * sizes.get(name, 1.0) for name, values in throw.items()}
+
+    turned = "; y grows downwards, and is turned" if scale < 0.0 else ""
+    told = f"1 px is {1e3 * abs(scale):.3g} mm, for the flights to fall with g{turned}"
+    return [to_metres(throw) for throw in throws], told
+
+
+def _bends(throw: dict[str, Array]) -> Array:
+    """Return second derivatives of y over time of short pieces that parabolas fit."""
+    t, y = throw["t"], throw["y"]
+    if len(t) < FRAMES:
+        return np.empty(0)
+    noise, bends = _noise(t, y), []
+    for first in range(len(t) - 2 * FRAMES):
+        piece = slice(first, first + 2 * FRAMES)
+        parabola, (rest, *_) = np.polynomial.polynomial.polyfit(
+            t[piece] - t[first], y[piece], 2, full=True
+        )
+        if float(np.sum(rest)) < 2 * FRAMES * (3.0 * noise) ** 2:
+            bends.append(2.0 * parabola[2])
+    return np.array(bends)
 
 
 def _flights(throw: dict[str, Array], step: float) -> tuple[list[Flight | None], list[float]]:

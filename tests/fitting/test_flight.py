@@ -124,7 +124,7 @@ def test_a_third_coordinate_and_other_headings(tmp_path):
     [
         ({"y (m)": None}, "y: is missing; a film has the columns"),
         ({"x (m)": None, "x": 1.0}, "heading 'x': has no unit; write 'x .m.', or .mm."),
-        ({"y (m)": None, "y (px)": 1.0}, "is in px, which is not known here"),
+        ({"y (m)": None, "y (furlongs)": 1.0}, "is in furlongs, which is not known here"),
         ({"y (m)": -1.0}, "y: lies off the parabolas between touches by .*grows upwards"),
         ({"y (m)": 1e-2}, "y: the flights fall with 0.0981 m/s².*its unit, the frame rate"),
         ({"t (s)": 0.0}, "t: does not grow"),
@@ -248,4 +248,82 @@ def test_the_command(tmp_path, capsys):
     assert main([*command[:3], str(path), str(bodies)]) == 2
     assert "--flight has the impacts; leave one of them out" in capsys.readouterr().err
     assert main([*command, "--columns", "t,x,y,angle"]) == 2
-    assert "of a film --column 'HEADING=x' does" in capsys.readouterr().err
+    assert "name them by --column 'HEADING=x'" in capsys.readouterr().err
+
+
+PIXEL = 4e-4
+
+
+@pytest.fixture
+def phone():
+    """Return a film as a phone makes it, speeds, restitution, and rows as a tracker writes them.
+
+    Places are in pixels and y grows downwards; the ball is held before its fall and rests at last.
+    """
+    generator = np.random.default_rng(11)
+    e, rate = 0.6, 120.0
+    first = np.sqrt(2.0 * G * 0.5)
+    speeds = first * e ** np.arange(4)
+    starts = 0.4 + first / G + np.concatenate([[0.0], np.cumsum(2.0 * speeds[1:] / G)])
+    t = np.arange(0.0, starts[-1] + 0.4, 1.0 / rate)
+    y = np.where(t < 0.4, 0.5, 0.5 - 0.5 * G * (t - 0.4) ** 2)
+    for start, speed in zip(starts[:-1], speeds[1:], strict=True):
+        now = t >= start
+        y[now] = speed * (t[now] - start) - 0.5 * G * (t[now] - start) ** 2
+    y[t >= starts[-1]] = 0.0
+    x = np.where(t < 0.4, 0.0, 0.3 * (t - 0.4))
+    px = 900.0 - y / PIXEL + generator.normal(0.0, 0.2, t.size)
+    frames = {
+        "frame": np.arange(t.size, dtype=float),
+        "x (px)": x / PIXEL + generator.normal(0.0, 0.2, t.size),
+        "y (px)": px,
+    }  # fmt: skip
+    rows = zip(*(values.tolist() for values in frames.values()), strict=True)
+    return frames, speeds[:3], e, [",".join(map(repr, row)) for row in rows]
+
+
+def test_a_film_in_pixels_finds_its_scale_and_leaves_out_what_is_no_flight(phone):
+    frames, speeds, e, _ = phone
+    found = read_flight(frames, frame_rate=120.0)
+    ratio = found.measured["rebound_normal_velocity"] / -found.given["normal_speed"]
+    assert np.abs(ratio[:2]) == pytest.approx(e, abs=0.01)
+    assert found.given["normal_speed"][:2] == pytest.approx(speeds[:2], rel=0.02)
+    told = " ".join(found.notes)
+    assert "1 px is 0.4" in told
+    assert "y grows downwards, and is turned" in told
+    assert "frames before the ball is let go are left out" in told
+    assert "after it has come to rest" in told
+
+
+@pytest.mark.parametrize(
+    ("head", "columns", "change"),
+    [
+        (["mass_A,,", "frame,x (px),y (px)"], None, str),
+        (["Frame,X1,Y1", "Tracks 1 to 1"], {"Frame": "frame", "X1": "x (px)", "Y1": "y (px)"}, str),
+        ([], ["frame", "x (px)", "y (px)"], str),
+        (["frame;x (px);y (px)"], None, lambda row: row.replace(",", ";").replace(".", ",")),
+        (["frame\tx (px)\ty (px)"], None, lambda row: row.replace(",", "\t")),
+    ],
+)
+def test_films_are_read_as_trackers_write_them(phone, tmp_path, head, columns, change):
+    frames, _, _, rows = phone
+    path = tmp_path / "film.csv"
+    path.write_text("\n".join([*head, *map(change, rows)]), encoding="utf-8")
+    found = read_flight(path, columns=columns, frame_rate=120.0)
+    same = read_flight(frames, frame_rate=120.0)
+    for name, values in same.measured.items():
+        np.testing.assert_allclose(found.measured[name], values, rtol=1e-12)
+
+
+def test_frames_need_their_rate_and_places_one_unit(phone):
+    frames, *_ = phone
+    with pytest.raises(ValueError, match="frame: needs the frames a second; give --fps 240"):
+        read_flight(frames)
+    with pytest.raises(ValueError, match="frame_rate = 0"):
+        read_flight(frames, frame_rate=0.0)
+    mixed = {name.replace("x (px)", "x (m)"): values for name, values in frames.items()}
+    with pytest.raises(ValueError, match="some are in pixels and some are not"):
+        read_flight(mixed, frame_rate=120.0)
+    still = frames | {"y (px)": np.full(len(frames["frame"]), 5.0)}
+    with pytest.raises(ValueError, match=r"y .px.: no flight"):
+        read_flight(still, frame_rate=120.0)
