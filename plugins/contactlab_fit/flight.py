@@ -139,7 +139,8 @@ def _table_of(text: str, source: str, columns: object) -> str:
         above = lines[:first] if not headings else [lines[headings[-1]]]
         return "\n".join((*above, *lines[first:]))
     if headings:
-        raise ValueError(f"{source}: has headings; name them by --column 'HEADING=x', a mapping in Python")
+        remedy = "name them by --column 'HEADING=x', a mapping in Python"
+        raise ValueError(f"{source}: has headings; {remedy}")
     mark = next((mark for mark in (";", "\t") if mark in lines[first]), ",")
     return "\n".join((mark.join(map(str, columns)), *lines[first:]))  # type: ignore[call-overload]
 
