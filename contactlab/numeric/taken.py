@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import attrs
@@ -19,9 +20,18 @@ class Taken(float):
 
 def taken(law: Any) -> dict[str, float]:
     """Return the numbers that a law took as nobody gave them, by the names of its options."""
-    fields = attrs.fields(type(law)) if attrs.has(type(law)) else ()
-    values = ((field.name, getattr(law, field.name)) for field in fields)
-    return {name: float(value) for name, value in values if isinstance(value, Taken)}
+    law_class: Any = type(law)
+    names = _options(law_class)
+    return {
+        name: float(getattr(law, name)) for name in names if isinstance(getattr(law, name), Taken)
+    }
+
+
+@lru_cache(maxsize=128)
+def _options(law_class: type) -> tuple[str, ...]:
+    """Return the names of the options of a law."""
+    fields = attrs.fields(law_class) if attrs.has(law_class) else ()
+    return tuple(field.name for field in fields)
 
 
 def of_taken(*laws: Any) -> list[str]:

@@ -17,7 +17,7 @@ from contactlab.numeric.arrays import of_each, plain, some
 from contactlab.numeric.names import attributes_told
 from contactlab.numeric.types import Each, Mask, Real
 from contactlab.outcome.columns import json_value
-from contactlab.outcome.motion import Motion
+from contactlab.outcome.motion import Motion, all_finite
 from contactlab.outcome.plan import PlanColumns
 
 #: A normal restitution above this is energy from nothing where no error of it is declared: an
@@ -127,6 +127,48 @@ def books(
     )
 
 
+def passes(
+    motion: Motion,
+    normal: NormalMotion,
+    bound: Real,
+    restitution_error: Real,
+    *,
+    scene: Scene,
+    coupled: bool,
+    bare: bool,
+) -> bool:
+    """Return whether ``sound`` and the judges leave one impact as it is: all in a few floats.
+
+    ``bare`` is ``coupled`` of ``sound``. A change of the spin about the normal is left to them.
+    """
+    if motion.status is not Status.SUCCESS or not all_finite(motion, bare):
+        return False
+    parting: Any = abs(normal.final_rate)
+    if parting > scene.normal_speed and judge_energy(motion, normal) is not motion:
+        return False
+    exchange: Any = motion.exchange
+    alone = exchange == 0.0 and motion.normal_spin_change == 0.0 and not coupled
+    if not alone and kinetics.turns(scene):
+        return False
+    slip: Any = scene.slip_velocity
+    change: Any = motion.slip_velocity_change
+    start, lost, slip_loss = kinetics.energies(scene, motion.normal_velocity, change)
+    if bound == math.inf:
+        bound = LARGEST_UNDECLARED
+    work, shear_loss = motion.friction_work, motion.shear_loss
+    least = -(min(bound, STEPS_LEAVE) + ROUNDING) * start
+    if abs(slip_loss - work - shear_loss + exchange) > bound * start:
+        return False
+    if work < least or shear_loss < least:
+        return False
+    if alone:
+        return not abs(slip + change) > LARGEST_SLIP * abs(slip)
+    gain = OF_THE_RATE * restitution_error + ROUNDING
+    if lost - exchange < -(STEPS_LEAVE if gain != gain else gain) * start:
+        return False
+    return bool(start - lost - slip_loss <= LARGEST_RESTITUTION**2 * start)
+
+
 def judge_energy(motion: Motion, normal: NormalMotion) -> Motion:
     """Return ``motion`` with status ``UNBALANCED`` where the normal law alone makes energy.
 
@@ -154,21 +196,15 @@ def judge_books(
 ) -> tuple[Motion, Real]:
     """Return ``motion`` with status ``UNBALANCED`` where the energy books do not balance.
 
-    Beside it stands the imbalance over the energy at the start; 0 if it is below every bound. It
-    fails above ``bound`` and ``cancels``, or above 1 if the bound is infinite. Or a
-    loss or work is below zero by more than rounding and what is declared; or the bodies
-    slip faster than at first touch. If friction changed the normal motion, as in motions of both
-    ``coupled``, or the spin about the normal, one of the two may gain what the other loses, and
-    the sum of both energies is judged. ``restitution_error`` is declared, NaN if it is not.
+    Beside it stands the imbalance over the energy at the start. It fails above ``bound`` and
+    ``cancels``, or above 1 if the bound is infinite. Or a loss or work is below zero by more than
+    rounding and what is declared; or the bodies slip faster than at first touch. If friction
+    changed the normal motion, as in motions of both ``coupled``, or the spin about the normal, one
+    of the two may gain what the other loses, and the sum of both energies is judged.
+    ``restitution_error`` is declared, NaN if it is not.
     """
     alone = (motion.exchange == 0.0) & (motion.normal_spin_change == 0.0) & (not coupled)
     gain = OF_THE_RATE * restitution_error + ROUNDING
-    if (
-        not scene.shape
-        and (alone or not kinetics.turns(scene))
-        and _balances(motion, scene, bound, alone, gain)
-    ):
-        return motion, 0.0
     return _mark_imbalance(motion, scene, np.maximum(bound, cancels), alone, gain)
 
 
@@ -190,31 +226,6 @@ def raise_errors(
         own = columns.restitution_error
         restitution = np.where(doubted, np.maximum(own, rate), own)
     return columns._replace(psi2_error=plain(psi2), restitution_error=plain(restitution))
-
-
-def _balances(motion: Motion, scene: Scene, bound: Real, alone: Mask, gain: Real) -> bool:
-    """Return whether the books of one impact balance: ``_mark_imbalance`` in a few floats.
-
-    A spin about the normal that does not change the energy has no part in them.
-    """
-    rate: Any = motion.normal_velocity
-    slip: Any = scene.slip_velocity
-    change: Any = motion.slip_velocity_change
-    start, lost, slip_loss = kinetics.energies(scene, rate, change)
-    bound = LARGEST_UNDECLARED if bound == math.inf else bound
-    work, shear_loss = motion.friction_work, motion.shear_loss
-    imbalance = slip_loss - work - shear_loss + motion.exchange
-    if abs(imbalance) > bound * start:
-        return False
-    least = -(min(bound, STEPS_LEAVE) + ROUNDING) * start
-    if work < least or shear_loss < least:
-        return False
-    if not alone:
-        kept = (STEPS_LEAVE if gain != gain else gain) * start
-        if lost - motion.exchange < -kept:
-            return False
-        return bool(start - lost - slip_loss <= LARGEST_RESTITUTION**2 * start)
-    return not abs(slip + change) > LARGEST_SLIP * abs(slip)
 
 
 @np.errstate(all="ignore")

@@ -152,6 +152,14 @@ CHECKED = (*MOVED, *(name for name in ENDS if name != "normal_velocity"))
 _numbers, _moved = attrgetter(*CHECKED), attrgetter(*MOVED)
 
 
+def all_finite(motion: Motion, coupled: bool) -> bool:
+    """Return whether the sum of the numbers is finite, which it is not if one of them is not.
+
+    ``coupled`` is that of ``sound``.
+    """
+    return finite(sum((_moved if coupled else _numbers)(motion)))
+
+
 def sound(motion: Motion, *, coupled: bool = False) -> Motion:
     """Return ``motion`` with status ``NON_FINITE`` where a success holds a number not finite.
 
@@ -160,16 +168,15 @@ def sound(motion: Motion, *, coupled: bool = False) -> Motion:
     check the quantities that they use; this check adds overflows in the conversion to SI, and
     quantities that an integrator does not check.
     """
-    # The sum is not finite if a number is not; if finite numbers overflow, each is looked at.
-    numbers = _moved if coupled else _numbers
+    # If finite numbers overflow, each is looked at.
     if motion.status is Status.SUCCESS:
-        if finite(sum(numbers(motion))):
+        if all_finite(motion, coupled):
             return motion
     elif not np.ndim(motion.status):
         return motion
     elif not coupled:
         with np.errstate(all="ignore"):
-            if finite(sum(numbers(motion))):
+            if all_finite(motion, coupled):
                 return motion
     names = MOVED if coupled else CHECKED
     values = {name: np.asarray(getattr(motion, name)) for name in names}

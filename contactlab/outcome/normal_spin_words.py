@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.impact.cautions import OUTSIDE
+from contactlab.impact.kinetics import turns
 from contactlab.impact.normal_spin import LARGEST_W, NormalSpin, normal_spin
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import some
@@ -28,6 +29,8 @@ def with_normal_spin(words: Words, scene: Scene, *, answered: Mask = False) -> W
 
     ``answered`` marks impacts whose law answers spin about the normal, unless a body is off centre.
     """
+    if scene.frame is None and not turns(scene):
+        return words
     spin = normal_spin(scene, answered=answered)
     computed, left_out, cautions = words
     where = np.array(np.broadcast_to(answered & np.not_equal(scene.normal_spin, 0.0), scene.shape))

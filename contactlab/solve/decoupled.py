@@ -116,23 +116,25 @@ class Decoupled(Way):
         self, normal: NormalMotion, answered: list[Answered], marched: Mask, size: Real
     ) -> Any:
         """Return the declared error of psi2: of one impact a float, of a batch an array."""
-        scene, laws = normal.scene, self.laws
+        scene = normal.scene
         rounding = CLOSED_FORM * size + normal.accuracy * 4.0 * scene.chi
         if not (scene.shape or marched):
             return float(rounding + answered[0].answer.psi2_error if answered else rounding)
+        if not scene.shape:
+            return plain(self._declare(normal))
         error: Any = spread(rounding, scene.shape)
         for one in answered:
             error = error + np.where(one.where, one.answer.psi2_error, 0.0)
-        if some(marched):
-            with np.errstate(all="ignore"):
-                declared: Any = math.nan  # of a motion without a course no law is asked
-                if type(normal) is not UnfollowedMotion:
-                    errors = laws.integrator.errors(scene, normal, laws.tangential)
-                    declared = judges.judge_errors(laws.tangential, errors, scene.shape).psi2
-                if math.isnan(normal.accuracy):
-                    declared = math.nan  # no better known than the motion that it follows
-                error = np.where(marched, declared, error) if scene.shape else declared
-        return plain(error)
+        return plain(np.where(marched, self._declare(normal), error) if some(marched) else error)
+
+    def _declare(self, normal: NormalMotion) -> Real:
+        """Return the error of psi2 that the integrator declares of marched impacts."""
+        if type(normal) is UnfollowedMotion or math.isnan(normal.accuracy):
+            return math.nan  # no better known than the motion, nor asked of one without a course
+        laws, scene = self.laws, normal.scene
+        with np.errstate(all="ignore"):
+            errors = laws.integrator.errors(scene, normal, laws.tangential)
+        return judges.judge_errors(laws.tangential, errors, scene.shape).psi2
 
     def _tangential(
         self,

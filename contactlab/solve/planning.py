@@ -185,19 +185,25 @@ def _cautions(
     said = [*unit_slips(whole), *unlikely(whole), *rigid_bodies(whole)]
     of_laws: list[str] = []
     moved = way.motion_of_cautions(motion)
+    normal = None
     if some(masks.ended):
         normal = _motion_of(laws, central, moved, known)
         of_laws += way.cautions_of_laws(whole, normal, known)
         said += way.cautions_of_contact(whole, normal)
     if some(masks.marched):
         marched = part if every(masks.marched) else part.take(masks.marched)
-        normal = _motion_of(laws, central, moved, masks.marched)
+        if normal is None or not every(masks.marched):
+            normal = _motion_of(laws, central, moved, masks.marched)
         remarks = laws.integrator.cautions
         of_laws += ask(laws.integrator, remarks, marched, normal, laws.tangential)
         if history == "fields" and isinstance(laws.tangential, SteppedTangentialLaw):
             of_laws += ask(laws.tangential, laws.tangential.field_cautions)
-    for law in (laws.normal, laws.tangential):
-        if "elliptic" not in claims(law):
+    able = laws.capability
+    for law, words in (
+        (laws.normal, able.normal_claims),
+        (laws.tangential, able.tangential_claims),
+    ):
+        if "elliptic" not in words:
             said += of_ellipse(whole, name_of(law))
     own = [text for text in dict.fromkeys(of_laws) if text not in said]
     said += [*own, *way.own_cautions(bool(own)), *of_taken(way.laws.normal, way.laws.tangential)]

@@ -22,7 +22,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import consecutive
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array, Real
-from contactlab.outcome.energy import judge_books, judge_energy, raise_errors
+from contactlab.outcome.energy import judge_books, judge_energy, passes, raise_errors
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion, sound
 from contactlab.outcome.plan import ENDLESS, MARCHED, UNKNOWN, Clause, PlanColumns, Reason
@@ -160,13 +160,18 @@ class Way(Entries, ABC):
             return PlanColumns.nothing(scene.shape), nothing
         # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
         bound = prepared.books_bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
-        few = self.both or type(prepared.normal) is UnfollowedMotion  # isinstance is slow
-        motion = judge_energy(sound(motion, coupled=few), prepared.normal)
-        error = prepared.columns.restitution_error
+        normal, _, columns, _ = prepared
+        bare = self.both or type(normal) is UnfollowedMotion  # isinstance is slow
+        error = columns.restitution_error
+        if not scene.shape and passes(
+            motion, normal, bound, error, scene=scene, coupled=self.both, bare=bare
+        ):
+            return columns, motion
+        motion = judge_energy(sound(motion, coupled=bare), normal)
         motion, off = judge_books(
             motion, scene, bound, self.cancels, coupled=self.both, restitution_error=error
         )
-        return raise_errors(prepared.columns, scene, off, bound, self.cancels), motion
+        return raise_errors(columns, scene, off, bound, self.cancels), motion
 
     def solve_parts(self, places: list[slice]) -> tuple[PlanColumns, Motion]:
         """Return columns and motion of a batch that is solved in consecutive parts."""

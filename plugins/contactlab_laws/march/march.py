@@ -152,9 +152,10 @@ def _one_by_one(
             )
             response, state = law.advance(state, increment, before, contact)
             force, lost, settled, loss = response
-            plain_numbers = isinstance(force, float) and isinstance(lost, float)
-            usual = single and plain_numbers and isinstance(loss, float) and settled is True
-            if not usual and (words := judges.wrong_response(response, shape)):
+            if not (
+                single and settled is True and isinstance(force, float)
+                and isinstance(lost, float) and isinstance(loss, float)
+            ) and (words := judges.wrong_response(response, shape)):  # fmt: skip
                 raise faults.LawFaultError(Status.MALFORMED, words)
             slowed = force * (step.kick / mass)
             change = change - slowed
