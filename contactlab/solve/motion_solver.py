@@ -1,4 +1,4 @@
-"""The normal motions of many impacts, each in steps of its own, to ``TOLERANCE``."""
+"""The normal motions of many impacts, each in steps of its own, to ``normal_steps.TOLERANCE``."""
 
 from __future__ import annotations
 
@@ -15,38 +15,11 @@ from contactlab.numeric.checks import shown
 from contactlab.numeric.lobatto import lobatto, rows
 from contactlab.numeric.runge_kutta import attempt
 from contactlab.numeric.types import Array
+from contactlab.solve import normal_steps as rule
 from contactlab.solve.scaled_normal_law import ScaledNormalLaw
 from contactlab.solve.solved_motion import NODES, MotionTable, SolvedMotion
 
 Mask = NDArray[np.bool_]
-
-#: Error of approach, rate and load impulse in a step, over their scales: far below the default
-#: tolerances of the integrators, so that the normal motion does not limit their accuracy.
-TOLERANCE = 1e-11
-#: First step over the duration of a Hertz impact; the error sets the next ones.
-FIRST_STEP = 1e-4
-#: Steps after which a contact is abandoned, rejected steps included. Impacts of the laws here take
-#: 25 to 250, adhesion that holds 440; 5,000 steps take half a second.
-MOST_STEPS = 5_000
-#: Sign changes of the rate without separation after which a contact is abandoned: adhesion holds
-#: the bodies together.
-MOST_TURNS = 16
-#: Also abandoned: a contact deeper than this times R, or stationary. It is stationary if the rate,
-#: and its change by the present force over the time since first touch, are below this times v1.
-DEEPEST, AT_REST = 1e6, 1e-9
-#: An event this close to an end of a step, over the time since first touch, is at that end.
-NEAR = 1e-11
-#: Halvings of the part of a step that holds an event.
-HALVINGS = 60
-#: Error over the tolerance up to which a rejected step is used to locate an event.
-TRUSTED = 1e8
-#: The step after a rejected one ends before the event, by a fraction of the way: this many times
-#: the error over the width of the rejected step, but at most the second number.
-DOUBT, MOST_DOUBT = 10.0, 0.1
-#: Factor on the step that the error allows, and limits of the change from one step to the next.
-SAFETY, SHRINKAGE, GROWTH = 0.9, 0.2, 10.0
-#: Shortest step over the time since first touch: rounding error dominates below.
-SHORTEST = 1e-15
 
 
 class Solver:
@@ -80,7 +53,7 @@ class Solver:
         self.place = np.zeros((3, items))
         self.place[1] = 1.0
         self.time, self.turns = np.zeros(items), np.zeros(items)
-        self.width, self.event = np.full(items, FIRST_STEP), np.full(items, math.inf)
+        self.width, self.event = np.full(items, rule.FIRST_STEP), np.full(items, math.inf)
         self.begun, self.tried = np.zeros(items, dtype=bool), 0
         self.status = np.full(items, Status.SUCCESS, dtype=object)
         self.detail = np.full(items, "", dtype=object)
@@ -114,19 +87,18 @@ class Solver:
         self.tried += 1
         law.time = float((self.time * law.unit).max())
         width = np.where(law.active, np.minimum(self.width, self.event), 0.0)
-        tried = attempt(law.slope, self.place, width, tolerance=TOLERANCE, points=points)
+        tried = attempt(law.slope, self.place, width, tolerance=rule.TOLERANCE, points=points)
         good = law.active & (tried.error <= 1.0)
         course, contacts = tried.course, self._contacts(tried.course)
         self._refuse_nan(contacts[:, 2], good)
-        doubt = _doubt(tried.error, width)
+        doubt = rule.doubt(tried.error, width)
         until, ended = self._until(course, contacts, width, doubt)
-        close = NEAR * (self.time + width)
+        close = rule.NEAR * (self.time + width)
         # A step is rejected if it misses the tolerance or spans an event.
         taken = good & (width * (1.0 - until) <= close)
         ended &= taken | (width * until <= close)  # contact ends in this step, or at its beginning
         taken |= ended
-        sure = np.where(until < 1.0, until * (1.0 - doubt), 1.0)
-        self._plan(tried.error, width, sure, taken)
+        self._plan(tried.error, width, rule.sure_part(until, doubt), taken)
         widths = np.where(taken, width, 0.0)
         if ended.any():
             widths = np.where(ended, until * width, widths)
@@ -161,7 +133,7 @@ class Solver:
         """Return the fraction of a step before its first event, and True if contact ends there."""
         law, points = self.law, lobatto(NODES).points
         trusted = law.active & (doubt < 1.0)
-        close = NEAR * (self.time + width)
+        close = rule.NEAR * (self.time + width)
         # The search begins just after the step does, so that the last step's event is not repeated.
         start = np.minimum(close / np.where(width > 0.0, width, close), 1.0)
         place = _between(course, start)
@@ -181,7 +153,7 @@ class Solver:
         high = np.where(eventful, points[first], 1.0)
         low = np.where(eventful, np.maximum(points[np.maximum(first - 1, 0)], start), 1.0)
         out = begun & ~(contacts[first, 2, np.arange(self.items)] > 0.0)
-        for _ in range(HALVINGS):
+        for _ in range(rule.HALVINGS):
             # The number of halvings of an item does not depend on the other items.
             wide = (high - low) * width > 0.1 * np.maximum(close, doubt * low * width)
             if not wide.any():
@@ -196,22 +168,20 @@ class Solver:
             out = np.where(~before & wide, begun & ~(overlap > 0.0), out)
         return np.where(left, 0.0, low), left | (eventful & out)
 
-    def _plan(self, error: Array, width: Array, until: Array, taken: Mask) -> None:
+    def _plan(self, error: Array, width: Array, sure: Array, taken: Mask) -> None:
         """Set ``width`` and ``event`` of the next step from the error and width of this one."""
-        # ``error`` is over the tolerance, NaN if a force is not finite; ``until`` is the fraction
+        # ``error`` is over the tolerance, NaN if a force is not finite; ``sure`` is the fraction
         # of the step that is surely before an event.
-        active, missed, before = self.law.active, ~(error <= 1.0), until < 1.0
         # The eighth root by square roots: the last bit of a power depends on the array around it.
         root = np.sqrt(np.sqrt(np.sqrt(np.where(np.isnan(error), math.inf, error))))
-        factor = SAFETY / np.maximum(root, SAFETY / GROWTH)
-        # A step that an event shortened, or that was rejected over an event, sets no width.
-        changes = active & np.where(missed, ~before, width == self.width)
-        self.width = np.where(changes, width * np.clip(factor, SHRINKAGE, GROWTH), self.width)
-        self.event = np.where(before & ~taken, until * width, math.inf)
-        if (active & ~taken & (self.width <= SHORTEST * self.time)).any():
-            if self.law.finite:
-                raise self.law.fault(Status.UNRESOLVED, "steps became too short")
-            raise self.law.fault(Status.NON_FINITE, "a force that is not finite")
+        new = rule.next_width(width, rule.SAFETY / np.maximum(root, rule.LEAST_ROOT))
+        active, missed = self.law.active, ~(error <= 1.0)
+        self.width = np.where(
+            active & rule.sets_width(missed, sure, width, self.width), new, self.width
+        )
+        self.event = rule.next_event(width, sure, ~taken)
+        if (active & ~taken & (self.width <= rule.SHORTEST * self.time)).any():
+            raise rule.too_short(self.law)
 
     def _columns(self, course: Array, contacts: Array) -> Array:
         """Return the table's columns for one step, and write load impulses into ``course``."""
@@ -234,11 +204,9 @@ class Solver:
         """Abandon contacts that do not end, from rates before the last step and forces after it."""
         law, rate = self.law, self.place[1]
         self.turns += rate * rate_before < 0.0
-        rate_change = force * law.response * self.time
-        stationary = (np.abs(rate) < AT_REST) & (np.abs(rate_change) < AT_REST)
-        deep = law.in_si(self.place)[0] > DEEPEST * law.radius
-        abandoned = taken & ((self.turns > MOST_TURNS) | stationary | deep)
-        if self.tried >= MOST_STEPS:
+        change, approach = force * law.response * self.time, law.in_si(self.place)[0]
+        abandoned = taken & rule.is_endless(self.turns, rate, change, approach, law.radius)
+        if self.tried >= rule.MOST_STEPS:
             abandoned = law.active
         abandoned = abandoned & law.active
         for item in np.flatnonzero(abandoned).tolist():
@@ -252,9 +220,3 @@ class Solver:
 def _between(course: Array, fraction: Array) -> Array:
     """Return the values, shape (3, items), at a fraction of each item's step."""
     return np.asarray((rows(lobatto(NODES), fraction).T[:, None] * course).sum(axis=0))
-
-
-def _doubt(error: Array, width: Array) -> Array:
-    """Return the uncertainty of an event's place over the way to it; 1 if it cannot be located."""
-    blur = DOUBT * TOLERANCE * error / np.where(width > 0.0, width, 1.0)
-    return np.where(error <= 1.0, 0.0, np.where(error < TRUSTED, np.minimum(blur, MOST_DOUBT), 1.0))

@@ -1,4 +1,4 @@
-"""The normal motion of one impact, in plain numbers: steps as in ``motion_solver``."""
+"""The normal motion of one impact, in plain numbers: by the rule of ``normal_steps``."""
 
 from __future__ import annotations
 
@@ -15,23 +15,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import shown
 from contactlab.numeric.lobatto import lobatto
 from contactlab.numeric.runge_kutta import Alone as Step
-from contactlab.solve.motion_solver import (
-    AT_REST,
-    DEEPEST,
-    DOUBT,
-    FIRST_STEP,
-    GROWTH,
-    HALVINGS,
-    MOST_DOUBT,
-    MOST_STEPS,
-    MOST_TURNS,
-    NEAR,
-    SAFETY,
-    SHORTEST,
-    SHRINKAGE,
-    TOLERANCE,
-    TRUSTED,
-)
+from contactlab.solve import normal_steps as rule
 from contactlab.solve.scaled_normal_law import ScaledNormalLaw
 from contactlab.solve.solved_motion import NODES, MotionTable, SolvedMotion
 
@@ -59,12 +43,13 @@ class Alone:
         self.law = ScaledNormalLaw(law, scene)
         self.length, self.speed = self.law.length.item(), self.law.speed.item()
         self.unit, self.response = self.law.unit.item(), self.law.response.item()
-        self.largest = self.law.radius.item(), 1.0 / self.response
+        self.radius = self.law.radius.item()
+        self.largest = self.radius, 1.0 / self.response
         self.points: list[float] = lobatto(NODES).points.tolist()
         self.place, self.time, self.turns = [0.0, 1.0, 0.0], 0.0, 0
-        self.width, self.event = FIRST_STEP, math.inf
+        self.width, self.event = rule.FIRST_STEP, math.inf
         #: Width of the last step that set one, and the eighth root of its error.
-        self.before = FIRST_STEP, 1.0
+        self.before = rule.FIRST_STEP, 1.0
         self.begun, self.active, self.tried = False, True, 0
         #: Whether the last step ended at an event, at whose place nothing is judged.
         self.at_event = True
@@ -109,10 +94,10 @@ class Alone:
         self.tried += 1
         width = min(self.width, self.event)
         begin, planned = self.seen, width == self.event
-        step = Step(self._slope, self.place, self.first, width, tolerance=TOLERANCE)
+        step = Step(self._slope, self.place, self.first, width, tolerance=rule.TOLERANCE)
         end, state, good = self.seen, self.state, step.error <= 1.0
-        doubt = _doubt(step.error, width)
-        close = NEAR * (self.time + width)
+        doubt = rule.doubt(step.error, width)
+        close = rule.NEAR * (self.time + width)
         until, ended, contacts = 1.0, False, [begin]
         if doubt < 1.0:
             until, ended = self._until(step, end, doubt, close, contacts)
@@ -120,7 +105,7 @@ class Alone:
         taken = good and width * (1.0 - until) <= close
         ended = ended and (taken or width * until <= close)
         taken = taken or ended
-        self._plan(step.error, width, until * (1.0 - doubt) if until < 1.0 else 1.0, taken)
+        self._plan(step.error, width, rule.sure_part(until, doubt), taken)
         if not taken:
             if not math.isfinite(begin.force + begin.load):  # a shorter step begins there too
                 raise law.fault(Status.NON_FINITE, f"the answer {shown(begin.load)}")
@@ -194,7 +179,7 @@ class Alone:
             return 1.0, False
         out = begun and not there.overlap > 0.0
         turns = quiet(there._replace(rate=before.rate))  # alone: the law has no part in it
-        for _ in range(HALVINGS):
+        for _ in range(rule.HALVINGS):
             if not (high - low) * width > 0.1 * max(close, doubt * low * width):
                 break
             middle = 0.5 * (low + high)
@@ -206,24 +191,21 @@ class Alone:
                 high, out = middle, begun and not there.overlap > 0.0
         return low, out
 
-    def _plan(self, error: float, width: float, until: float, taken: bool) -> None:
+    def _plan(self, error: float, width: float, sure: float, taken: bool) -> None:
         """Set ``width`` and ``event`` of the next step from the error and width of this one."""
         missed = not error <= 1.0
-        root = math.inf if math.isnan(error) else error**0.125
-        factor = SAFETY / max(root, SAFETY / GROWTH)
-        # a step that an event shortened, or that missed over an event, sets no width
-        if until == 1.0 if missed else width == self.width:
+        root = max(math.inf if math.isnan(error) else error**0.125, rule.LEAST_ROOT)
+        factor = rule.SAFETY / root
+        if rule.sets_width(missed, sure, width, self.width):
             if not missed:
                 # as errors went from the step before to this one, so they go on (Gustafsson)
                 before, its_root = self.before
-                factor *= min(1.0, width / before * its_root / max(root, SAFETY / GROWTH))
-                self.before = width, max(root, SAFETY / GROWTH)
-            self.width = width * min(max(factor, SHRINKAGE), GROWTH)
-        self.event = until * width if until < 1.0 and not taken else math.inf
-        if not taken and self.width <= SHORTEST * self.time:
-            if self.law.finite:
-                raise self.law.fault(Status.UNRESOLVED, "steps became too short")
-            raise self.law.fault(Status.NON_FINITE, "a force that is not finite")
+                factor *= min(1.0, width / before * its_root / root)
+                self.before = width, root
+            self.width = rule.next_width(width, factor)
+        self.event = rule.next_event(width, sure, not taken)
+        if not taken and self.width <= rule.SHORTEST * self.time:
+            raise rule.too_short(self.law)
 
     def _columns(self, contacts: list[Seen]) -> tuple[list[list[float]], float]:
         """Return the table's columns for one step, and the scaled load impulse at its end."""
@@ -247,20 +229,11 @@ class Alone:
         """Abandon a contact that does not end, from the rate before a step."""
         rate = self.place[1]
         self.turns += rate * before < 0.0
-        change = force * self.response * self.time
-        stationary = abs(rate) < AT_REST and abs(change) < AT_REST
-        deep = self.place[0] * self.length > DEEPEST * self.law.radius.item()
-        endless = taken and (self.turns > MOST_TURNS or stationary or deep)
-        if self.active and (endless or self.tried >= MOST_STEPS):
+        change, approach = force * self.response * self.time, self.place[0] * self.length
+        endless = taken and rule.is_endless(self.turns, rate, change, approach, self.radius)
+        if self.active and (endless or self.tried >= rule.MOST_STEPS):
             self.active, self.status = False, Status.NOT_SEPARATED
             time = self.time * self.unit
             self.detail = faults.sentence(
                 self.law.law, "the bodies do not separate", self.law.steps, time
             )
-
-
-def _doubt(error: float, width: float) -> float:
-    """Return the uncertainty of an event's place over the way to it; 1 if it cannot be located."""
-    if error <= 1.0:
-        return 0.0
-    return min(DOUBT * TOLERANCE * error / width, MOST_DOUBT) if error < TRUSTED else 1.0

@@ -20,7 +20,7 @@ from contactlab.numeric.lobatto import lobatto, rows
 from contactlab.numeric.types import Array, Index, Real
 
 #: Declared relative error of the load impulse: the sum of the errors of all steps, each within
-#: the ``TOLERANCE`` of ``contactlab.solve.motion_solver``.
+#: the ``TOLERANCE`` of ``contactlab.solve.normal_steps``.
 ACCURACY = 1e-7
 #: Nodes in a step: polynomials of degree 7 hold the dense output of the solver exactly.
 NODES = 8
