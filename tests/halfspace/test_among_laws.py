@@ -11,7 +11,7 @@ from contactlab.study.stability_references import reference_for
 from tests.laws.normal_laws import in_si
 from tests.laws.test_adhesion import jkr
 from tests.laws.test_differences import size
-from tests.solve.any_scene import coupled_scene
+from tests.solve.any_scene import coupled_way
 from tests.solve.test_clay import SPHERE, clay
 from tests.solve.test_declared import assert_declared_alike
 from tests.solve.test_one_way_standing_in import follow_all
@@ -91,7 +91,7 @@ def test_as_much_is_declared_for_either_sense_of_slip():
     assert_declared_alike({"tangential": "halfspace"})
 
 
-@coupled_scene
+@coupled_way
 @pytest.mark.slow
 def test_its_remedies_where_friction_changes_the_approach_work(scene):
     follow_all(scene, {"tangential": "halfspace"})

@@ -40,15 +40,14 @@ BATCHES = {
     "space": Scene.nondimensional(psi1=np.stack((PSI1, 0.3 * PSI1), axis=-1), **TURNING),
     "mixed": Scene.stack(list(ONES.values())),
 }
-ALL = [*ONES.values(), *BATCHES.values()]
-NAMES = [*ONES, *(f"{name} batch" for name in BATCHES)]
-COUPLED = [(name, scene) for name, scene in zip(NAMES, ALL, strict=True) if "central" not in name]
-every_scene = pytest.mark.parametrize("scene", ALL, ids=NAMES)
+#: The table of ways: each alone, and all in one batch, two impacts of each. What holds for spheres
+#: holds for bodies by the same row; batches of one kind are tested where they could differ.
+WAYS = ONES | {"batch": Scene.stack([*ONES.values()] * 2)}
+COUPLED = {name: scene for name, scene in WAYS.items() if name != "central"}
+every_way = pytest.mark.parametrize("scene", WAYS.values(), ids=WAYS)
+coupled_way = pytest.mark.parametrize("scene", COUPLED.values(), ids=COUPLED)
 one_scene = pytest.mark.parametrize("scene", ONES.values(), ids=ONES)
 each_batch = pytest.mark.parametrize("scene", BATCHES.values(), ids=BATCHES)
-coupled_scene = pytest.mark.parametrize(
-    "scene", [scene for _, scene in COUPLED], ids=[name for name, _ in COUPLED]
-)
 
 
 def body(inertia=(0.01, 0.014, 0.005), **changes):

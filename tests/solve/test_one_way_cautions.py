@@ -15,14 +15,14 @@ from contactlab import (
 )
 from contactlab.study.posed import pose
 from tests.solve.any_scene import (
-    ALL,
     BALL,
+    BATCHES,
     BY_SPRINGS,
     DOWN,
     FLOOR,
-    NAMES,
     OFF_CENTRE,
     ONES,
+    WAYS,
     meeting,
 )
 
@@ -54,10 +54,12 @@ ROWS = [
         laws,
         words,
         id="-".join((*(str(law) for law in laws.values()), name)),
-        marks=[pytest.mark.slow]
-        * (name in ("mixed batch", "space batch") or laws.get("normal") in ("jkr", "thornton")),
+        marks=[pytest.mark.slow] * (name == "batch" or laws.get("normal") in ("jkr", "thornton")),
     )
-    for scenes, table in ((dict(zip(NAMES, ALL, strict=True)), CAUTIONED), (ONES, SOLVED))
+    for scenes, table in (
+        (WAYS | {"central batch": BATCHES["central"]}, CAUTIONED),
+        (ONES, SOLVED),
+    )
     for laws, words in table
     for name, scene in scenes.items()
 ]

@@ -27,7 +27,7 @@ from contactlab_laws.springs.law import Springs
 from tests.solve.any_scene import (
     ONES,
     each_batch,
-    every_scene,
+    every_way,
     many,
     statuses,
 )
@@ -93,7 +93,7 @@ class Liar(OfVectors, CoupledTangentialLaw):
         )  # fmt: skip
 
 
-@every_scene
+@every_way
 def test_a_law_that_answers_nan_is_not_finite(scene):
     result = Simulation(tangential=Liar("nan")).run(scene)
     assert set(statuses(result)) == {"NON_FINITE"}
@@ -171,7 +171,7 @@ def test_one_of_two_thousand_that_raises_in_a_march():
         assert list(result.failures) == [1], name
 
 
-@every_scene
+@every_way
 def test_books_that_nobody_bounds_are_cautioned_of(scene):
     result = Simulation(tangential=Liar("books")).run(scene)
     assert set(statuses(result)) == {"SUCCESS"}
@@ -189,7 +189,7 @@ class Bounded(Liar):
         return 0.01
 
 
-@every_scene
+@every_way
 def test_books_off_a_declared_bound_fail(scene):
     result = Simulation(tangential=Bounded("books")).run(scene)
     assert set(statuses(result)) == {"UNBALANCED"}
@@ -219,7 +219,7 @@ class Mistaken(OfVectors):
         return TangentialResponse(force, np.abs(work)), state
 
 
-@every_scene
+@every_way
 @pytest.mark.parametrize("how", ["moves", "slows", "loads", "cuts"])
 def test_no_mistake_of_a_step_looks_like_an_answer(scene, how):
     """What a law is given it may not change, and the force of one impact is not that of all."""
@@ -248,7 +248,7 @@ class Pushing(Mistaken):
         return TangentialResponse(force, 0.0), state
 
 
-@every_scene
+@every_way
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 @pytest.mark.filterwarnings("ignore:(overflow|invalid)")
 def test_energy_beyond_the_numbers_is_no_answer(scene, sense):
@@ -285,7 +285,7 @@ class Spoiling(CoupledIntegrator):
         }[self.how]()
 
 
-@every_scene
+@every_way
 @pytest.mark.parametrize(
     ("how", "words"),
     [
@@ -330,7 +330,7 @@ def test_a_law_that_cannot_say_whether_it_runs_does_not_run(how, words):
         Simulation(tangential=Unsure(how=how)).run(ONES["central"])
 
 
-@every_scene
+@every_way
 def test_a_bound_of_the_books_in_words_is_malformed(scene):
     result = Simulation(tangential=Unsure(how="books_bound")).run(scene)
     assert set(statuses(result)) == {"MALFORMED"}

@@ -18,7 +18,7 @@ from tests.present import extra
 from tests.scene_file.test_bodies_of_files import ROD
 from tests.solve.any_scene import (
     EXACT,
-    every_scene,
+    every_way,
 )
 
 #: A rod in space, over its tilt.
@@ -82,7 +82,7 @@ def test_frames_hold_what_was_swept(swept):
     assert frame.attrs["units"]["velocity_in_space_1"] == "m/s"
 
 
-@every_scene
+@every_way
 def test_every_result_is_written(scene, tmp_path):
     result = EXACT.run(scene)
     write_csv(result, tmp_path / "a.csv")

@@ -15,7 +15,7 @@ from contactlab.contracts import CausalTangentialLaw, Errors, NormalContact, Nor
 from contactlab.contracts.contact import TOUCH
 from contactlab.contracts.tangential import TangentialResponse
 from contactlab.impact.hertz import hertz_stiffness
-from tests.solve.any_scene import FEW, ONES, SPRINGS, every_scene, one_scene, statuses
+from tests.solve.any_scene import FEW, ONES, SPRINGS, every_way, one_scene, statuses
 from tests.solve.test_eccentric import rod
 
 #: How often a normal law was asked.
@@ -76,7 +76,7 @@ NORMAL = {
 }
 
 
-@every_scene
+@every_way
 @pytest.mark.parametrize("how", NORMAL)
 def test_a_mistake_of_a_normal_law_has_one_status(scene, how):
     laws = Simulation(normal=Contact(how=how), tangential=FEW.tangential, integrator=FEW.integrator)
@@ -173,7 +173,7 @@ TANGENTIAL = [
 ]  # fmt: skip
 
 
-@every_scene
+@every_way
 @pytest.mark.parametrize(("name", "value"), TANGENTIAL)
 def test_what_is_no_number_of_a_tangential_law_is_malformed(scene, name, value):
     result = Simulation(tangential=Slider(name, value), integrator=FEW.integrator).run(scene)

@@ -20,7 +20,7 @@ from tests.solve.any_scene import (
     ONES,
     SPRINGS,
     each_batch,
-    every_scene,
+    every_way,
     meeting,
     one_scene,
 )
@@ -53,7 +53,7 @@ def test_estimates_of_an_item_are_numbers(scene):
             assert estimate == pytest.approx(getattr(alone, name), rel=1e-6)
 
 
-@every_scene
+@every_way
 def test_a_misspelt_attribute_is_told_its_neighbour(scene):
     result = EXACT.run(scene)
     with pytest.raises(AttributeError, match="did you mean 'energy'"):
@@ -68,14 +68,14 @@ def test_a_misspelt_attribute_of_a_collision(met):
         _ = collide(met).velocty
 
 
-@every_scene
+@every_way
 def test_a_notebook_shows_what_str_says(scene):
     result = EXACT.run(scene)
     assert result._repr_html_().startswith("<pre>ImpactResult(")
     assert repr(result).split(";")[0] in result._repr_html_().replace("&#x27;", "'")
 
 
-@every_scene
+@every_way
 def test_a_history_under_even_steps(scene):
     """Also of a batch; its last instants are those of the motion."""
     history = FEW.run(scene, history=True).history
@@ -86,7 +86,7 @@ def test_a_history_under_even_steps(scene):
     assert history.normal_force.max(axis=0) == pytest.approx(peak, rel=0.02)
 
 
-@every_scene
+@every_way
 def test_fields_of_a_history(scene):
     """Springs that stick and slip; displacements have the components of the slip."""
     fields = FEW.run(scene, history="fields").history.fields
@@ -114,13 +114,13 @@ def test_a_run_with_fields_says_where_there_are_none(scene):
     assert told is (not result.history.fields)
 
 
-@every_scene
+@every_way
 def test_normal_motion(scene):
     """The approach without friction lasts 2.94327 (Hertz)."""
     assert EXACT.normal_motion(scene).duration == pytest.approx(2.9432751842)
 
 
-@every_scene
+@every_way
 def test_figures(scene, tmp_path):
     if scene.shape:
         axes = EXACT.run(scene).plot("psi1", "psi2", width="one")
@@ -134,7 +134,7 @@ def test_figures(scene, tmp_path):
     axes.figure.savefig(tmp_path / "figure.png")
 
 
-@every_scene
+@every_way
 def test_a_pickled_result_equals_itself(scene):
     """Two runs are equal but for the run time, and results of other laws are not."""
     result, again = FEW.run(scene), FEW.run(scene)

@@ -29,20 +29,20 @@ from tests.solve.any_scene import (
     OFF_CENTRE,
     ONES,
     WITH_BODIES,
-    every_scene,
+    every_way,
     many,
     one,
     one_scene,
 )
 
 
-@every_scene
+@every_way
 def test_the_index_is_numbered(scene):
     if not scene.shape:
         assert scene.index == 0
         assert scene.numbered(7).index == 7
         return
-    assert scene.index.tolist() == [0, 1, 2]
+    assert scene.index.tolist() == [0, 1, 2, 3, 4, 5]
     assert scene.take(slice(1, 3)).index.tolist() == [1, 2]
     assert scene.take(2).index == 2
     for where, part in kinetics.parts(scene):

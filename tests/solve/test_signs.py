@@ -12,7 +12,7 @@ from contactlab import Encounter, RigidBody, Scene, Simulation, Sphere, collide
 from contactlab.impact import kinetics
 from contactlab.impact.normal_spin import shift_and_loss
 from contactlab.outcome.columns import columns
-from tests.solve.any_scene import ALL, BALL, DOWN, EXACT, FEW, FLOOR, NAMES, STEEL
+from tests.solve.any_scene import BALL, DOWN, EXACT, FEW, FLOOR, STEEL, WAYS
 
 RIGID = Simulation(tangential="coulomb")
 #: Columns that change sign with the slip; of an impulse the components along the surface do.
@@ -27,8 +27,8 @@ ODD = {
 SPEEDS = np.array([0.1, 0.5, 4.0])
 SPINNING = [Scene(BALL, FLOOR, 0.3, 1.0, speed, 7.0, normal_spin=100.0) for speed in SPEEDS]
 SPINNING += [Scene(BALL, FLOOR, 0.3, 1.0, SPEEDS, 7.0, normal_spin=100.0 * SPEEDS)]
-SCENES = [*ALL, *SPINNING]
-IDS = [*NAMES, *(f"spinning {place}" for place in SPEEDS), "spinning batch"]
+SCENES = [*WAYS.values(), *SPINNING]
+IDS = [*WAYS, *(f"spinning {place}" for place in SPEEDS), "spinning batch"]
 
 
 def reversed_along_the_surface(scene):
