@@ -153,6 +153,7 @@ def test_the_stiffness_ratio_leaves_normal_contact_as_it_is():
     assert after.pair.normal_mass == before.pair.normal_mass
 
 
+@pytest.mark.slow
 def test_every_quantity_of_a_rebound_says_the_same():
     result = Simulation().sweep(scene(0.13)).check()
     given = {"normal_speed (m/s)": result.scene.normal_speed,

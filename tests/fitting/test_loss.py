@@ -60,6 +60,7 @@ def test_the_loss_in_shear_of_soft_data():
     assert any("does not tell it without Poisson's ratios" in text for text in found.cautions)
 
 
+@pytest.mark.slow
 def test_residuals_that_climb_with_the_angle_are_told_with_their_size():
     laws = Simulation(normal="tsuji", tangential="walton")
     note = told([MU, E], simulation=laws)

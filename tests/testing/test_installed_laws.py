@@ -40,17 +40,19 @@ LONGER = {
     "Annulus": "all_steps answers batch books closed_cycles friction_work impact_coulomb_limit "
     "impact_units load_impulse odd_in_slip partial_unloading random_paths sliding_impulse "
     "stiffness turning_points units whole_impact_form whole_impacts coulomb_at_a_point_damped "
-    "two_stiffnesses",
+    "two_stiffnesses coulomb_at_a_point coulomb_limit impact_odd pure",
     "Springs": "closed_cycles impact_batch impact_books impact_bounds impact_coulomb_limit "
     "impact_odd impact_units vectors_on_a_line vectors_rotate whole_impact_form whole_impacts",
-    "LinearSpring": "impact_books impact_odd impact_units",
+    "LinearSpring": "impact_books impact_bounds impact_coulomb_limit impact_odd impact_units",
     "WaltonBraun": "motion_batch rebounds",
     "Viscoelastic": "ends_unloaded rebounds",
     "MindlinCap": "impact_odd impact_units vectors_on_a_line vectors_rotate whole_impact_form "
     "whole_impacts",
     "MindlinDeresiewicz": "batch begin_is_start books closed_cycles impact_batch impact_books "
     "impact_bounds impact_coulomb_limit impact_odd impact_reference impact_repeatable impact_units "
-    "random_paths spin stiffness units unlike_bodies whole_impacts",
+    "random_paths spin stiffness units unlike_bodies whole_impacts answers coulomb_at_a_point "
+    "coulomb_at_a_point_damped friction_work impact_after_another impact_central odd_in_slip "
+    "partial_unloading pure sliding_impulse two_stiffnesses whole_impact_form",
     "ThorntonYin": "begin_is_start impact_bounds impact_odd impact_units unlike_bodies",
     "Coulomb": "whole_impact_form",
     "Frictionless": "whole_impact_form",
