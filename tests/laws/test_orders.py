@@ -8,7 +8,6 @@ from contactlab import Scene, Simulation
 from tests.laws.exact_laws import CHI, grid, order, rebound, rms
 from tests.laws.normal_laws import Damped, in_si
 from tests.laws.reference import TABLE
-from tests.longer import longer
 
 STEPS = (50, 100, 200, 400)
 PARTS = (6, 12, 24, 48)
@@ -48,7 +47,8 @@ def test_second_order_in_both_together():
     assert found == pytest.approx(2.0, abs=0.3)
 
 
-@pytest.mark.parametrize("integrator", ["symplectic", *longer("paper")])
+@pytest.mark.slow
+@pytest.mark.parametrize("integrator", ["symplectic", "paper"])
 def test_the_papers_annuli_are_of_order_four_thirds(integrator):
     """Whatever the steps: conditions in the middles of annuli see the edge of stick in whole
     annuli only, and the limit of friction at the edge of contact likewise."""
