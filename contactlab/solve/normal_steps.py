@@ -79,10 +79,12 @@ def too_short(law: ScaledNormalLaw) -> faults.LawFaultError:
     return law.fault(Status.NON_FINITE, "a force that is not finite")
 
 
-def is_endless(turns: Any, rate: Any, change: Any, approach: Any, radius: Any) -> Any:
+def is_endless(turns: Real, rate: Real, change: Real, approach: Real, radius: Real) -> Any:
     """Return whether a contact does not end.
 
     ``change`` is that of the rate by the present force over the time since first touch.
     """
-    at_rest = (abs(rate) < AT_REST) & (abs(change) < AT_REST)
+    speed: Any = abs(rate)
+    slowed: Any = abs(change)
+    at_rest = (speed < AT_REST) & (slowed < AT_REST)
     return (turns > MOST_TURNS) | at_rest | (approach > DEEPEST * radius)
