@@ -15,6 +15,7 @@ from contactlab.contracts import CausalTangentialLaw, Errors, NormalContact, Nor
 from contactlab.contracts.contact import TOUCH
 from contactlab.contracts.tangential import TangentialResponse
 from contactlab.impact.hertz import hertz_stiffness
+from tests.longer import longer
 from tests.solve.any_scene import FEW, ONES, SPRINGS, every_way, one_scene, statuses
 from tests.solve.test_eccentric import rod
 
@@ -93,16 +94,16 @@ def test_energy_from_nothing_is_seen_beside_any_tangential_law(scene):
         assert statuses(laws.run(scene)) == ["UNBALANCED"]
 
 
-@one_scene
+@pytest.mark.parametrize("name", ["central", "planar", *longer("space")])
 @pytest.mark.parametrize("how", ["held", "without force", "at rest"])
-def test_a_contact_that_never_ends_costs_some_usual_impacts(scene, how):
+def test_a_contact_that_never_ends_costs_some_usual_impacts(name, how):
     """By how often the normal law is asked, whatever the clock says."""
     laws = {"tangential": SPRINGS.tangential, "integrator": SPRINGS.integrator}
     counts = []
     for law in (Contact(), Contact(how=how)):
         ASKED[0] = 0
         fresh = attrs.evolve(law, number=next(NUMBERS))  # motions of equal laws are kept
-        result = Simulation(normal=fresh, **laws).run(scene)
+        result = Simulation(normal=fresh, **laws).run(ONES[name])
         counts.append(ASKED[0])
     assert statuses(result) == ["NOT_SEPARATED"]
     assert "the bodies do not separate" in result.failures[0]
