@@ -125,8 +125,8 @@ def _write_names(
         lines, names = [*groups[first], *lines], [verbatim(said[first]), *names]
     if close:
         upper.text(
-            0.015, 0.02, verbatim("\n".join([f"on the line of {first}:", *close])),
-            transform=upper.transAxes, fontsize="small",
+            0.985, 0.02, verbatim("\n".join([f"on the line of {first}:", *close])),
+            transform=upper.transAxes, fontsize="small", ha="right",
         )  # fmt: skip
     if not name_curves(upper, lines, names, alike=list(groups.values())):
         return False
