@@ -70,43 +70,68 @@ def name_curves(
     if (legend := axes.get_legend()) is not None:
         taken.append(_box(legend.get_window_extent()))
     frame = _box(axes.get_window_extent())
-    written: list[Text] = []
-    leaders: list[Line2D] = []
-    texts = []
+    texts: list[_Name] = []
     for line, name in zip(lines, names, strict=True):
         text = axes.text(0.0, 0.0, name, color=line.get_color(), fontsize="small", zorder=6)
         text.set_in_layout(False)
         box = text.get_window_extent()
-        texts.append((line, text, np.array([box.width, box.height])))
-        written.append(text)
-    # Curves that lie among others find fewer places, and choose first.
-    order = sorted(texts, key=lambda item: -_crowd(dots, item[0]))
-    for line, text, size in order:
         group = next((group for group in alike if line in group), (line,))
-        others = [points for other, points in dots.items() if other not in group]
-        curves = [*dots.values(), *rules]
-        room = _Room(dots[line], others, curves, taken, frame, size, unit)
+        texts.append(_Name(line, text, np.array([box.width, box.height]), group))
+    # Curves that lie among others find fewer places, and choose first; so does, in the next try,
+    # a name that found none.
+    order = sorted(texts, key=lambda name: -_crowd(dots, name.line))
+    for _ in texts:
+        without = _write(axes, order, dots, rules, taken, frame, unit)
+        if without is None:
+            return True
+        order.sort(key=lambda name: name is not without)
+    for one in texts:
+        one.text.remove()
+    return False
+
+
+class _Name(NamedTuple):
+    """A name to be written: its curve, its text, its width and height, and curves that share it."""
+
+    line: Line2D
+    text: Text
+    size: Array
+    group: Sequence[Line2D]
+
+
+def _write(
+    axes: Axes,
+    order: Sequence[_Name],
+    dots: dict[Line2D, Array],
+    rules: Sequence[Array],
+    taken: Sequence[Array],
+    frame: Array,
+    unit: float,
+) -> _Name | None:
+    """Write names in an order; return the first that has no room, with nothing written, or None."""
+    straight, boxes = list(rules), list(taken)
+    leaders: list[Line2D] = []
+    for name in order:
+        others = [points for other, points in dots.items() if other not in name.group]
+        curves = [*dots.values(), *straight]
+        room = _Room(dots[name.line], others, curves, boxes, frame, name.size, unit)
         found = room.beside() or room.led()
         if found is None:
             for leader in leaders:
                 leader.remove()
-            for one in written:
-                one.remove()
-            return False
+            return name
         place, start = found
         if start is not None:
-            points = axes.transData.inverted().transform(
-                [start, place - [0.0, np.sign((place - start)[1]) * 0.5 * size[1]]]
-            )
-            rules.append(np.linspace(start, place, 40))
-            leaders += axes.plot(
-                *points.T, color=line.get_color(), linewidth=0.6, scalex=False, scaley=False
-            )
-        low = place - 0.5 * size
-        taken.append(np.array([low, low + size]))
-        text.set_position(tuple(axes.transData.inverted().transform(place)))
-        text.set(ha="center", va="center")
-    return True
+            end = place - [0.0, np.sign((place - start)[1]) * 0.5 * name.size[1]]
+            points = axes.transData.inverted().transform([start, end])
+            straight.append(np.linspace(start, place, 40))
+            look: Any = {"color": name.line.get_color(), "linewidth": 0.6}
+            leaders += axes.plot(*points.T, scalex=False, scaley=False, **look)
+        low = place - 0.5 * name.size
+        boxes.append(np.array([low, low + name.size]))
+        name.text.set_position(tuple(axes.transData.inverted().transform(place)))
+        name.text.set(ha="center", va="center")
+    return None
 
 
 def _dots(line: Line2D, unit: float) -> Array:
