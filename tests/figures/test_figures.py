@@ -21,7 +21,7 @@ import contactlab.figures
 import contactlab.outcome
 import contactlab.study
 from contactlab import Scene, Simulation, create
-from contactlab.figures import paper
+from contactlab.figures import name_curves, paper
 from contactlab.figures.comparison import all_laws
 from contactlab.figures.files import save, save_figure
 from contactlab.outcome import style
@@ -269,3 +269,16 @@ def test_in_a_narrow_column_panels_stand_below_each_other(tmp_path):
     assert second.get_shared_x_axes().joined(second, other)
     tops = [axes.get_position().y1 for axes in (first, below, second, other)]
     assert tops == sorted(tops, reverse=True)
+
+
+def test_a_name_without_room_chooses_first_in_the_next_try():
+    """In the order of their crowd alone one of these six names finds no place."""
+    axes = Figure(figsize=(3.2, 2.4)).subplots()
+    x = np.linspace(0.0, 1.0, 60)
+    shapes = np.random.default_rng(1).normal(size=(6, 3))
+    lines = [axes.plot(x, a * np.sin(3 * x) + b * x + 0.3 * c)[0] for a, b, c in shapes]
+    assert name_curves(axes, lines, [f"a longer law {number}" for number in range(6)])
+    boxes = [text.get_window_extent() for text in axes.texts]
+    assert len(boxes) == 6
+    pairs = itertools.combinations(boxes, 2)
+    assert not any(first.overlaps(second) for first, second in pairs)
