@@ -20,6 +20,13 @@ from contactlab.contracts.normal import (
     UnfollowedNormalLaw,
     unfollowed_rate,
 )
+from contactlab.contracts.parameters import (
+    BY_COMPLIANCE,
+    GEOMETRIC_MEAN,
+    MEAN,
+    Combined,
+    number_in,
+)
 from contactlab.contracts.path import Cost, LostPathError, PathTangentialLaw, Stretch
 from contactlab.contracts.restitution import restitution
 from contactlab.contracts.sampled_motion import Ends, SampledMotion
@@ -55,6 +62,9 @@ from contactlab.numeric.types import Mask, Real
 
 __all__ = [
     "API_VERSION",
+    "BY_COMPLIANCE",
+    "GEOMETRIC_MEAN",
+    "MEAN",
     "NON_NEGATIVE",
     "POSITIVE",
     "AllStepsResponse",
@@ -62,6 +72,7 @@ __all__ = [
     "CausalTangentialLaw",
     "ClosedFormMotion",
     "ClosedFormNormalLaw",
+    "Combined",
     "Cost",
     "CoupledIntegrator",
     "CoupledTangentialLaw",
@@ -106,6 +117,7 @@ __all__ = [
     "from_change",
     "judges",
     "no_force",
+    "number_in",
     "quantity",
     "restitution",
     "shares_loss",

@@ -130,8 +130,9 @@ class Encounter:
         paths, numbers = _numbers(*map(type, (self.body, self.target)))
         values, shape = numbers(self), ()
         many = getattr(self.body, "shape", ()) or getattr(self.target, "shape", ())
-        if many or np.ndarray in map(type, values) or max(_DIMENSIONS(self)) > 1:
-            shapes = {name: getattr(self, name).shape[:-1] for name in GIVEN}
+        more = {} if _plain(self.body, self.target) else _properties(self)
+        if many or more or np.ndarray in map(type, values) or max(_DIMENSIONS(self)) > 1:
+            shapes = {name: getattr(self, name).shape[:-1] for name in GIVEN} | more
             shapes |= {
                 path.replace(".material", ""): value.shape
                 for path, value in zip(paths, values, strict=True)
@@ -337,6 +338,21 @@ class Encounter:
         if lam >= -1.0 or not contact.slip:
             return ""
         return f"friction presses them together, lambda = {lam:.3g} below -1 (Painlevé)"
+
+
+def _plain(*bodies: Any) -> bool:
+    """Return whether no material has properties."""
+    return not any(body.material.properties for body in bodies)
+
+
+def _properties(encounter: Encounter) -> dict[str, tuple[int, ...]]:
+    """Return the batch shapes of the properties of both materials that are arrays, by name."""
+    return {
+        f"{name}.properties[{heading!r}]": number.shape
+        for name in ("body", "target")
+        for heading, number in getattr(encounter, name).material.properties.items()
+        if isinstance(number, np.ndarray)
+    }
 
 
 @cache

@@ -8,16 +8,20 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from functools import cache
+from typing import Any
 
 import attrs
 import numpy as np
 
 from contactlab.numeric.checks import POISSON, POSITIVE, derived, of_kind, quantity, real, refuse
+from contactlab.numeric.named import NOTHING, named_numbers, split_heading
 from contactlab.numeric.names import arguments_told, nearest
 from contactlab.numeric.types import Either, Numbers
 from contactlab.registration.bring import by_name
 from contactlab.registration.hooks import hookimpl
 
+#: Arguments of a material, which are no properties.
+OWN_NUMBERS = ("shear_modulus", "young_modulus", "poisson_ratio", "density", "yield_stress")
 OWN = "or give your own: Material(young_modulus=..., poisson_ratio=..., density=...)"
 #: Names in common use, with the name in the collection.
 OTHER_NAMES = {
@@ -44,6 +48,10 @@ class Material:
     yield_stress : float, optional
         Y in Pa, from a tension test. Plans have a caution where the contact pressure exceeds
         1.6 Y; no law uses this number. NaN in an array: not known.
+    properties : mapping of str to float, optional
+        Further numbers by name in SI units, ``{"relaxation_time": 1e-6}``, for laws whose options
+        say that they are read from the material: ``contactlab plugins show`` tells which. A name
+        may have its unit behind, ``"relaxation_time (s)"``, which is compared with the law's.
 
     Raises
     ------
@@ -55,6 +63,7 @@ class Material:
     poisson_ratio: Either = quantity("1", rule=POISSON)
     density: Either = quantity("kg/m³", rule=POSITIVE, default=None, unknown=True)
     yield_stress: Either = quantity("Pa", rule=POSITIVE, default=None, unknown=True)
+    properties: Mapping[str, Numbers] = attrs.field(default=NOTHING, repr=False)
 
     def __init__(
         self,
@@ -64,6 +73,7 @@ class Material:
         poisson_ratio: Numbers,
         density: Numbers | None = None,
         yield_stress: Numbers | None = None,
+        properties: Mapping[str, Numbers] | None = None,
     ) -> None:
         if (shear_modulus is None) == (young_modulus is None):
             raise refuse(
@@ -87,8 +97,20 @@ class Material:
             shear_modulus = derived("shear modulus", follows, remedy, young_modulus=young_modulus)
         shear = real("shear_modulus", shear_modulus, rule=POSITIVE, remedy="give it in Pa")
         self.__attrs_init__(
-            shear_modulus=shear, poisson_ratio=ratio, density=density, yield_stress=yield_stress
+            shear_modulus=shear,
+            poisson_ratio=ratio,
+            density=density,
+            yield_stress=yield_stress,
+            properties=named_numbers("properties", properties, taken=OWN_NUMBERS),
         )
+
+    def property_named(self, name: str) -> tuple[Either, str] | None:
+        """Return the property ``name`` and the unit that was given with it, or None."""
+        for heading, number in self.properties.items():
+            own, unit = split_heading(heading)
+            if own == name:
+                return number, unit
+        return None
 
     @classmethod
     def named(cls, name: str) -> Material:
@@ -136,6 +158,10 @@ class Entry:
         Remarks on the numbers, such as a range or an assumed value; may be empty.
     works : mapping
         The works that the sources name, in full, by key.
+    properties : mapping of str to float
+        Further numbers by name, in SI units, as those of a ``Material``.
+    properties_source : str
+        Source of the properties.
     """
 
     name: str
@@ -148,15 +174,17 @@ class Entry:
     yield_source: str = ""
     note: str = ""
     works: Mapping[str, str] = attrs.field(factory=dict, metadata={"json": False})
+    properties: Mapping[str, float] = attrs.field(factory=dict)
+    properties_source: str = ""
 
     def material(self) -> Material:
         """Return the entry as a ``Material``."""
         return Material(**self.numbers())
 
-    def numbers(self) -> dict[str, float]:
+    def numbers(self) -> dict[str, Any]:
         """Return the entries of a material in a scene file, as {key: value}."""
-        keys = ("young_modulus", "poisson_ratio", "density", "yield_stress")
-        return {key: getattr(self, key) for key in keys if getattr(self, key) is not None}
+        keys = ("young_modulus", "poisson_ratio", "density", "yield_stress", "properties")
+        return {key: getattr(self, key) for key in keys if getattr(self, key) not in (None, {})}
 
 
 def names() -> tuple[str, ...]:
@@ -206,7 +234,8 @@ def references() -> dict[str, str]:
 def works(name: str) -> dict[str, str]:
     """Return the works from which the numbers of a material are taken, in full, by key."""
     one = entry(name)
-    said = " ".join((one.elastic_source, one.density_source, one.yield_source, one.note))
+    sources = one.elastic_source, one.density_source, one.yield_source, one.properties_source
+    said = " ".join((*sources, one.note))
     keys = re.findall(r"\w+", said)
     return {key: text for key, text in one.works.items() if key in keys}
 

@@ -26,6 +26,7 @@ from contactlab.numeric.checks import (
     refuse,
     whole,
 )
+from contactlab.numeric.named import NOTHING
 from contactlab.numeric.names import state_arguments
 from contactlab.numeric.types import Array, Numbers, Real
 from contactlab.numeric.vectors import entry, over
@@ -109,6 +110,9 @@ class Scene(Batches):
         the contact for unit forces along n, t1 and t2.
     planar : bool
         True if the motion stays in the plane of n and t1, so that slip is a number.
+    options : mapping of str to array
+        Options of laws of which each impact has its own number, by ``kind.option (unit)``. A run
+        fills them in from its laws, so that parts of a batch keep theirs.
 
     Raises
     ------
@@ -145,6 +149,7 @@ class Scene(Batches):
         default=None, converter=_tensors, eq=key, repr=False, kw_only=True
     )
     planar: bool = instance(bool, default=True, kw_only=True, repr=False)
+    options: Mapping[str, Any] = attrs.field(default=NOTHING, kw_only=True, repr=False)
     #: Batch shape: () for one impact.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
     _index: Any = attrs.field(init=False, eq=False, repr=False)
@@ -171,6 +176,7 @@ class Scene(Batches):
         along: tuple[float, float, float] | None = None,
         inverse_mass: Numbers | None = None,
         planar: bool = True,
+        options: Mapping[str, Any] = NOTHING,
     ) -> None: ...
 
     def __attrs_post_init__(self) -> None:
@@ -202,12 +208,14 @@ class Scene(Batches):
     def _shapes(self) -> dict[str, tuple[int, ...]]:
         """Return the batch shape of every number that varies."""
         shapes = {}
-        if np.ndarray in map(type, (*self._columns(), *self._yield_stresses().values())):
+        if np.ndarray in map(type, (*self._columns(), *self._of_materials().values())):
             shapes = {
                 name: number.shape
                 for name, number in self.numbers().items()
                 if isinstance(number, np.ndarray)
             }
+        if self.options:
+            shapes |= {name: np.shape(number) for name, number in self.options.items()}
         if self.inverse_mass is not None:
             shapes["inverse_mass"] = self.inverse_mass.shape[:-2]
             if not self.planar:
@@ -240,19 +248,22 @@ class Scene(Batches):
     def numbers(self) -> dict[str, Real]:
         """Return every number of the scene and of its pair, by name."""
         columns = zip((*OF_PAIR, *OF_SCENE), self._columns(), strict=True)
-        return dict(columns) | self._yield_stresses()
+        return dict(columns) | self._of_materials()
 
     def _columns(self) -> tuple[Real, ...]:
         """Return the numbers of the pair and of the scene, in the order of their names."""
         return (*_of_pair(self.pair), *_of_scene(self))
 
-    def _yield_stresses(self) -> dict[str, Real]:
-        """Return the yield stresses that are known, by name."""
-        stresses = {}
+    def _of_materials(self) -> dict[str, Real]:
+        """Return the yield stresses that are known, and the properties, by name."""
+        numbers = {}
         for name, body in (("sphere", self.sphere), ("target", self.target)):
             if body is not None and body.material.yield_stress is not None:
-                stresses[f"{name}.material.yield_stress"] = body.material.yield_stress
-        return stresses
+                numbers[f"{name}.material.yield_stress"] = body.material.yield_stress
+            if body is not None and body.material.properties:
+                for heading, number in body.material.properties.items():
+                    numbers[f"{name}.material.properties[{heading!r}]"] = number
+        return numbers
 
     def _check_scales(self) -> None:
         """Refuse scenes whose numbers overflow, or lose digits by underflow."""
@@ -537,5 +548,8 @@ UNITS: dict[str, str] = {
 
 
 def entry_unit(name: str) -> str:
-    """Return the unit of an entry; the name may be dotted: ``"sphere.radius"`` has the unit m."""
-    return UNITS[name.rpartition(".")[2]]
+    """Return the unit of an entry; the name may be dotted: ``"sphere.radius"`` has the unit m.
+
+    That of a property of a material, or of an option of a law, is not known here: ``SI``.
+    """
+    return UNITS.get(name.rpartition(".")[2], "SI") if "." in name else UNITS[name]

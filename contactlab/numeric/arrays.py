@@ -1,6 +1,6 @@
 """Batches: functions that stack, index and merge trees of numbers.
 
-A tree is a number, an array or an attrs object whose fields are trees. Any other value is passed
+A tree is a number, an array, an attrs object whose fields are trees, or trees by name. Any other value is passed
 through unchanged. In a batch of ``shape`` a plain number holds for all impacts, and an array
 broadcasts to ``shape``.
 """
@@ -17,6 +17,7 @@ import attrs
 import numpy as np
 from numpy.typing import ArrayLike
 
+from contactlab.numeric.named import Named
 from contactlab.numeric.types import AnyArray, Array, Index, Mask, Real, Tree
 
 #: Numbers in the array that ``keep_freed_memory`` releases: 8 MB, the tables of most batches.
@@ -70,6 +71,11 @@ def stack_trees(items: Sequence[Any]) -> Any:
                 for alias, name in names.items()
             }
         )
+    if type(first) is Named:
+        names = dict.fromkeys(name for item in items for name in item)
+        return Named(
+            {name: stack_trees([item.get(name, math.nan) for item in items]) for name in names}
+        )
     if not isinstance(first, np.ndarray) and all(item == first for item in items):
         return first
     return np.array(items, dtype=np.float64)
@@ -94,6 +100,8 @@ def taken(tree: Any, shape: tuple[int, ...], part: Index) -> Any:
                 value = known(value)
             object.__setattr__(copy, field.name, value)
         return copy
+    if type(tree) is Named and tree:
+        return Named({name: taken(number, shape, part) for name, number in tree.items()})
     return tree
 
 

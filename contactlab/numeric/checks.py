@@ -213,14 +213,28 @@ def _check_field(
     if type(value) is float and math.isfinite(value) and meta["rule"].holds(value):
         return value  # the remedy of a refusal takes longer to write than a number to check
     remedy = unit_remedy(meta["unit"])
-    if "unknown" in meta and (numbers := _partly_known(value)) is not None:
-        real(field.name, numbers[~np.isnan(numbers)], rule=meta["rule"], remedy=remedy, empty=True)
-        return np.array(numbers, dtype=np.float64)
+    if "unknown" in meta:
+        return some_known(
+            field.name, value, rule=meta["rule"], remedy=remedy, empty=meta["empty"]
+        )
     number = real(field.name, value, rule=meta["rule"], remedy=remedy, empty=meta["empty"])
-    if isinstance(number, np.ndarray) and getattr(type(owner), "_plain_options", False):
-        rule = "must be one number: an option of a law holds for every impact"
+    one_number = getattr(type(owner), "_plain_options", False) and "per_impact" not in meta
+    if one_number and isinstance(number, np.ndarray):
+        rule = "must be one number: this option of a law holds for every impact"
         raise refuse(field.name, value, rule, "make a law for each value")
     return number
+
+
+def some_known(
+    argument: str, value: object, *, rule: Rule = FINITE, remedy: str = "", empty: bool = False
+) -> Real:
+    """Return ``real``, of an array in which NaN stands for an impact without the number."""
+    if (numbers := _partly_known(value)) is None:
+        return real(argument, value, rule=rule, remedy=remedy, empty=empty)
+    real(argument, numbers[~np.isnan(numbers)], rule=rule, remedy=remedy, empty=True)
+    numbers = np.array(numbers, dtype=np.float64)
+    numbers.setflags(write=False)
+    return numbers
 
 
 def _partly_known(value: object) -> Array | None:
@@ -256,6 +270,8 @@ def quantity(
     kw_only: bool = False,
     empty: bool = False,
     unknown: bool = False,
+    per_impact: bool = False,
+    material: Any = None,
 ) -> Any:
     """Return an attrs field for a checked real quantity with its unit in the metadata.
 
@@ -277,8 +293,23 @@ def quantity(
         Whether an array without numbers is accepted.
     unknown : bool
         Whether an array may hold NaN, of an impact for which the quantity is not known.
+    per_impact : bool
+        Whether an option of a law may be an array, one number an impact of the scene's shape. The
+        law then reads it by ``contactlab.contracts.number_in``.
+    material : Combined, optional
+        How an option of a law follows from the property of that name of two materials. Without a
+        default the option or the properties must be given.
     """
     keywords: Any = {"kw_only": True} if kw_only else {}  # False would override the class
+    further: dict[str, Any] = {"unknown": True} if unknown else {}
+    words = [rule.sentence]
+    if per_impact:
+        further["per_impact"] = True
+        words.append("one number, or one an impact")
+    if material is not None:
+        further |= {"material": material, "required": default is attrs.NOTHING}
+        default = None if default is attrs.NOTHING else default
+        words.append(f"or a property of the materials: {material.sentence}")
     return attrs.field(
         default=default,
         **keywords,
@@ -287,9 +318,9 @@ def quantity(
         metadata={
             "unit": unit,
             "rule": rule,
-            "range": rule.sentence,
+            "range": ", ".join(words),
             "empty": empty,
-            **({"unknown": True} if unknown else {}),
+            **further,
         },
     )
 

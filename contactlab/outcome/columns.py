@@ -19,6 +19,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
+from contactlab.numeric.named import split_heading
 from contactlab.numeric.names import nearest
 from contactlab.registration.bring import by_name, state
 from contactlab.registration.hooks import hookimpl
@@ -272,13 +273,14 @@ def columns(result: WithScene, whole: Scene | None = None) -> list[tuple[str, st
     for column in columns_of(whole or scene):
         parts = components(column.name, column.read(result), scene.shape)
         table += [(name, column.unit, values) for name, values in parts]
-    names = {name for name, *_ in table}
+    options = [(*split_heading(heading), values) for heading, values in scene.options.items()]
+    names = {name for name, *_ in (*table, *options)}
     varied = [
         (name, entry_unit(name), values)
         for name, values in scene.varied.items()
         if name not in names
     ]
-    return varied + table
+    return varied + options + table
 
 
 def components(name: str, values: object, shape: tuple[int, ...]) -> list[tuple[str, Any]]:

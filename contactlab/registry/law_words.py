@@ -6,6 +6,7 @@ import re
 from functools import lru_cache
 
 import attrs
+import numpy as np
 
 from contactlab.contracts.law import Law
 from contactlab.numeric.checks import shown
@@ -54,6 +55,8 @@ def _fields(law_class: type) -> tuple[tuple[str, str, object], ...]:
 
 def _shown(value: object) -> str:
     """Return the value of an option in words, without an address."""
+    if isinstance(value, np.ndarray) and value.size:
+        return f"{np.min(value):.6g} to {np.max(value):.6g}, one an impact"
     return in_words(value) if isinstance(value, Law) else ADDRESS.sub("", shown(value))
 
 

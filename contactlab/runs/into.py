@@ -19,6 +19,7 @@ from contactlab.outcome.chunk_forms import Chunk, form_of
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.sweep_folder import KIND, STATUSES, SweepFolder
 from contactlab.registry.composition import Laws
+from contactlab.registry.bound import bound
 from contactlab.runs.fingerprints import fingerprint
 from contactlab.runs.into_folder import NAMES, ChunkFolder
 from contactlab.runs.pieces import Part, Piece
@@ -58,6 +59,7 @@ def swept_into(
     if (begin := next(later, None)) is None:
         remedy = "make the generator anew: it gives its scenes once"
         raise refuse("scenes", scenes, "must hold at least one Scene", remedy)
+    given, (laws, _) = laws, bound(laws, begin)
     accept_scene(laws, begin)  # of scenes that are refused there is no folder
     form = form_of(checked_folder("into", folder))
     more = {"form": KIND, STATUSES: " ".join(NAMES)}
@@ -76,6 +78,7 @@ def swept_into(
     def parts(target: ChunkFolder) -> Iterator[Part]:
         nonlocal done, stop
         for scene in itertools.chain([begin], later):
+            _bound_alike(given, laws, scene)
             accept_scene(laws, scene)
             before, block = stop, block_for(laws, scene)
             usual = IMPACTS_AT_A_TIME if block == WHOLE_IMPACTS else MARCHED_AT_A_TIME
@@ -116,6 +119,13 @@ def swept_into(
         finally:
             pieces.close()
     return SweepFolder(path)
+
+
+def _bound_alike(given: Laws, laws: Laws, scene: Scene) -> None:
+    """Refuse a batch for which materials give other options than for the first."""
+    if bound(given, scene)[0] != laws:
+        rule = "has materials whose properties give its laws other options than the first batch's"
+        raise refuse("scenes", scene, rule, "sweep each into a folder of its own")
 
 
 def _batches(scenes: Scene | Iterable[Scene], size: int) -> Iterator[Scene]:

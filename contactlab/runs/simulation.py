@@ -26,6 +26,7 @@ from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult
 from contactlab.registry import composition
 from contactlab.registry.acceptance import accept
+from contactlab.registry.bound import bound
 from contactlab.registry.composition import Laws
 from contactlab.solve import solve
 from contactlab.solve.normal_motion import normal_or_failed
@@ -123,8 +124,8 @@ class Simulation:
         history : bool or "fields"
             The same as in ``run``.
         """
-        laws = self.laws
-        ways = solve.accept_scene(laws, _scene(scene), as_one=bool(_history(history)))
+        laws, scene = bound(self.laws, _scene(scene))
+        ways = solve.accept_scene(laws, scene, as_one=bool(_history(history)))
         columns = solve.plan_columns(ways, scene, history)
         return plan_of(laws, scene, columns, history=history)
 
@@ -159,10 +160,11 @@ class Simulation:
             If ``scene`` is not a Scene, a law has no answer to it, ``history`` is none of its three
             values, or the history of a batch is requested whose impacts have different instants.
         """
-        started, laws, recorder = time.perf_counter(), self.laws, None
+        started, recorder = time.perf_counter(), None
+        laws, scene = bound(self.laws, _scene(scene))
         if _history(history):
-            recorder = Recorder(_scene(scene).shape, with_fields=history == "fields")
-        ways, flat = solve.accept_scene(laws, _scene(scene), as_one=bool(history)), scene
+            recorder = Recorder(scene.shape, with_fields=history == "fields")
+        ways, flat = solve.accept_scene(laws, scene, as_one=bool(history)), scene
         if len(scene.shape) > 1:  # laws and integrators are run over one axis
             flat = scene.take(np.ones(scene.shape, dtype=bool))
             ways = solve.ways(laws, flat, as_one=bool(history))
@@ -291,7 +293,7 @@ class Simulation:
         from contactlab.numeric.progress import follow
         from contactlab.runs.sweep import one_axis, swept  # a single run needs none of this
 
-        started, laws = time.perf_counter(), self.laws
+        started = time.perf_counter()
         options: dict[str, Any] = {"chunk": chunk, "executor": executor}
         if isinstance(scenes, str | Path) or hasattr(scenes, "scene"):
             remedy = "give its .scene" if hasattr(scenes, "scene") else FOR_FILES
@@ -305,6 +307,7 @@ class Simulation:
             raise refuse("scenes", scenes, rule, "give into=folder, or Scene.grid")
         batch = scenes if isinstance(scenes, Scene) else Scene.stack(scenes)
         one_axis(batch.shape)
+        laws, batch = bound(self.laws, batch)
         ways = solve.accept_scene(laws, batch)
         with follow(progress, "impacts") as count:
             options |= {"progress": count, "return_partial": return_partial}
@@ -325,6 +328,8 @@ class Simulation:
             remedy = "give one: into resumes too; keep returns the result"
             raise refuse("keep, into", (str(keep), str(into)), "write the same impacts", remedy)
         laws = self.laws
+        if isinstance(scenes, Scene):
+            laws, scenes = bound(laws, scenes)
 
         def result_of(scene: Scene, piece: Piece) -> ImpactResult:
             plan = plan_of(laws, scene, piece.columns, piece.motion)
@@ -345,8 +350,9 @@ class Simulation:
         ValueError
             If ``scene`` is not a Scene, or the law cannot run it.
         """
-        accept(self.normal, _scene(scene).central)
-        return normal_or_failed(self.laws, scene.central)
+        laws, scene = bound(self.laws, _scene(scene))
+        accept(laws.normal, scene.central)
+        return normal_or_failed(laws, scene.central)
 
 
 def _result(

@@ -12,7 +12,7 @@ from contactlab.impact.encounter import Encounter
 from contactlab.impact.material import Material
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import real, refuse, unit_remedy
+from contactlab.numeric.checks import of_kind, real, refuse, unit_remedy
 from contactlab.numeric.types import Array
 from contactlab.scene_file import plane
 from contactlab.scene_file.bodies import rigid_body
@@ -31,7 +31,7 @@ from contactlab.scene_file.entries import (
     UNITS,
     VECTOR_KEYS,
 )
-from contactlab.scene_file.table import MATERIAL_KEYS, Table
+from contactlab.scene_file.table import MATERIAL_KEYS, PROPERTIES, Table
 
 #: Key of the tangent of an impact of bodies by speeds, its other keys, and vectors to the contact.
 ALONG, CONTACTS = "along", ("contact", "target_contact")
@@ -110,14 +110,23 @@ def _present(table: Table, keys: tuple[str, ...]) -> dict[str, Any]:
 
 
 def _material(table: Table) -> Material:
-    material = table.table("material", known=MATERIAL_KEYS)
+    material = table.table("material", known=(*MATERIAL_KEYS, PROPERTIES))
     material.require("poisson_ratio", "for example 0.3")
     if material.has("shear_modulus") == material.has("young_modulus"):
         raise ValueError(
             f"{material.path}: exactly one of shear_modulus and young_modulus must be given, "
             "in Pa; the other follows from E = 2 G (1 + nu)"
         )
-    return material.make(Material, **_present(material, MATERIAL_KEYS))
+    numbers = _present(material, MATERIAL_KEYS)
+    if material.has(PROPERTIES):
+        properties = material.content[PROPERTIES]
+        of_kind(material.at(PROPERTIES), properties, Mapping, rule="must be a table")
+        for name, value in properties.items():
+            if isinstance(value, list):
+                remedy = "put lists in [sweep]"
+                raise refuse(material.at(f"{PROPERTIES}.{name}"), value, "must be one number", remedy)
+        numbers[PROPERTIES] = properties
+    return material.make(Material, **numbers)
 
 
 def _sphere(table: Table) -> Sphere:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 
 from contactlab.impact import material as materials
 from contactlab.impact.scene import UNITS as SCENE_UNITS
 from contactlab.numeric.checks import of_kind
 from contactlab.numeric.names import nearest
+from contactlab.registration.names import KINDS
 from contactlab.scene_file.table import MATERIAL_KEYS
 
 SPHERE_KEYS = ("radius", "mass", "gyration_ratio", "material")
@@ -60,6 +62,19 @@ def _entries() -> dict[str, str]:
 
 
 ENTRIES = _entries()
+#: A property of a material, and an option of which each impact has its own number.
+PROPERTY = re.compile(r"(?:sphere|body|target)\.material\.properties\.([A-Za-z_]\w*)")
+
+
+def is_option(name: str) -> bool:
+    """Return whether a name is the option of a law: ``"normal.relaxation_time"``."""
+    kind, _, option = name.partition(".")
+    return kind in KINDS and option.isidentifier()
+
+
+def is_entry(name: str) -> bool:
+    """Return whether a name is that of an entry that may vary."""
+    return name in ENTRIES or PROPERTY.fullmatch(name) is not None or is_option(name)
 
 
 def entry_path(name: str, *, where: str = "") -> str:
@@ -70,6 +85,8 @@ def entry_path(name: str, *, where: str = "") -> str:
     ValueError
         If the entry is unknown; ``where`` is the dotted path of the table with its name.
     """
+    if PROPERTY.fullmatch(name) or is_option(name):
+        return name
     if name not in ENTRIES:
         hint = nearest(name, ENTRIES)
         short = ", ".join((*IMPACT_KEYS, *NONDIMENSIONAL_KEYS))

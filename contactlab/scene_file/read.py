@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import attrs
+import numpy as np
 
 from contactlab.impact import batches
 from contactlab.impact.encounter import Encounter
@@ -22,6 +23,7 @@ from contactlab.scene_file.entries import (
     CARTESIAN,
     POLAR,
     entry_path,
+    is_option,
     named_materials,
     replace_entry,
     with_materials,
@@ -39,6 +41,7 @@ SECTIONS = (
 )  # fmt: skip
 #: Deepest nesting of tables and lists.
 DEEPEST = 20
+MU = "friction_coefficient"
 ABOUT_KEYS = ("title", "citation", "notes")
 
 
@@ -152,6 +155,9 @@ def read_scene(
             given: Any = dict(entries)
             sweep = Sweep(varied=given, axes={})
         scene, encounter = _scene_with(tables, sweep.varied)
+        laws = read_laws(document.get("simulation", {}), file.parent, allow_code=allow_code)
+        if of_laws := {name: each for name, each in sweep.varied.items() if is_option(name)}:
+            laws = laws.set(of_laws)
         return SceneFile(
             path=file,
             **{key: about.text(key, default="") for key in ABOUT_KEYS},
@@ -160,7 +166,7 @@ def read_scene(
             else batches.varying(scene, sweep.varied),
             encounter=encounter,
             varied=sweep.varied,
-            laws=read_laws(document.get("simulation", {}), file.parent, allow_code=allow_code),
+            laws=laws,
             measured=read_measured(document.get("measured", [])),
             materials=named_materials(document),
             defaulted=tuple(
@@ -178,10 +184,20 @@ def _scene_with(
     tables: Mapping[str, object], entries: Mapping[str, Numbers]
 ) -> tuple[Scene, Encounter | None]:
     """Return scene and encounter of the tables with some entries replaced."""
+    size: tuple[int, ...] = ()
     for name, values in entries.items():
         path = entry_path(name)
+        if is_option(path):
+            size = np.broadcast_shapes(size, np.shape(values))
+            continue
         tables = replace_entry(tables, path, real(path, values))
-    return build_scene(tables)
+    scene, encounter = build_scene(tables)
+    if not size or scene.shape:
+        return scene, encounter
+    # Only options of laws vary: one number of the scene stands for each impact.
+    section, key = ("nondimensional", "chi") if "nondimensional" in tables else ("impact", MU)
+    inner: Any = tables[section]
+    return build_scene(replace_entry(tables, f"{section}.{key}", np.full(size, inner[key])))
 
 
 def _with_defaults(

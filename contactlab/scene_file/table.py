@@ -15,6 +15,8 @@ Made = TypeVar("Made")
 
 #: Numbers of a material in a scene file.
 MATERIAL_KEYS = ("shear_modulus", "young_modulus", "poisson_ratio", "density", "yield_stress")
+#: Table of further numbers of a material, which laws of plug-ins read.
+PROPERTIES = "properties"
 
 #: What to write for a number that has no unit to tell it by.
 ABSENT = {
@@ -107,6 +109,8 @@ class Table:
         remedy = nearest_of(key, self.known)
         if key in ELSEWHERE and key not in self.known:
             remedy = ELSEWHERE[key]
+        if PROPERTIES in self.known:
+            remedy += f"; a number that a law reads goes under [{self.at(PROPERTIES)}]"
         if "material" in self.known and key in MATERIAL_KEYS:
             remedy = f"a number of the material: write it under [{self.at('material')}]"
         return ValueError(f"{self.at(key)}: is not a known key; {remedy}")

@@ -6,8 +6,9 @@ from abc import abstractmethod
 from typing import Any, ClassVar, NamedTuple
 
 import attrs
+import numpy as np
 
-from contactlab.contracts import NormalLaw
+from contactlab.contracts import BY_COMPLIANCE, NormalLaw, number_in
 from contactlab.contracts.restitution import TAKEN_RESTITUTION, restitution
 from contactlab.impact.hertz import hertz_scales, hertz_stiffness
 from contactlab.impact.scene import Scene
@@ -31,7 +32,9 @@ class Relaxing(NormalLaw):
     offers: ClassVar[frozenset[str]] = OF_LOSS | {"radius", "elliptic"}
 
     restitution: float | None = restitution(default=None)
-    relaxation_time: float | None = quantity("s", rule=NON_NEGATIVE, default=None)
+    relaxation_time: Real | None = quantity(
+        "s", rule=NON_NEGATIVE, default=None, per_impact=True, material=BY_COMPLIANCE
+    )
 
     def __attrs_post_init__(self) -> None:
         one_of_two(self, "restitution", "relaxation_time", default=TAKEN_RESTITUTION)
@@ -44,7 +47,8 @@ class Relaxing(NormalLaw):
     @property
     def loses(self) -> bool:
         """True if there is any loss."""
-        return self.restitution not in (None, 1.0) or bool(self.relaxation_time)
+        time = self.relaxation_time
+        return self.restitution not in (None, 1.0) or (time is not None and bool(np.any(time)))
 
     def waives(self) -> frozenset[str]:
         """Return the words of a loss that does not hold."""
@@ -56,7 +60,7 @@ class Relaxing(NormalLaw):
 
     def start(self, scene: Scene) -> Parts:
         """Return stiffness and relaxation time of the pair; the law has no memory."""
-        time: Any = self.relaxation_time
+        time: Any = number_in(self, "relaxation_time", scene)
         if time is None:
             unit = hertz_scales(scene).approach / scene.normal_speed
             time = self.number_of(self.restitution_in(scene)) * unit

@@ -1,0 +1,82 @@
+"""Numbers by name that a plug-in chose: properties of a material, options of one number an impact.
+
+A name may have its unit behind, as headings of files do: ``"relaxation_time (s)"``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from contactlab.numeric.checks import key, of_kind, refuse, some_known
+from contactlab.numeric.types import Either
+
+#: A name, and its unit in brackets where one is given.
+HEADING = re.compile(r"([A-Za-z_][\w.]*)(?: \((\S[^()]*(?:\([^()]*\))?[^()]*)\))?")
+
+
+class Named(Mapping[str, Any]):
+    """Numbers or arrays by name, which nothing changes."""
+
+    __slots__ = ("_numbers",)
+
+    def __init__(self, numbers: Mapping[str, Any] | None = None) -> None:
+        self._numbers = dict(numbers or {})
+
+    def __getitem__(self, name: str) -> Any:
+        return self._numbers[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._numbers)
+
+    def __len__(self) -> int:
+        return len(self._numbers)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Named) and self._keys() == other._keys()
+
+    def __hash__(self) -> int:
+        return hash(self._keys())
+
+    def __repr__(self) -> str:
+        return repr(self._numbers)
+
+    def _keys(self) -> frozenset[tuple[str, object]]:
+        return frozenset((name, key(number)) for name, number in self._numbers.items())
+
+
+NOTHING = Named()
+
+
+def split_heading(heading: str) -> tuple[str, str]:
+    """Return name and unit of a heading; the unit is empty if none is given."""
+    found = HEADING.fullmatch(heading)
+    return (found[1], found[2] or "") if found else (heading, "")
+
+
+def named_numbers(argument: str, given: object, *, taken: tuple[str, ...] = ()) -> Named:
+    """Return numbers by name, checked; ``taken`` names stand elsewhere.
+
+    An array may hold NaN, of an impact for which the number is not known.
+    """
+    if type(given) is Named:
+        return given
+    if given is None:
+        return NOTHING
+    remedy = f"write {argument}={{'relaxation_time': 1e-6}}, in SI units"
+    table = of_kind(argument, given, Mapping, rule="must be numbers by name", remedy=remedy)
+    numbers: dict[str, Either] = {}
+    names: set[str] = set()
+    for heading, value in table.items():
+        name = split_heading(heading)[0] if isinstance(heading, str) else ""
+        if not (name and HEADING.fullmatch(heading)) or "." in name:
+            rule = "must be a name without blanks, which may have its unit behind"
+            raise refuse(f"{argument}: name", heading, rule, "such as 'relaxation_time (s)'")
+        if name in taken:
+            raise refuse(f"{argument}: name", heading, f"is the argument {name}", "give it there")
+        if name in names:
+            raise refuse(f"{argument}: name", heading, "is given twice", "leave out one of them")
+        names.add(name)
+        numbers[heading] = some_known(f"{argument}[{heading!r}]", value, remedy="give it in SI")
+    return Named(numbers)

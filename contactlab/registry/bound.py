@@ -1,0 +1,163 @@
+"""Laws and scene of a run: options that follow from materials, and those of each impact."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import attrs
+import numpy as np
+
+from contactlab.contracts.law import Law, law_kind
+from contactlab.contracts.parameters import Combined, spread_over
+from contactlab.impact.cautions import name_bodies
+from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import lock_arrays
+from contactlab.numeric.checks import Rule, real, refuse, unit_remedy
+from contactlab.numeric.named import Named, split_heading
+from contactlab.numeric.names import nearest
+from contactlab.numeric.taken import Taken
+from contactlab.registry.composition import Laws
+from contactlab.registry.registry import REGISTRY
+
+
+class Read(NamedTuple):
+    """An option of a law that is not one number of its own.
+
+    Attributes
+    ----------
+    name, unit : str
+    rule : Rule
+    per_impact : bool
+        Whether each impact may have its own number.
+    material : Combined or None
+        How it follows from two materials; None if it does not.
+    required : bool
+        Whether the option or the materials must give it.
+    """
+
+    name: str
+    unit: str
+    rule: Rule
+    per_impact: bool
+    material: Combined | None
+    required: bool
+
+
+@lru_cache(maxsize=128)
+def options_read(law_class: type[Law]) -> tuple[Read, ...]:
+    """Return the options of a law that materials give, or that each impact has its own of."""
+    fields: Any = attrs.fields(law_class) if attrs.has(law_class) else ()
+    return tuple(
+        Read(
+            field.name,
+            field.metadata["unit"],
+            field.metadata["rule"],
+            field.metadata.get("per_impact", False),
+            field.metadata.get("material"),
+            field.metadata.get("required", False),
+        )
+        for field in fields
+        if "per_impact" in field.metadata or "material" in field.metadata
+    )
+
+
+def bound(laws: Laws, scene: Scene) -> tuple[Laws, Scene]:
+    """Return laws with the options that materials give, and the scene with those of each impact.
+
+    Raises
+    ------
+    ValueError
+        If an option is given twice or not at all, in another unit, or for other impacts.
+    """
+    if not any(options_read(type(law)) for law in laws):
+        return laws, scene
+    changed: dict[str, Any] = {}
+    numbers = dict(scene.options)
+    for kind, law in laws.by_kind().items():
+        used, own = bound_law(law, scene)
+        numbers |= own
+        if used is not law:
+            changed[kind] = used
+    if numbers:
+        scene = scene._with(options=Named(numbers))
+    return laws.changed(**changed) if changed else laws, scene
+
+
+def bound_law(law: Any, scene: Scene) -> tuple[Any, dict[str, Any]]:
+    """Return a law with the options that materials give, and its numbers of each impact."""
+    numbers = {}
+    for option in options_read(type(law)):
+        if option.material is not None:
+            law = _from_materials(law, option, scene)
+        value = getattr(law, option.name)
+        if isinstance(value, np.ndarray):
+            name = f"{law_kind(law)}.{option.name}"
+            numbers[f"{name} ({option.unit})"] = _each(name, option.unit, value, scene)
+    return law, numbers
+
+
+def _each(name: str, unit: str, value: Any, scene: Scene) -> Any:
+    """Return the numbers of the impacts of a scene; a part of a batch has had them before."""
+    before = scene.options.get(f"{name} ({unit})")
+    if before is not None and np.shape(value) != scene.shape:
+        index = np.asarray(scene.index)
+        if np.max(index) < value.size and np.array_equal(value.reshape(-1)[index], before):
+            return before
+    return lock_arrays(np.array(spread_over(name, value, scene)))
+
+
+def _from_materials(law: Any, option: Read, scene: Scene) -> Any:
+    """Return a law with an option that two materials give; as it is if they have none."""
+    name, unit = option.name, option.unit
+    place = f"{law_kind(law)}: {name}"
+    bodies, given = name_bodies(scene), getattr(law, name)
+    found: dict[str, Any] = {}
+    for body, each in bodies.items():
+        if (own := each.material.property_named(name)) is not None:
+            number, stated = own
+            if stated and stated != unit:
+                rule = f"has the unit {stated}, and {REGISTRY.short_name(law)} reads it in {unit}"
+                raise refuse(f"{body}.material: {name}", number, rule, unit_remedy(unit))
+            found[body] = number
+    told = f"Material(properties={{{name!r}: ...}}) in {unit}"
+    if not found:
+        _refuse_misspelt(law, name, bodies)
+        if option.required and given is None:
+            rule = "is missing: neither the law nor the materials have it"
+            raise refuse(place, None, rule, f"give the option, or {told} of both bodies")
+        return law
+    if given is not None and not isinstance(given, Taken):
+        rule = f"is given to the law, and {' and '.join(found)} have it as a property too"
+        raise refuse(place, given, rule, "leave out the option, or the property")
+    if lacking := [body for body in bodies if body not in found]:
+        rule = f"is missing, and the {' and '.join(found)} has it"
+        remedy = f"give {told}; 0 for a body that has nothing of it"
+        raise refuse(f"{lacking[0]}.material: {name}", None, rule, remedy)
+    materials: Any = tuple(body.material for body in bodies.values())
+    assert option.material is not None
+    value = option.material.of(*found.values(), materials)
+    where = f"{name} of {' and '.join(found)}"
+    value = real(where, value, rule=option.rule, remedy=unit_remedy(unit))
+    if isinstance(value, np.ndarray):
+        if np.ptp(value) == 0.0:
+            value = float(value.flat[0])
+        elif not option.per_impact:
+            rule = "must be one number: this option of a law holds for every impact"
+            raise refuse(where, value, rule, "run each material alone")
+    try:
+        return attrs.evolve(law, **{name: value})
+    except ValueError as error:
+        rule = f"is a property of {' and '.join(found)}, and the law refuses it: {error}"
+        raise refuse(where, value, rule, "leave out the property, or the other option") from None
+
+
+def _refuse_misspelt(law: Law, name: str, bodies: dict[str, Any]) -> None:
+    """Refuse a property that is nearly, and not, the name that a law reads."""
+    known = {option.name for option in options_read(type(law))}
+    for body, each in bodies.items():
+        for heading in each.material.properties:
+            own = split_heading(heading)[0]
+            if own not in known and nearest(own, [name], alike=0.75):
+                rule = f"is no property that {REGISTRY.short_name(law)} reads"
+                raise refuse(f"{body}.material: properties", own, rule, f"did you mean {name!r}?")
