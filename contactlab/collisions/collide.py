@@ -12,9 +12,10 @@ from contactlab.collisions.collision import Collision
 from contactlab.collisions.restituted import run_by_restitution, run_in_blocks
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.impact.encounter import Encounter
+from contactlab.impact.of_speed import numbers_at, spread_over
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, some, taken
-from contactlab.numeric.checks import check_place, of_kind, real, refuse
+from contactlab.numeric.checks import of_kind, real, refuse
 from contactlab.numeric.types import Array, Numbers, Real
 from contactlab.numeric.vectors import LEAST
 from contactlab.runs.simulation import Simulation
@@ -98,7 +99,7 @@ def collide(
         restitution = _at_speeds(restitution, encounter)
     e = real("restitution", restitution, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
     if not isinstance(e, float):
-        e = _spread(e, encounter.shape)
+        e = spread_over("restitution", e, encounter.shape)
     if simulation is not None:
         _alone(given, e, simulation)
     elif encounter.of_spheres:
@@ -136,23 +137,12 @@ def _alone(given: object, restitution: Real, simulation: Simulation) -> None:
         raise refuse("restitution", given, "stands in place of a simulation", remedy)
 
 
-def _spread(restitution: Any, shape: tuple[int, ...]) -> Any:
-    """Return a restitution for each encounter, read-only, or refuse another shape."""
-    try:
-        return np.broadcast_to(restitution, shape)
-    except ValueError:
-        rule = f"must be one number, or of the shape {shape} of the encounters"
-        raise refuse("restitution", restitution, rule) from None
-
-
 def _at_speeds(restitution: Callable[..., Numbers], encounter: Encounter) -> Any:
     """Return the restitution at the normal speed of each encounter; 1 where bodies separate."""
     shape, approach = encounter.shape, encounter.meeting().approach
     apart = np.broadcast_to(~(np.asarray(approach) >= LEAST), shape)
     speed = np.where(apart, 1.0, approach)
-    found = restitution(speed if shape else float(speed))
-    check_place("restitution", found)
-    each = np.array(_spread(found, shape))
+    each = np.array(numbers_at("restitution", restitution, speed, shape))
     if apart.any():
         each[apart] = 1.0
     return each

@@ -10,8 +10,8 @@ import numpy as np
 from contactlab.contracts.law import Law, law_kind
 from contactlab.impact.bodies import normal_compliance
 from contactlab.impact.material import Material
+from contactlab.impact.of_speed import spread_over
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import refuse
 from contactlab.numeric.named import split_heading
 
 
@@ -74,17 +74,7 @@ def number_in(law: Law, option: str, scene: Scene) -> Any:
     if not isinstance(value, np.ndarray):
         return value
     name = f"{law_kind(law)}.{option}"
-    for heading, numbers in scene.options.items():
+    for heading, each in scene.options.items():
         if split_heading(heading)[0] == name:
-            return numbers
-    return spread_over(name, value, scene)
-
-
-def spread_over(name: str, value: Any, scene: Scene) -> Any:
-    """Return the numbers of an option, of the shape of a scene, or refuse those of another."""
-    try:
-        return np.broadcast_to(value, scene.shape)
-    except ValueError:
-        rule = f"must be one number, or of the shape {scene.shape} of the scene"
-        remedy = "give one number for each impact"
-        raise refuse(f"{name}.shape", np.shape(value), rule, remedy) from None
+            return each.numbers
+    return spread_over(name, value, scene.shape)

@@ -18,6 +18,7 @@ from contactlab.impact.bodies import (
     normal_compliance,
     shear_compliance,
 )
+from contactlab.impact.of_speed import OfSlip
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import chosen, every, some
@@ -55,6 +56,8 @@ class _Meeting(Protocol):
     def target(self) -> Sphere | HalfSpace | RigidBody: ...
     @property
     def friction_coefficient(self) -> Real: ...
+    @property
+    def of_slip(self) -> OfSlip | None: ...
     @property
     def shape(self) -> tuple[int, ...]: ...
     @property
@@ -430,6 +433,7 @@ def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
         turning = turning_compliance(bodies, normal, contact["radius"])
         contact |= {"inverse_spin_mass": turning}
     entries |= {"encounter": encounter, "frame": join_components(axes, shape), "normal_spin": spin}
+    entries["of_slip"] = encounter.of_slip
     try:
         pair = Pair(normal_mass=1.0 / W[0][0], tangential_mass=1.0 / tangential, **contact)
         return Scene(None, None, encounter.friction_coefficient, speed, along, pair=pair, **entries)

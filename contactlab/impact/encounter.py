@@ -21,11 +21,12 @@ from contactlab.impact.body_contact import (
     spin_about,
 )
 from contactlab.impact.material import Material
+from contactlab.impact.of_speed import LawOfSlip, OfSlip, friction, is_law_of_slip, law_of_slip
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.arrays import every
-from contactlab.numeric.checks import NON_NEGATIVE, first_of, instance, quantity, refuse
+from contactlab.numeric.checks import first_of, instance, refuse
 from contactlab.numeric.names import state_arguments
 from contactlab.numeric.types import Array, Index, Numbers, Real
 from contactlab.numeric.vectors import (
@@ -75,8 +76,9 @@ class Encounter:
         The first body.
     target : Sphere, HalfSpace or RigidBody
         The second body.
-    friction_coefficient : float or array
-        Coulomb's mu, at least 0.
+    friction_coefficient : float, array, callable or mapping
+        Coulomb's mu, at least 0; as a function or a table of the slip speed before the impact, as
+        of a ``Scene``.
     normal : vector
         From the first body into the target, at right angles to both surfaces; between spheres
         from centre to centre. Only the direction counts; the length must not be zero.
@@ -100,7 +102,7 @@ class Encounter:
     target: Sphere | HalfSpace | RigidBody = instance(
         HalfSpace, Sphere, RigidBody, remedy="make one: HalfSpace(material)"
     )
-    friction_coefficient: Real = quantity("1", rule=NON_NEGATIVE, empty=True)
+    friction_coefficient: Real = friction(empty=True)
     normal: Array = vector("1")
     velocity: Array = vector("m/s")
     spin: Array = vector("rad/s", default=NOTHING)
@@ -108,6 +110,8 @@ class Encounter:
     target_spin: Array = vector("rad/s", default=NOTHING)
     contact: Array = vector("m", default=NOTHING)
     target_contact: Array = vector("m", default=NOTHING)
+    #: How friction follows from slip; None where it is given by numbers.
+    of_slip: OfSlip | None = attrs.field(default=None, eq=False, repr=False)
     #: Batch shape: () for one encounter.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
 
@@ -115,7 +119,7 @@ class Encounter:
         self,
         body: Sphere | RigidBody,
         target: Sphere | HalfSpace | RigidBody,
-        friction_coefficient: Numbers,
+        friction_coefficient: Numbers | LawOfSlip,
         *,
         normal: Numbers,
         velocity: Numbers,
@@ -124,6 +128,7 @@ class Encounter:
         target_spin: Numbers = NOTHING,
         contact: Numbers = NOTHING,
         target_contact: Numbers = NOTHING,
+        of_slip: OfSlip | None = None,
     ) -> None: ...
 
     def __attrs_post_init__(self) -> None:
@@ -156,6 +161,24 @@ class Encounter:
                 "must be zero: a half-space does not spin",
                 "give target_velocity, that of its surface at the contact",
             )
+        self._check_normal(shape)
+        if self.of_slip is not None or is_law_of_slip(self.friction_coefficient):
+            self._set_friction(shape)
+
+    def _set_friction(self, shape: tuple[int, ...]) -> None:
+        """Set the friction that follows from the slip; numbers that were put in its place stay."""
+        slip = self.meeting().slip
+        if is_law_of_slip(self.friction_coefficient):
+            found: Any = OfSlip.of(law_of_slip(self.friction_coefficient), slip, shape)
+        else:
+            before: Any = self.of_slip
+            found = before.at(self.friction_coefficient, slip, shape)
+        object.__setattr__(self, "of_slip", found)
+        if found is not None:
+            object.__setattr__(self, "friction_coefficient", found.numbers)
+
+    def _check_normal(self, shape: tuple[int, ...]) -> None:
+        """Refuse a normal without length."""
         if not shape and math.hypot(*self.normal.tolist()) >= LEAST:
             return
         length2 = np.einsum("...i,...i->...", self.normal, self.normal)
@@ -192,7 +215,7 @@ class Encounter:
             Index of an array of the batch shape.
         """
         taken: Encounter = object.__new__(Encounter)  # every number was checked before
-        for name in ("body", "target", "friction_coefficient"):
+        for name in ("body", "target", "friction_coefficient", "of_slip"):
             value = getattr(self, name)
             if isinstance(value, RigidBody):
                 value = value.take(self.shape, part)
@@ -302,6 +325,7 @@ class Encounter:
         bodies: tuple[Any, Any] = self.body, self.target
         numbers = contact.approach, along, (contact.slip - along) / bodies[0].radius
         about = {"normal_spin": spin_about(self, contact.normal), "encounter": self}
+        about["of_slip"] = self.of_slip
         return Scene(*bodies, self.friction_coefficient, *numbers, **about)
 
     def separate(self) -> ValueError:

@@ -14,6 +14,7 @@ from contactlab.impact import batches, groups, inverse_mass, kinetics
 from contactlab.impact.batches import Batches
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
 from contactlab.impact.material import Material
+from contactlab.impact.of_speed import LawOfSlip, OfSlip, friction, is_law_of_slip, law_of_slip
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import (
     NON_NEGATIVE,
@@ -74,8 +75,10 @@ class Scene(Batches):
         The body that moves.
     target : HalfSpace or Sphere
         The body at rest.
-    friction_coefficient : float or array
-        Coulomb's mu, at least 0.
+    friction_coefficient : float, array, callable or mapping
+        Coulomb's mu, at least 0. As a function of the slip speed before the impact in m/s it takes
+        a float, or an array of the scene's shape, and returns mu; a table ``{0.1: 0.3, 2.0: 0.2}``
+        is linear between its slip speeds. Each impact then has the one number that follows.
     normal_speed : float or array
         v1, the speed of approach along the normal, in m/s, positive.
     tangential_velocity : float or array
@@ -113,6 +116,9 @@ class Scene(Batches):
     options : mapping of str to array
         Options of laws of which each impact has its own number, by ``kind.option (unit)``. A run
         fills them in from its laws, so that parts of a batch keep theirs.
+    of_slip : OfSlip, optional
+        The function or table of the friction coefficient. A scene with other velocities has the
+        numbers that follow; one with another friction coefficient has that.
 
     Raises
     ------
@@ -129,7 +135,7 @@ class Scene(Batches):
     target: Sphere | HalfSpace | None = instance(
         HalfSpace, Sphere, remedy="make one: HalfSpace(material)", optional=True
     )
-    friction_coefficient: Real = quantity("1", rule=NON_NEGATIVE)
+    friction_coefficient: Real = friction()
     normal_speed: Real = quantity("m/s", rule=POSITIVE)
     tangential_velocity: Real = quantity("m/s", default=0.0)
     spin: Real = quantity("rad/s", default=0.0)
@@ -150,6 +156,8 @@ class Scene(Batches):
     )
     planar: bool = instance(bool, default=True, kw_only=True, repr=False)
     options: Mapping[str, Any] = attrs.field(default=NOTHING, kw_only=True, repr=False)
+    #: How friction follows from slip; None where it is given by numbers.
+    of_slip: OfSlip | None = attrs.field(default=None, eq=False, kw_only=True, repr=False)
     #: Batch shape: () for one impact.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
     _index: Any = attrs.field(init=False, eq=False, repr=False)
@@ -162,7 +170,7 @@ class Scene(Batches):
         self,
         sphere: Sphere | None,
         target: Sphere | HalfSpace | None,
-        friction_coefficient: Numbers,
+        friction_coefficient: Numbers | LawOfSlip,
         normal_speed: Numbers,
         tangential_velocity: Numbers = 0.0,
         spin: Numbers = 0.0,
@@ -177,6 +185,7 @@ class Scene(Batches):
         inverse_mass: Numbers | None = None,
         planar: bool = True,
         options: Mapping[str, Any] = NOTHING,
+        of_slip: OfSlip | None = None,
     ) -> None: ...
 
     def __attrs_post_init__(self) -> None:
@@ -198,12 +207,30 @@ class Scene(Batches):
         )
         if 0 in shape:
             raise refuse("shape", shape, "a scene must hold at least one impact")
+        if self.of_slip is not None or is_law_of_slip(self.friction_coefficient):
+            self._set_friction(shape)
         object.__setattr__(self, "shape", shape)
         index = batch.lock_arrays(np.arange(math.prod(shape)).reshape(shape)) if shape else 0
         object.__setattr__(self, "_index", index)
         if self.inverse_mass is not None:
             self._check_inverse_mass()
         self._check_scales()
+
+    def _set_friction(self, shape: tuple[int, ...]) -> None:
+        """Set the friction that follows from the slip; numbers that were put in its place stay."""
+        slip = kinetics.slip_speed(self)
+        if is_law_of_slip(self.friction_coefficient):
+            if not self.has_units:
+                rule = "follows from a slip speed in m/s, and psi1 and chi have no units"
+                raise refuse("friction_coefficient", self.friction_coefficient, rule, "give bodies")
+            found = OfSlip.of(law_of_slip(self.friction_coefficient), slip, shape)
+        else:
+            before = self.of_slip
+            assert before is not None
+            found = before.at(self.friction_coefficient, slip, shape)
+        object.__setattr__(self, "of_slip", found)
+        if found is not None:
+            object.__setattr__(self, "friction_coefficient", found.numbers)
 
     def _shapes(self) -> dict[str, tuple[int, ...]]:
         """Return the batch shape of every number that varies."""
@@ -215,7 +242,7 @@ class Scene(Batches):
                 if isinstance(number, np.ndarray)
             }
         if self.options:
-            shapes |= {name: np.shape(number) for name, number in self.options.items()}
+            shapes |= {name: np.shape(each.numbers) for name, each in self.options.items()}
         if self.inverse_mass is not None:
             shapes["inverse_mass"] = self.inverse_mass.shape[:-2]
             if not self.planar:
@@ -325,7 +352,7 @@ class Scene(Batches):
         cls,
         sphere: Sphere,
         target: Sphere | HalfSpace,
-        friction_coefficient: Numbers,
+        friction_coefficient: Numbers | LawOfSlip,
         *,
         speed: Numbers,
         angle_deg: Numbers,

@@ -5,12 +5,16 @@ A name may have its unit behind, as headings of files do: ``"relaxation_time (s)
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import attrs
+import numpy as np
+
 from contactlab.numeric.checks import key, of_kind, refuse, some_known
-from contactlab.numeric.types import Either
+from contactlab.numeric.types import Array, Either
 
 #: A name, and its unit in brackets where one is given.
 HEADING = re.compile(r"([A-Za-z_][\w.]*)(?: \((\S[^()]*(?:\([^()]*\))?[^()]*)\))?")
@@ -43,10 +47,41 @@ class Named(Mapping[str, Any]):
         return repr(self._numbers)
 
     def _keys(self) -> frozenset[tuple[str, object]]:
-        return frozenset((name, key(number)) for name, number in self._numbers.items())
+        return frozenset(
+            (name, key(each.numbers if type(each) is OfImpacts else each))
+            for name, each in self._numbers.items()
+        )
 
 
 NOTHING = Named()
+
+
+@attrs.frozen(eq=False)
+class OfImpacts:
+    """The numbers of the impacts of a scene, and a mark of the array they were taken from.
+
+    Attributes
+    ----------
+    numbers : float or array
+        Of the shape of the scene.
+    whole : str
+        A hash of the whole array, by which its own parts are known.
+    """
+
+    numbers: Any
+    whole: str
+
+    @classmethod
+    def of(cls, whole: Array, numbers: Array) -> OfImpacts:
+        """Return numbers of the impacts, read-only, with the mark of the array."""
+        own = np.array(numbers, dtype=np.float64)
+        own.setflags(write=False)
+        return cls(own, mark_of(whole))
+
+
+def mark_of(whole: Array) -> str:
+    """Return a hash of an array, the same in every process."""
+    return hashlib.sha256(f"{whole.shape}".encode() + whole.tobytes()).hexdigest()[:16]
 
 
 def split_heading(heading: str) -> tuple[str, str]:

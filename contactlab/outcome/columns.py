@@ -273,14 +273,19 @@ def columns(result: WithScene, whole: Scene | None = None) -> list[tuple[str, st
     for column in columns_of(whole or scene):
         parts = components(column.name, column.read(result), scene.shape)
         table += [(name, column.unit, values) for name, values in parts]
-    options = [(*split_heading(heading), values) for heading, values in scene.options.items()]
-    names = {name for name, *_ in (*table, *options)}
+    options = {
+        split_heading(heading)[0]: (*split_heading(heading), each.numbers)
+        for heading, each in scene.options.items()
+    }
+    if scene.of_slip is not None:
+        options["friction_coefficient"] = "friction_coefficient", "1", scene.friction_coefficient
+    names = {name for name, *_ in table}
     varied = [
-        (name, entry_unit(name), values)
+        options.pop(name, (name, entry_unit(name), values))
         for name, values in scene.varied.items()
         if name not in names
     ]
-    return varied + options + table
+    return varied + list(options.values()) + table
 
 
 def components(name: str, values: object, shape: tuple[int, ...]) -> list[tuple[str, Any]]:

@@ -9,12 +9,12 @@ import attrs
 import numpy as np
 
 from contactlab.contracts.law import Law, law_kind
-from contactlab.contracts.parameters import Combined, spread_over
+from contactlab.contracts.parameters import Combined
 from contactlab.impact.cautions import name_bodies
+from contactlab.impact.of_speed import spread_over
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import lock_arrays
 from contactlab.numeric.checks import Rule, real, refuse, unit_remedy
-from contactlab.numeric.named import Named, split_heading
+from contactlab.numeric.named import Named, OfImpacts, mark_of, split_heading
 from contactlab.numeric.names import nearest
 from contactlab.numeric.taken import Taken
 from contactlab.registry.composition import Laws
@@ -97,14 +97,12 @@ def bound_law(law: Any, scene: Scene) -> tuple[Any, dict[str, Any]]:
     return law, numbers
 
 
-def _each(name: str, unit: str, value: Any, scene: Scene) -> Any:
+def _each(name: str, unit: str, value: Any, scene: Scene) -> OfImpacts:
     """Return the numbers of the impacts of a scene; a part of a batch has had them before."""
-    before = scene.options.get(f"{name} ({unit})")
-    if before is not None and np.shape(value) != scene.shape:
-        index = np.asarray(scene.index)
-        if np.max(index) < value.size and np.array_equal(value.reshape(-1)[index], before):
-            return before
-    return lock_arrays(np.array(spread_over(name, value, scene)))
+    before: OfImpacts | None = scene.options.get(f"{name} ({unit})")
+    if before is not None and before.whole == mark_of(value):
+        return before
+    return OfImpacts.of(value, spread_over(name, value, scene.shape))
 
 
 def _from_materials(law: Any, option: Read, scene: Scene) -> Any:
@@ -127,10 +125,8 @@ def _from_materials(law: Any, option: Read, scene: Scene) -> Any:
             rule = "is missing: neither the law nor the materials have it"
             raise refuse(place, None, rule, f"give the option, or {told} of both bodies")
         return law
-    if given is not None and not isinstance(given, Taken):
-        rule = f"is given to the law, and {' and '.join(found)} have it as a property too"
-        raise refuse(place, given, rule, "leave out the option, or the property")
     if lacking := [body for body in bodies if body not in found]:
+        _refuse_misspelt(law, name, {body: bodies[body] for body in lacking})
         rule = f"is missing, and the {' and '.join(found)} has it"
         remedy = f"give {told}; 0 for a body that has nothing of it"
         raise refuse(f"{lacking[0]}.material: {name}", None, rule, remedy)
@@ -145,11 +141,19 @@ def _from_materials(law: Any, option: Read, scene: Scene) -> Any:
         elif not option.per_impact:
             rule = "must be one number: this option of a law holds for every impact"
             raise refuse(where, value, rule, "run each material alone")
+    if given is not None and not isinstance(given, Taken) and not _same(given, value):
+        rule = f"is given to the law, and {' and '.join(found)} have it as a property too"
+        raise refuse(place, given, rule, "leave out the option, or the property")
     try:
         return attrs.evolve(law, **{name: value})
     except ValueError as error:
         rule = f"is a property of {' and '.join(found)}, and the law refuses it: {error}"
         raise refuse(where, value, rule, "leave out the property, or the other option") from None
+
+
+def _same(given: Any, value: Any) -> bool:
+    """Return whether an option has the value that the materials give, as of a law of a run."""
+    return np.shape(given) == np.shape(value) and bool(np.all(given == value))
 
 
 def _refuse_misspelt(law: Law, name: str, bodies: dict[str, Any]) -> None:

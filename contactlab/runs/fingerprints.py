@@ -36,6 +36,8 @@ def _content(tree: object, update: Callable[[bytes], None]) -> None:
             update(pickle.dumps(tree))
         return
     for field in attrs.fields(kind):
+        if not field.metadata.get("marks", True):
+            continue
         update(field.name.encode())
         _feed(getattr(tree, field.name), update)
 

@@ -204,13 +204,13 @@ def _encounter(
         if not isinstance(value, list):
             remedy = "beside vectors write [x, y, z]"
             raise refuse(table.at(key), value, "must be a vector of three numbers", remedy)
-    numbers = _numbers(table, ("friction_coefficient",))
+    numbers: dict[str, Any] = {"friction_coefficient": table.friction()}
     return table.make(Encounter, body=body, target=target, **numbers, **vectors, **contacts)
 
 
 def _impact(table: Table, sphere: Sphere, target: Sphere | HalfSpace) -> Scene:
     """Return the scene of an impact with polar or normal and tangential velocity."""
-    numbers = _numbers(table, ("friction_coefficient",))
+    numbers: dict[str, Any] = {"friction_coefficient": table.friction()}
     numbers |= _present(table, ("spin", "normal_spin"))
     normal, along = plane.velocity(table)
     if table.has(*STRUCK_KEYS):

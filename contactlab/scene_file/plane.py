@@ -76,7 +76,7 @@ def of_bodies(
     )
     if isinstance(bodies[1], HalfSpace):
         check_spin(table.at(STRUCK_KEYS[2]), _number(table, STRUCK_KEYS[2]))
-    friction = table.number("friction_coefficient", remedy="it has no unit")
+    friction = table.friction()
 
     before = vector(*velocity(table))
     struck = vector(*(_number(table, key) for key in STRUCK_KEYS[:2]))

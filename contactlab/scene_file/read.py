@@ -41,7 +41,6 @@ SECTIONS = (
 )  # fmt: skip
 #: Deepest nesting of tables and lists.
 DEEPEST = 20
-MU = "friction_coefficient"
 ABOUT_KEYS = ("title", "citation", "notes")
 
 
@@ -194,10 +193,14 @@ def _scene_with(
     scene, encounter = build_scene(tables)
     if not size or scene.shape:
         return scene, encounter
-    # Only options of laws vary: one number of the scene stands for each impact.
-    section, key = ("nondimensional", "chi") if "nondimensional" in tables else ("impact", MU)
+    # Only options of laws vary: one number of the scene is given for each impact.
+    section = "nondimensional" if "nondimensional" in tables else "impact"
     inner: Any = tables[section]
-    return build_scene(replace_entry(tables, f"{section}.{key}", np.full(size, inner[key])))
+    for key, value in inner.items():
+        if isinstance(value, float | int):
+            return build_scene(replace_entry(tables, f"{section}.{key}", np.full(size, value)))
+    rule = "varies options of laws alone, and no number of [impact] can stand for each impact"
+    raise ValueError(f"sweep: {rule}; give friction_coefficient as a number")
 
 
 def _with_defaults(

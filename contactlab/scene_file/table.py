@@ -80,6 +80,21 @@ class Table:
             raise refuse(self.at(key), value, "must be one number", "put lists in [sweep]")
         return real(self.at(key), value, remedy=remedy)
 
+    def friction(self) -> Any:
+        """Return the friction coefficient: a number, an array, or a table {slip speed: mu}."""
+        key = "friction_coefficient"
+        pairs = self.content.get(key)
+        if not isinstance(pairs, list):
+            return self.number(key, remedy="it has no unit")
+        if not (pairs and all(isinstance(pair, list) and len(pair) == 2 for pair in pairs)):
+            rule = "must be one number, or pairs of slip speed and mu"
+            remedy = "write [[0.1, 0.3], [2, 0.2]], speeds in m/s, or put lists in [sweep]"
+            raise refuse(self.at(key), pairs, rule, remedy)
+        speeds = np.asarray(real(self.at(key), pairs, remedy="give pairs of slip speed and mu"))
+        if len(set(speeds[:, 0].tolist())) < len(speeds):
+            raise refuse(self.at(key), pairs, "has a slip speed twice", "leave out one")
+        return dict(speeds.tolist())
+
     def text(self, key: str, *, default: str | None = None, remedy: str = "") -> str:
         """Return the text at ``key``."""
         if key not in self.content and default is not None:

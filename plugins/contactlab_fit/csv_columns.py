@@ -14,7 +14,9 @@ from contactlab.numeric.names import nearest
 from contactlab.numeric.units import CONVERSIONS, SAME_UNITS
 from contactlab.outcome.columns import QUANTITIES, foreign
 from contactlab.outcome.files import content
-from contactlab.scene_file.entries import ENTRIES
+from contactlab.registry.bound import options_read
+from contactlab.registry.registry import REGISTRY
+from contactlab.scene_file.entries import ENTRIES, PROPERTY, is_option
 
 #: Quantities of a rebound that can be measured.
 MEASURABLE = (
@@ -88,6 +90,8 @@ def read_heading(text: str, columns: Mapping[str, str]) -> Heading:
         unit = name_and_unit(text)[2]
     if name in ANGLES and not error:
         return Heading("given", "angle_deg", _factor(text, name, unit, "deg"))
+    if not error and (is_option(name) or PROPERTY.fullmatch(name)):
+        return Heading("given", name, _factor(text, name, unit, unit_of(name, text)))
     if name in ENTRIES and not error:
         return Heading("given", name, _factor(text, name, unit, entry_unit(name)))
     if unit == "deg" and not name.endswith("_deg"):
@@ -102,6 +106,23 @@ def read_heading(text: str, columns: Mapping[str, str]) -> Heading:
         f"{nearest(name, [*ENTRIES, *measurable()])}{known_names()}name the column by --column "
         f"'{text.strip()}=...' (columns= in Python), or begin its heading with # to leave it unread"
     )
+
+
+def unit_of(name: str, text: str) -> str:
+    """Return the unit in which the installed laws read an option, or a property, of each impact."""
+    kind = name.partition(".")[0] if is_option(name) else ""
+    option = name.rpartition(".")[2]
+    units = {
+        read.unit
+        for info in REGISTRY.installed()
+        if kind in ("", info.kind) and REGISTRY.at_hand(info)
+        for read in options_read(REGISTRY.law_class(info.known_as))
+        if read.name == option and (read.per_impact if kind else read.material is not None)
+    }
+    if len(units) != 1:
+        rule = f"is read in {' and in '.join(sorted(units))} by several" if units else "is read by no"
+        raise ValueError(f"heading {text!r}: {option} of each impact {rule} laws at hand")
+    return units.pop()
 
 
 def known_names() -> str:

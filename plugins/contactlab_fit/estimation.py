@@ -37,7 +37,7 @@ from contactlab_fit.fit_result import Estimate, Fit
 from contactlab_fit.intervals import TAIL, Spread, spread
 from contactlab_fit.measurements import Measurements, read_measurements
 from contactlab_fit.minima import minima
-from contactlab_fit.model import Model, scene_of, simulation_of
+from contactlab_fit.model import Model, scene_of, setup_of, simulation_of
 from contactlab_fit.parameters import (
     RESTITUTION,
     SHEAR_LOSS,
@@ -303,7 +303,7 @@ def _problem(
         raise refuse(
             "parameters", parameters, "must be a list of names", "['friction_coefficient']"
         )
-    setup = Setup(scene_of(scene, table.given, len(table)), simulation)
+    setup = setup_of(scene, table.given, len(table), simulation)
     fitted = tuple(find_parameter(name, setup) for name in parameters)
     names = [parameter.name for parameter in fitted]
     if len(set(names)) < len(names):
@@ -326,7 +326,8 @@ def _impacts(
         what="lengths", remedy="give one number, or as many as the others have",
     )  # fmt: skip
     given = {name: np.broadcast_to(column, size) for name, column in columns.items()}
-    result = model.at(scene_of(scene, given, *size)).impacts(values)
+    setup = setup_of(scene, given, *size, model.setup.simulation)
+    result = attrs.evolve(model, setup=setup).impacts(values)
     fitted = [parameter.name for parameter in model.parameters]
     return normal_motion_alone(result) if lacks_friction(scene, given, fitted) else result
 
@@ -445,9 +446,9 @@ def parameters_of(
     parameters: Sequence[str],
 ) -> dict[str, list[str]]:
     """Return the parameters to fit under each law; those that no law has stay, to be refused."""
-    batch = scene_of(scene, measurements.given, len(measurements))
+    size = len(measurements)
     having = {
-        name: those_of(Setup(batch, simulation), parameters)
+        name: those_of(setup_of(scene, measurements.given, size, simulation), parameters)
         for name, simulation in simulations.items()
     }
     nowhere = set(parameters).difference(*having.values())

@@ -13,10 +13,11 @@ from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array
 from contactlab.outcome.columns import QUANTITIES, Column
 from contactlab.outcome.result import ImpactResult
+from contactlab.registry.bound import bound
 from contactlab.registry.law_words import in_words
 from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import SceneFile, read_scene
-from contactlab.scene_file.entries import CARTESIAN, POLAR
+from contactlab.scene_file.entries import CARTESIAN, POLAR, is_option
 from contactlab_fit import tabulated
 from contactlab_fit.parameters import RESTITUTION, Parameter, Setup
 
@@ -189,6 +190,29 @@ def opened(scene: object, given: Mapping[str, Array]) -> Scene | SceneFile:
         return scene
     path: Any = scene.path if isinstance(scene, SceneFile) else scene
     return read_scene(path, entries=given, defaults=DEFAULTS)
+
+
+def setup_of(
+    scene: object, given: Mapping[str, Array], count: int, simulation: Simulation | None
+) -> Setup:
+    """Return the batch of the measured impacts, and the laws with the options of each impact."""
+    for name in filter(is_option, given):
+        kind, option = name.split(".")
+        if simulation is None:
+            rule = "is an option of a law, and no law is named"
+            raise refuse("measurements", name, rule, "give simulation=Simulation(...)")
+        laws: dict[str, Any] = simulation.laws.by_kind()
+        try:
+            laws[kind] = attrs.evolve(laws[kind], **{option: given[name]})
+        except (TypeError, ValueError) as error:
+            raise refuse("measurements", name, f"is no option of its law: {error}") from None
+        simulation = Simulation(**laws)
+    batch = scene_of(scene, {k: v for k, v in given.items() if not is_option(k)}, count)
+    if simulation is None:
+        return Setup(batch, None)
+    laws_bound, batch = bound(simulation.laws, batch)
+    changed = laws_bound is not simulation.laws
+    return Setup(batch, Simulation.of(laws_bound) if changed else simulation)
 
 
 def scene_of(scene: object, given: Mapping[str, Array], count: int) -> Scene:

@@ -122,11 +122,12 @@ class LawOption(Parameter):
 
     kind: str
     option: str
+    each: bool = False
 
     @property
     def batched(self) -> bool:
-        """False: a law has one value for all impacts."""
-        return False
+        """Whether the option may be one number an impact; most have one for all impacts."""
+        return self.each
 
     def applied(self, setup: Setup, value: Real) -> Setup:
         """Return the laws with this option."""
@@ -268,6 +269,7 @@ def _option(kind: str, field: attrs.Attribute[object], value: float) -> LawOptio
         starts=(value, *(_evenly(least, most) if finite else ())),
         kind=kind,
         option=field.name,
+        each="per_impact" in field.metadata,
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from contactlab.contracts import NormalContact, Tabulated, UnfollowedNormalLaw, without_tension
 from contactlab.contracts.restitution import LEAST_RESTITUTION, restitution
+from contactlab.impact.of_speed import interpolate, speed_pairs
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import plain
 from contactlab.numeric.checks import Rule, quantity, refuse
@@ -31,17 +32,9 @@ PAIRS = "must be two or more pairs of speed and e"
 
 def pair_speeds(table: object) -> tuple[tuple[float, float], ...]:
     """Return a table of speeds and restitutions as pairs, or refuse it."""
-    remedy = "write [[speed, e], [speed, e]], speeds in m/s"
-    try:
-        pairs = np.array(table, dtype=float)
-    except (TypeError, ValueError):
-        pairs = np.empty(0)
-    if pairs.ndim != 2 or pairs.shape[0] < 2 or pairs.shape[1] != 2:
-        raise refuse("restitutions", table, PAIRS, remedy)
-    speeds, e = pairs.T
-    if not (np.all(np.diff(speeds) > 0.0) and speeds[0] >= 0.0 and np.isfinite(speeds[-1])):
-        raise refuse("restitutions", table, "must have speeds that increase, from 0 on", remedy)
+    speeds, e = speed_pairs("restitutions", table, "e")
     if not np.all((e >= 0.0) & (e <= 1.0)):
+        remedy = "write [[speed, e], [speed, e]], speeds in m/s"
         raise refuse("restitutions", table, "must have e from 0 to 1", remedy)
     return tuple((float(speed), float(each)) for speed, each in pairs)
 
@@ -129,13 +122,7 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
                 remedy = "e must be at least 0; give less, or slower impacts"
                 raise refuse("speed_loss", self.speed_loss, rule, remedy)
         else:
-            known, values = np.transpose(self.restitutions)
-            wrong = (speed < known[0]) | (speed > known[-1])
-            if np.any(wrong):
-                rule = f"has speeds from {known[0]:g} to {known[-1]:g} m/s, and an impact has "
-                rule += f"{speed[wrong].flat[0]:.4g} m/s"
-                raise refuse("restitutions", [*self.restitutions], rule, "add its e to the table")
-            e = np.interp(speed, known, values)
+            e = interpolate("restitutions", np.transpose(self.restitutions), speed, "e")
         found: Real = plain(e)
         return found
 

@@ -1,0 +1,154 @@
+"""Numbers that follow from a speed before the impact: a restitution, a friction coefficient.
+
+They are given as a function of the speed, or as a table in which they are linear between speeds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, TypeAlias
+
+import attrs
+import numpy as np
+
+from contactlab.numeric.arrays import spread
+from contactlab.numeric.checks import NON_NEGATIVE, check_place, quantity, real, refuse
+from contactlab.numeric.types import Array, Numbers, Real
+
+#: A friction coefficient as a function of the slip speed in m/s, or as a table by it.
+LawOfSlip: TypeAlias = (
+    "Callable[[float], Numbers] | Callable[[Array], Numbers] | Mapping[float, float]"
+)
+
+
+#: Slip speeds that differ by rounding are one: those of an encounter and of its scene.
+SAME_SLIP = 1e-12
+
+
+def numbers_at(argument: str, function: Callable[..., Any], speed: Any, shape: Any) -> Any:
+    """Return what a function gives at speeds in m/s, as an array of ``shape``; unchecked numbers.
+
+    The function takes one float, or an array of ``shape``.
+    """
+    try:
+        found = function(spread(speed, shape))
+    except Exception as error:
+        rule = f"raised {type(error).__name__} at speeds before the impact: {error}"
+        raise refuse(argument, function, rule, "it takes a float, or an array") from error
+    check_place(argument, found)
+    return spread_over(argument, found, shape)
+
+
+def spread_over(argument: str, numbers: Any, shape: tuple[int, ...]) -> Any:
+    """Return numbers of the shape of the impacts, read-only, or refuse those of another."""
+    try:
+        return np.broadcast_to(numbers, shape)
+    except ValueError:
+        rule = f"must be one number, or of the shape {shape} of the impacts"
+        raise refuse(argument, numbers, rule, "give one number for each impact") from None
+
+
+def speed_pairs(argument: str, table: object, what: str) -> Array:
+    """Return a table of speeds and numbers, shape (2, n), or refuse one that is no table.
+
+    Parameters
+    ----------
+    argument : str
+    table : list of pairs
+    what : str
+        Symbol of the number, for messages.
+    """
+    remedy = f"write [[speed, {what}], [speed, {what}]], speeds in m/s"
+    try:
+        pairs = np.array(table, dtype=float)
+    except (TypeError, ValueError):
+        pairs = np.empty(0)
+    if pairs.ndim != 2 or pairs.shape[0] < 2 or pairs.shape[1] != 2:
+        raise refuse(argument, table, f"must be two or more pairs of speed and {what}", remedy)
+    speeds = pairs[:, 0]
+    if not (np.all(np.diff(speeds) > 0.0) and speeds[0] >= 0.0 and np.isfinite(speeds[-1])):
+        raise refuse(argument, table, "must have speeds that increase, from 0 on", remedy)
+    return pairs.T
+
+
+def interpolate(argument: str, pairs: Array, speed: Any, what: str) -> Any:
+    """Return the numbers of a table at speeds, linear between its own, or refuse one outside."""
+    known, values = pairs
+    wrong = (np.asarray(speed) < known[0]) | (np.asarray(speed) > known[-1])
+    if np.any(wrong):
+        rule = f"has speeds from {known[0]:g} to {known[-1]:g} m/s, and an impact has "
+        rule += f"{np.asarray(speed)[wrong].flat[0]:.4g} m/s"
+        raise refuse(argument, pairs.T.tolist(), rule, f"add its {what} to the table")
+    return np.interp(speed, known, values)
+
+
+@attrs.frozen(eq=False)
+class OfSlip:
+    """A friction coefficient that follows from the slip speed before the impact.
+
+    Attributes
+    ----------
+    law : callable or array, shape (2, n)
+        The function, or speeds and coefficients of the table. None where only the numbers are left.
+    numbers : float or array
+        The coefficients, by which it is known whether others were put in their place.
+    slip : float or array
+        The slip speeds in m/s for which they hold.
+    """
+
+    law: Any = attrs.field(metadata={"marks": False})  # a sweep is known by its numbers
+    numbers: Real
+    slip: Real
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the numbers: a function stays in its process."""
+        return {"law": None, "numbers": self.numbers, "slip": self.slip}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for name, value in state.items():
+            object.__setattr__(self, name, value)
+
+    @classmethod
+    def of(cls, law: Any, slip: Any, shape: tuple[int, ...]) -> OfSlip:
+        """Return the friction coefficients at slip speeds, checked, one of each impact."""
+        name = "friction_coefficient"
+        if callable(law):
+            found = numbers_at(name, law, slip, shape)
+        else:
+            found = interpolate(name, law, spread(slip, shape), "mu")
+        numbers = real(name, found, rule=NON_NEGATIVE, remedy="it has no unit", empty=True)
+        return cls(law, numbers, spread(slip, shape))
+
+
+    def at(self, friction: Any, slip: Any, shape: tuple[int, ...]) -> OfSlip | None:
+        """Return it for other slip speeds; None where another friction coefficient was given."""
+        if np.shape(friction) != np.shape(self.numbers) or not np.all(friction == self.numbers):
+            return None
+        alike = np.shape(self.slip) == shape and np.allclose(slip, self.slip, SAME_SLIP, 0.0)
+        if self.law is None or alike:
+            return self
+        return OfSlip.of(self.law, slip, shape)
+
+
+def friction(*, empty: bool = False) -> Any:
+    """Return the attrs field of a friction coefficient: numbers, or how they follow from slip."""
+    field = quantity("1", rule=NON_NEGATIVE, empty=empty)
+    checked = field.converter
+
+    def convert(value: Any, owner: Any, field: Any) -> Any:
+        return value if is_law_of_slip(value) else checked.converter(value, owner, field)
+
+    field.converter = attrs.Converter(convert, takes_self=True, takes_field=True)
+    return field
+
+
+def is_law_of_slip(friction: object) -> bool:
+    """Return whether a friction coefficient is a function, or a table by slip speed."""
+    return callable(friction) or isinstance(friction, Mapping)
+
+
+def law_of_slip(friction: Any) -> Any:
+    """Return the function, or the speeds and coefficients of a table {slip speed: mu}, sorted."""
+    if callable(friction):
+        return friction
+    return speed_pairs("friction_coefficient", sorted(friction.items(), key=lambda p: p[0]), "mu")
