@@ -12,7 +12,7 @@ IMPACT = (
     "psi1, chi"
 )
 BODY = "radius, mass, gyration_ratio, material"
-MATERIAL = "shear_modulus, young_modulus, poisson_ratio, density, yield_stress"
+MATERIAL = "shear_modulus, young_modulus, poisson_ratio, density, yield_stress, properties"
 SPACE = "impact.velocity = [1.0, 0.0, -1.0]\nimpact.normal = [0.0, 0.0, 1.0]\n"
 
 
