@@ -14,7 +14,13 @@ from typing import Any, NamedTuple
 import attrs
 import numpy as np
 
-from contactlab.contracts import Increment, NormalContact, NormalMotion, SteppedTangentialLaw
+from contactlab.contracts import (
+    Increment,
+    NormalContact,
+    NormalMotion,
+    SteppedTangentialLaw,
+    claims,
+)
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
@@ -198,6 +204,7 @@ def continue_from(
         Number of steps of the whole path, if ``path`` is a part of it.
     """
     duration = lock_arrays(bench.time / (count or len(path.slip)))
+    at_one_speed = "slip_speed" in claims(law)
     limits.begin(f"a path of {len(path.slip)} steps")
     rows = zip(_rows(path.slip), _rows(path.level), strict=True)
 
@@ -206,7 +213,11 @@ def continue_from(
         for next_slip, next_level in rows:
             after = bench.contact(next_level)
             limits.DOING.steps += 1
-            yield bench.increment(next_slip - here, after, duration), after
+            moved = next_slip - here
+            lasts = duration
+            if at_one_speed:  # a unit of slip in the duration of an impact
+                lasts = lock_arrays(np.where(moved == 0.0, duration, bench.time * abs(moved))[()])
+            yield bench.increment(moved, after, lasts), after
             here = next_slip
 
     answers, states = advance_steps(law, state, bench.contact(level), steps())
