@@ -17,7 +17,7 @@ from contactlab.numeric.checks import POISSON, POSITIVE, derived, of_kind, quant
 from contactlab.numeric.named import NOTHING, named_numbers, split_heading
 from contactlab.numeric.names import arguments_told, nearest
 from contactlab.numeric.types import Either, Numbers
-from contactlab.registration.bring import by_name
+from contactlab.registration.bring import by_name, own_first
 from contactlab.registration.hooks import hookimpl
 
 #: Arguments of a material, which are no properties.
@@ -202,8 +202,10 @@ def entry(name: str) -> Entry:
     ValueError
         If there is no such material; the message suggests the nearest names.
     """
-    collection = _collection()
     of_kind("name", name, str, rule="must be the name of a material", remedy="such as 'steel'")
+    if own_first("materials") and (own := _own_by_key().get(_key(name))) is not None:
+        return own  # nothing of others is read for a name of contactlab's own
+    collection = _collection()
     distribution, _, plain = name.rpartition(":")
     key = f"{distribution}:{_key(plain)}" if distribution else _key(plain)
     if key in collection:
@@ -260,6 +262,11 @@ def _own() -> list[Entry]:
     content = tomllib.loads(text)
     works = content.pop("references")
     return [Entry(name=name, works=works, **numbers) for name, numbers in content.items()]
+
+
+@cache
+def _own_by_key() -> dict[str, Entry]:
+    return {_key(entry.name): entry for entry in _own()}
 
 
 def _collection() -> Mapping[str, Entry]:

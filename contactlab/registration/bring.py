@@ -10,7 +10,7 @@ import os
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
-from contactlab.registration.hooks import PluginError
+from contactlab.registration.hooks import HOOKS, PluginError
 from contactlab.registration.manager import MANAGER, Told
 from contactlab.registration.names import BLOCK_VARIABLE, HERE, PROJECT
 
@@ -21,6 +21,14 @@ _KEPT: dict[str, tuple[object, dict[str, Any]]] = {}
 def state() -> object:
     """Return what changes where plug-ins come, go or are blocked."""
     return MANAGER.changes, os.environ.get(BLOCK_VARIABLE, "")
+
+
+def own_first(kind: str) -> bool:
+    """Return whether contactlab's own things of a kind keep their names, whatever is installed.
+
+    They do unless a plug-in of this program answers too, or something is blocked.
+    """
+    return not (os.environ.get(BLOCK_VARIABLE) or MANAGER.answered_here(HOOKS[kind]))
 
 
 def by_name(

@@ -77,6 +77,7 @@ class Manager(pluggy.PluginManager):
         self._infos: dict[str, PluginInfo] = {}
         self._since: dict[str, int] = {}
         self._callers: dict[str, tuple[int, list[tuple[PluginInfo, Callable[..., Any]]]]] = {}
+        self._here: dict[str, tuple[int, bool]] = {}
         self._loaded: set[tuple[str, str, str]] = set()
         self._seen: object = None
         self._found: set[tuple[str, str, str, str]] = set()
@@ -263,6 +264,15 @@ class Manager(pluggy.PluginManager):
                     ]
             except PluginError as error:
                 self.tell(info, error)
+        return found
+
+    def answered_here(self, hook: str) -> bool:
+        """Return whether a plug-in that was registered in this program has a hook."""
+        since, found = self._here.get(hook, (-1, False))
+        if since != self.changes:
+            impls = getattr(self.hook, hook).get_hookimpls()
+            found = any(self.get_name(impl.plugin) not in self._infos for impl in impls)
+            self._here[hook] = self.changes, found
         return found
 
     def _asked(self, hook: str) -> list[tuple[PluginInfo, Callable[..., Any]]]:

@@ -141,8 +141,9 @@ def test_names_follow_the_rule_of_distributions(install, monkeypatch):
 
 def test_a_broken_plugin_is_told_once_and_takes_nothing_from_others(install):
     install("broken", "broken_lab", "raise RuntimeError('boom')", "materials.broken")
+    assert Material.named("steel").density == 7850.0  # nothing of others is read
     with pytest.warns(PluginWarning, match=r"boom \(broken_lab.py, line 1\)"):
-        assert Material.named("steel").density == 7850.0
+        assert "steel" in contactlab.materials.names()
     assert Material.named("lead").density > 1e4
 
 
