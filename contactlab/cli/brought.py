@@ -111,13 +111,13 @@ def _material(item: Any) -> str:
 
 
 def _column(item: Any) -> str:
-    from contactlab.outcome.columns import NEEDS, Column
+    from contactlab.outcome.columns import Column, fault_of
     from contactlab.runs.simulation import Simulation
 
     if not isinstance(item, Column):
         return f"is {type(item).__name__}, no Column"
-    if unknown := set(item.needs) - set(NEEDS):
-        return f"needs {min(unknown)!r}, which is none of {', '.join(NEEDS)}"
+    if fault := fault_of(item):
+        return fault
     alone_only = "history" in item.needs  # a batch has one only where all last equally long
 
     def read(scene: Scene) -> Any:

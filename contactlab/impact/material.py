@@ -271,4 +271,13 @@ def _own_by_key() -> dict[str, Entry]:
 
 def _collection() -> Mapping[str, Entry]:
     """Return the materials of all plug-ins by name."""
-    return by_name("materials", Entry, lambda entry: _key(entry.name))
+    return by_name("materials", Entry, lambda entry: _key(entry.name), fault=_fault)
+
+
+def _fault(entry: Entry) -> str:
+    """Return what is wrong with the numbers of an entry; empty if nothing is."""
+    try:
+        entry.material()
+    except (TypeError, ValueError) as error:
+        return f"whose {error}"
+    return ""

@@ -119,7 +119,6 @@ class OfSlip:
         numbers = real(name, found, rule=NON_NEGATIVE, remedy="it has no unit", empty=True)
         return cls(law, numbers, spread(slip, shape))
 
-
     def at(self, friction: Any, slip: Any, shape: tuple[int, ...]) -> OfSlip | None:
         """Return it for other slip speeds; None where another friction coefficient was given."""
         if np.shape(friction) != np.shape(self.numbers) or not np.all(friction == self.numbers):

@@ -17,7 +17,6 @@ from contactlab.impact.material import Material
 from contactlab.impact.of_speed import LawOfSlip, OfSlip, friction, is_law_of_slip, law_of_slip
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import (
-    NON_NEGATIVE,
     POSITIVE,
     Rule,
     instance,
@@ -223,7 +222,7 @@ class Scene(Batches):
             if not self.has_units:
                 rule = "follows from a slip speed in m/s, and psi1 and chi have no units"
                 raise refuse("friction_coefficient", self.friction_coefficient, rule, "give bodies")
-            found = OfSlip.of(law_of_slip(self.friction_coefficient), slip, shape)
+            found: OfSlip | None = OfSlip.of(law_of_slip(self.friction_coefficient), slip, shape)
         else:
             before = self.of_slip
             assert before is not None

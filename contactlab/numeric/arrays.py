@@ -1,8 +1,8 @@
 """Batches: functions that stack, index and merge trees of numbers.
 
-A tree is a number, an array, an attrs object whose fields are trees, or trees by name. Any other value is passed
-through unchanged. In a batch of ``shape`` a plain number holds for all impacts, and an array
-broadcasts to ``shape``.
+A tree is a number, an array, an attrs object whose fields are trees, or trees by name. Any other
+value is passed through unchanged. In a batch of ``shape`` a plain number holds for all impacts, and
+an array broadcasts to ``shape``.
 """
 
 from __future__ import annotations

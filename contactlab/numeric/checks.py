@@ -214,9 +214,7 @@ def _check_field(
         return value  # the remedy of a refusal takes longer to write than a number to check
     remedy = unit_remedy(meta["unit"])
     if "unknown" in meta:
-        return some_known(
-            field.name, value, rule=meta["rule"], remedy=remedy, empty=meta["empty"]
-        )
+        return some_known(field.name, value, rule=meta["rule"], remedy=remedy, empty=meta["empty"])
     number = real(field.name, value, rule=meta["rule"], remedy=remedy, empty=meta["empty"])
     one_number = getattr(type(owner), "_plain_options", False) and "per_impact" not in meta
     if one_number and isinstance(number, np.ndarray):

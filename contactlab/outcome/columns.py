@@ -7,6 +7,7 @@ own; every angle is available in degrees too. The tables for reading show the co
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from operator import attrgetter
 from typing import Any, NamedTuple, Protocol
@@ -80,7 +81,7 @@ class Column(NamedTuple):
         else:
             from contactlab.outcome.functions_of_results import values_of  # for plug-ins alone
 
-            value = values_of(self.name, self.value, self.needs, result)
+            value = values_of(self.name, self.value, self.needs, result, words=not self.unit)
         if self.part is not None and value is not None:
             vectors = np.ndim(value) > len(result.scene.shape)
             value = np.asarray(value)[..., self.part] if vectors else None
@@ -105,6 +106,11 @@ class Column(NamedTuple):
         return unit_in(self.unit, scene)
 
 
+#: Symbols of units that columns may have: of SI, and degrees.
+SYMBOLS = {
+    "m", "s", "kg", "K", "A", "mol", "cd", "N", "Pa", "J", "W", "Hz", "V", "C", "F", "T", "H", "Wb",
+    "S", "lm", "lx", "sr", "rad", "deg",
+}  # fmt: skip
 #: What a column may need: ``Column.needs``.
 NEEDS = ("sizes", "motion", "history")
 
@@ -182,9 +188,23 @@ def contactlab_columns() -> Iterable[Column]:
     return COLUMNS
 
 
+def fault_of(column: Column) -> str:
+    """Return what is wrong with the column of a plug-in; empty if nothing is."""
+    name, unit = column.name, column.unit
+    if not (isinstance(name, str) and name.isidentifier()):
+        return "whose name must be letters, digits and underscores"
+    words = re.findall(r"[^\W\d_]+", unit) if isinstance(unit, str) else ["?"]
+    if unknown := [word for word in words if word not in SYMBOLS]:
+        told = "" if unknown == ["?"] else f": {unknown[0]!r} is no unit of SI"
+        return f"whose unit is {unit!r}{told}; give '1' for a number without unit"
+    if strange := set(column.needs) - set(NEEDS):
+        return f"which needs {min(strange)!r}, none of {', '.join(NEEDS)}"
+    return "" if callable(column.value) or column.path else "which has no value"
+
+
 def all_columns() -> Sequence[Column]:
     """Return the columns of all plug-ins, contactlab's own first; the status comes last."""
-    found = by_name("columns", Column, lambda column: column.name, again=False)
+    found = by_name("columns", Column, lambda column: column.name, fault=fault_of, again=False)
     if _SORTED[0] is not found:
         named = [column._replace(name=name.replace(":", "_")) for name, column in found.items()]
         _SORTED[:] = found, sorted(named, key=lambda column: column.name == "status")

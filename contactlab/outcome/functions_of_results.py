@@ -5,17 +5,25 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from contactlab.registration.hooks import short
+from contactlab.registration.hooks import short, shortened
 from contactlab.registration.installed import PluginWarning
 
 HISTORY = "history"
 
 
-def values_of(name: str, value: Callable[[Any], Any], needs: Sequence[str], result: Any) -> Any:
+def values_of(
+    name: str,
+    value: Callable[[Any], Any],
+    needs: Sequence[str],
+    result: Any,
+    *,
+    words: bool = False,
+) -> Any:
     """Return the values of a function of a result, NaN and a warning for impacts where it fails.
 
     A function that needs a history has no value without.
@@ -23,12 +31,26 @@ def values_of(name: str, value: Callable[[Any], Any], needs: Sequence[str], resu
     if HISTORY in needs and not result.history:
         return None
     said: list[str] = []
-    values = _each(value, result, said)
+    values = _each(value if words else partial(_numbers, value), result, said)
     if said:
         many = f"{len(said)} of {math.prod(result.scene.shape)} impacts"
         text = f"column {name}: NaN for {many}, its function failed: {said[0]}"
         warnings.warn(text, PluginWarning, stacklevel=4)
     return values
+
+
+def _numbers(value: Callable[[Any], Any], result: Any) -> Any:
+    """Return the numbers of a function of a result, or refuse what is none, or of another shape."""
+    given, shape = value(result), result.scene.shape
+    if given is None or type(given) is float:
+        return given
+    try:
+        numbers = np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        raise TypeError(f"it gave {shortened(given)}, which is no number") from None
+    if numbers.ndim and numbers.shape[: len(shape)] != shape:
+        raise ValueError(f"it gave the shape {numbers.shape} for impacts of the shape {shape}")
+    return given
 
 
 def _each(value: Callable[[Any], Any], result: Any, said: list[str]) -> Any:
@@ -43,5 +65,8 @@ def _each(value: Callable[[Any], Any], result: Any, said: list[str]) -> Any:
     numbers = np.full(shape, np.nan)
     for place in range(shape[0]):
         one = _each(value, result[place], said)
+        if np.ndim(one):
+            said.append(f"it gave the shape {np.shape(one)} for one impact of a batch")
+            one = None
         numbers[place] = np.nan if one is None else one
     return numbers

@@ -7,10 +7,11 @@ contactlab's own, else that of the only distribution that offers it; if several 
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
-from contactlab.registration.hooks import HOOKS, PluginError
+from contactlab.registration.hooks import HOOKS, PluginError, shortened
 from contactlab.registration.manager import MANAGER, Told
 from contactlab.registration.names import BLOCK_VARIABLE, HERE, PROJECT
 
@@ -31,27 +32,52 @@ def own_first(kind: str) -> bool:
     return not (os.environ.get(BLOCK_VARIABLE) or MANAGER.answered_here(HOOKS[kind]))
 
 
+def sound(
+    kind: str, of: type[T], fault: Callable[[T], str] = lambda _: "", **arguments: Any
+) -> list[Told]:
+    """Return what plug-ins bring of a kind; what is not of the class ``of``, or faulty, is told.
+
+    ``fault`` returns what is wrong with a thing of another distribution, or nothing.
+    """
+    found = []
+    for told in MANAGER.brought(kind, **arguments):
+        rule = ""
+        if not isinstance(told.item, of):
+            rule = f"which is no {of.__name__}"
+        elif told.info.distribution != PROJECT:
+            rule = fault(told.item)
+        if not rule:
+            found.append(told)
+            continue
+        what = shortened(getattr(told.item, "name", told.item))
+        MANAGER.tell(told.info, PluginError(f"{told.info.source} brought {what}, {rule}"))
+    return found
+
+
 def by_name(
-    kind: str, of: type[T], key: Callable[[T], str], *, again: bool = True
+    kind: str,
+    of: type[T],
+    key: Callable[[T], str],
+    *,
+    fault: Callable[[T], str] = lambda _: "",
+    again: bool = True,
 ) -> Mapping[str, T]:
-    """Return what plug-ins bring of a kind by name; what is not of the class ``of`` is told once.
+    """Return what plug-ins bring of a kind by name; what ``sound`` leaves out is told once.
 
     A name of several distributions other than contactlab is left out, and each is under its name
-    with the distribution before it. With ``again``, what was installed meanwhile is looked for.
+    with the distribution before it. A name that one distribution brings twice is left out, and
+    told. With ``again``, what was installed meanwhile is looked for.
     """
     MANAGER.load(kind, again=again)
     before, kept = _KEPT.get(kind, (None, {}))
     if before == state():
         return kept
     offers: dict[str, list[Told]] = {}
-    for told in MANAGER.brought(kind):
-        if isinstance(told.item, of):
-            offers.setdefault(key(told.item), []).append(told)
-        else:
-            rule = f"brought {told.item!r}, which is no {of.__name__}"
-            MANAGER.tell(told.info, PluginError(f"{told.info.source} {rule}"))
+    for told in sound(kind, of, fault):
+        offers.setdefault(key(told.item), []).append(told)
     found: dict[str, T] = {}
-    for name, rivals in offers.items():
+    for name, several in offers.items():
+        rivals = _once(name, several)
         one = meant_of(rivals)
         if one is not None:
             found[name] = one.item
@@ -60,6 +86,21 @@ def by_name(
                 found[f"{rival.info.distribution}:{name}"] = rival.item
     _KEPT[kind] = state(), found
     return found
+
+
+def _once(name: str, several: list[Told]) -> list[Told]:
+    """Return the things of a name without those of distributions that bring it twice, told."""
+    counts = Counter(told.info.distribution for told in several)
+    for told in several:
+        own = told.info.distribution
+        if own not in (PROJECT, HERE) and counts[own] > 1:
+            rule = f"brought {name!r} twice, and neither is taken: give each a name"
+            MANAGER.tell(told.info, PluginError(f"{told.info.source} {rule}"))
+    return [
+        told
+        for told in several
+        if told.info.distribution in (PROJECT, HERE) or counts[told.info.distribution] == 1
+    ]
 
 
 def meant_of(rivals: list[Told]) -> Told | None:

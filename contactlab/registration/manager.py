@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
+import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import ModuleType
 from typing import Any, NamedTuple
 
@@ -20,6 +21,7 @@ from contactlab.registration.hooks import (
     PluginError,
     guard,
     short,
+    shortened,
 )
 from contactlab.registration.installed import (
     PluginWarning,
@@ -45,6 +47,8 @@ from contactlab.registration.names import (
     short_name,
 )
 
+#: Seconds of an import above which an author is told.
+SLOW = 3.0
 #: Order of kinds in a list.
 RANK = {kind: place for place, kind in enumerate(ALL_KINDS)}
 
@@ -174,8 +178,13 @@ class Manager(pluggy.PluginManager):
         """
         from importlib import metadata
 
+        started = time.perf_counter()
         with guard(info.source, "could not be imported"):
             plugin = metadata.EntryPoint(info.name, info.module, PROJECT).load()
+        if (took := time.perf_counter() - started) > SLOW:
+            rule = f"took {took:.0f} s to import, and every command that asks for its kind waits"
+            remedy = "import what takes long where it is used, in the function"
+            warnings.warn(f"{info.source} {rule}; {remedy}", PluginWarning, stacklevel=4)
         name = f"{info.distribution}:{info.module}"
         known = self.get_plugin(name)
         by_class = info.kind in KINDS and not isinstance(plugin, ModuleType)
@@ -259,9 +268,13 @@ class Manager(pluggy.PluginManager):
         for info, caller in self._asked(HOOKS[kind]):
             try:
                 with guard(info.source, f"raised when asked for its {kind}", silent=silent):
-                    found += [
-                        Told(info, item) for answer in caller(**arguments) for item in answer or ()
-                    ]
+                    answers = caller(**arguments)
+                for answer in answers:
+                    if no_list(answer):
+                        rule = f"returned {shortened(answer)} when asked for its {kind}"
+                        raise PluginError(f"{info.source} {rule}: must be a list; return [...]")
+                with guard(info.source, f"raised when asked for its {kind}", silent=silent):
+                    found += [Told(info, item) for answer in answers for item in answer or ()]
             except PluginError as error:
                 self.tell(info, error)
         return found
@@ -315,6 +328,12 @@ class Manager(pluggy.PluginManager):
         if info is None:
             return 0, -self._since.get(name, 0), name
         return 1 + (info.distribution != PROJECT), 0, name
+
+
+def no_list(answer: object) -> bool:
+    """Return whether an answer is one thing, or none that can be listed; None lists nothing."""
+    one = isinstance(answer, str | bytes | Mapping) or hasattr(answer, "_fields")
+    return answer is not None and (one or not isinstance(answer, Iterable))
 
 
 def _hooks(kind: str) -> Iterator[str]:

@@ -84,7 +84,7 @@ def bound(laws: Laws, scene: Scene) -> tuple[Laws, Scene]:
     return laws.changed(**changed) if changed else laws, scene
 
 
-def bound_law(law: Any, scene: Scene) -> tuple[Any, dict[str, Any]]:
+def bound_law(law: Law, scene: Scene) -> tuple[Law, dict[str, Any]]:
     """Return a law with the options that materials give, and its numbers of each impact."""
     numbers = {}
     for option in options_read(type(law)):
@@ -105,7 +105,7 @@ def _each(name: str, unit: str, value: Any, scene: Scene) -> OfImpacts:
     return OfImpacts.of(value, spread_over(name, value, scene.shape))
 
 
-def _from_materials(law: Any, option: Read, scene: Scene) -> Any:
+def _from_materials(law: Law, option: Read, scene: Scene) -> Any:
     """Return a law with an option that two materials give; as it is if they have none."""
     name, unit = option.name, option.unit
     place = f"{law_kind(law)}: {name}"
@@ -132,7 +132,8 @@ def _from_materials(law: Any, option: Read, scene: Scene) -> Any:
         raise refuse(f"{lacking[0]}.material: {name}", None, rule, remedy)
     materials: Any = tuple(body.material for body in bodies.values())
     assert option.material is not None
-    value = option.material.of(*found.values(), materials)
+    first, second = found.values()
+    value = option.material.of(first, second, materials)
     where = f"{name} of {' and '.join(found)}"
     value = real(where, value, rule=option.rule, remedy=unit_remedy(unit))
     if isinstance(value, np.ndarray):
@@ -145,7 +146,8 @@ def _from_materials(law: Any, option: Read, scene: Scene) -> Any:
         rule = f"is given to the law, and {' and '.join(found)} have it as a property too"
         raise refuse(place, given, rule, "leave out the option, or the property")
     try:
-        return attrs.evolve(law, **{name: value})
+        changed: Any = law  # every law with such an option is of attrs
+        return attrs.evolve(changed, **{name: value})
     except ValueError as error:
         rule = f"is a property of {' and '.join(found)}, and the law refuses it: {error}"
         raise refuse(where, value, rule, "leave out the property, or the other option") from None

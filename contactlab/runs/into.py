@@ -18,8 +18,8 @@ from contactlab.numeric.checks import of_kind, refuse, whole
 from contactlab.outcome.chunk_forms import Chunk, form_of
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.sweep_folder import KIND, STATUSES, SweepFolder
-from contactlab.registry.composition import Laws
 from contactlab.registry.bound import bound
+from contactlab.registry.composition import Laws
 from contactlab.runs.fingerprints import fingerprint
 from contactlab.runs.into_folder import NAMES, ChunkFolder
 from contactlab.runs.pieces import Part, Piece

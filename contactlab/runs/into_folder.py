@@ -36,6 +36,10 @@ CODES = {status: code for code, status in enumerate(Status)}
 NAMES = [status.name for status in Status]
 
 
+#: What to do where a plug-in that brought a column is gone, new, or gives it in another unit.
+OTHER_COLUMNS = "sweep them into another folder, or with the plug-ins that the folder was made with"
+
+
 class ChunkFolder:
     """The chunks of a sweep in a folder: which are there, and how another is written."""
 
@@ -85,8 +89,9 @@ class ChunkFolder:
         for fresh in solve(parts.values()):
             first, stop = fresh.chunk
             chunk = next(each for each in self.found if each.first <= first < each.stop)
-            arrays, _ = _arrays(result_of(parts[fresh.chunk].scene, fresh))
+            arrays, units = _arrays(result_of(parts[fresh.chunk].scene, fresh))
             about = read_about(self.found[chunk], self.form, argument="into")
+            self._same_columns({**about.units, **units}, chunk)
             with columns_of(self.found[chunk], self.form, NAMES, about.sums, "into") as content:
                 written = {name: content[name] for name in arrays}
             place = slice(first - chunk.first, stop - chunk.first)
@@ -123,9 +128,7 @@ class ChunkFolder:
         if units != self.units:
             first = next(iter({*units.items()} ^ {*self.units.items()}))[0]
             rule = f"impacts {chunk.first} to {chunk.stop} have other columns: {first}"
-            raise refuse(
-                "scenes", name_of(chunk, self.form), rule, "sweep them into another folder"
-            )
+            raise refuse("scenes", name_of(chunk, self.form), rule, OTHER_COLUMNS)
 
     def finish(self, impacts: int) -> None:
         """Write the number of impacts; refuse chunks beyond it."""

@@ -124,7 +124,9 @@ def _material(table: Table) -> Material:
         for name, value in properties.items():
             if isinstance(value, list):
                 remedy = "put lists in [sweep]"
-                raise refuse(material.at(f"{PROPERTIES}.{name}"), value, "must be one number", remedy)
+                raise refuse(
+                    material.at(f"{PROPERTIES}.{name}"), value, "must be one number", remedy
+                )
         numbers[PROPERTIES] = properties
     return material.make(Material, **numbers)
 

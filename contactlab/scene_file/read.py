@@ -187,7 +187,7 @@ def _scene_with(
     for name, values in entries.items():
         path = entry_path(name)
         if is_option(path):
-            size = np.broadcast_shapes(size, np.shape(values))
+            size = np.broadcast_shapes(size, np.shape(np.asarray(values)))
             continue
         tables = replace_entry(tables, path, real(path, values))
     scene, encounter = build_scene(tables)

@@ -38,7 +38,7 @@ from contactlab.outcome.plan import (
     PlanColumns,
     Words,
 )
-from contactlab.registration.manager import MANAGER
+from contactlab.registration.bring import sound
 from contactlab.registry.composition import Laws
 from contactlab.registry.law_words import in_words, name_of
 from contactlab.solve.answers import Mask
@@ -209,8 +209,7 @@ def _cautions(
     said += [*own, *way.own_cautions(bool(own)), *of_taken(way.laws.normal, way.laws.tangential)]
     said += [
         f"{told.item} ({told.info.distribution})"
-        for told in MANAGER.brought("cautions", silent=False, scene=whole, laws=laws)
-        if isinstance(told.item, str)
+        for told in sound("cautions", str, silent=False, scene=whole, laws=laws)
     ]
     clauses = [Clause(text, known) for text in said]
     if motion is not None:

@@ -15,8 +15,8 @@ from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Number
+from contactlab.registration.bring import sound
 from contactlab.registration.hooks import hookimpl
-from contactlab.registration.manager import MANAGER
 from contactlab.registration.names import full_name, short_name
 from contactlab.registry.composition import DEFAULT_NORMAL, misfit
 from contactlab.registry.registry import REGISTRY, PluginError
@@ -77,7 +77,11 @@ class Cell:
 
 def all_cases(method: Method, *, quick: bool = False) -> Iterator[Cell]:
     """Iterate over the cases of all plug-ins for a method; a plug-in may bring scenes alone."""
-    for told in MANAGER.brought("cases", method=method, quick=quick):
+
+    def fault(item: object) -> str:
+        return "" if isinstance(item, Case | Cell) else "which is no Case"
+
+    for told in sound("cases", object, fault, method=method, quick=quick):
         if isinstance(told.item, Case):
             yield _case(method, told.item, {})
         else:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
@@ -16,8 +17,10 @@ from contactlab.impact.hertz import hertz_scales, rigid_body_rebound
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.numeric.progress import Count
-from contactlab.registration.hooks import hookimpl
-from contactlab.registration.manager import MANAGER
+from contactlab.registration.bring import sound
+from contactlab.registration.hooks import PluginError, guard, hookimpl, shortened
+from contactlab.registration.manager import Told
+from contactlab.registration.names import PROJECT
 from contactlab.registry.registry import REGISTRY
 from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import read_scene
@@ -119,11 +122,26 @@ class Finding:
 
 def validate(progress: Count | None = None) -> Iterator[Finding]:
     """Iterate over all comparisons as they are done; ``progress(done, total)`` follows each."""
-    checks = [told.item for told in MANAGER.brought("checks")]
-    for done, check in enumerate(checks, start=1):
-        yield check()
+    checks = sound("checks", object, lambda item: "" if callable(item) else "which is no function")
+    for done, told in enumerate(checks, start=1):
+        own = told.info.distribution == PROJECT
+        yield told.item() if own else _of_others(told)
         if progress is not None:
             progress(done, len(checks))
+
+
+def _of_others(told: Told) -> Finding:
+    """Return the finding of another's check; where it fails, one beyond its bound that says why."""
+    name = getattr(told.item, "__name__", str(told.item))
+    try:
+        with guard(f"{name} of {told.info.distribution}", "raised"):
+            found = told.item()
+        rule = f"returned {shortened(found)}, no Finding"
+    except PluginError as error:
+        found, rule = None, str(error)
+    if isinstance(found, Finding):
+        return found
+    return Finding(what=rule, against="a Finding", difference=math.nan, bound=0.0)
 
 
 @hookimpl

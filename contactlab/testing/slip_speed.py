@@ -47,11 +47,11 @@ def factor(law: Law, bench: Bench, speed: float) -> float:
     apply_if(isinstance(law, SteppedTangentialLaw), "It answers to no step at one slip speed.")
     assert isinstance(law, SteppedTangentialLaw)
     duration = MOVED * bench.slip / abs(speed)
-    found = gross_force(law, bench, bench.contact(LEVEL), duration) / LEVEL**1.5
+    found: float = gross_force(law, bench, bench.contact(LEVEL), duration) / LEVEL**1.5
     hold(
         0.0 <= found <= 1.0 + 1e-9,
-        f"At a slip speed of {speed:.3g} m/s F is {found:.4g} mu P, not from 0 to mu P: the scene's "
-        f"mu is the greatest of a law with the word {WORD!r}.",
+        f"At a slip speed of {speed:.3g} m/s F is {found:.4g} mu P, not from 0 to mu P: of a law "
+        f"with the word {WORD!r} the scene's mu is the greatest.",
     )
     return found
 
@@ -71,6 +71,6 @@ def slip_speed(law: SteppedTangentialLaw) -> None:
         )
     hold(
         max(factors) - min(factors) > 1e-6,
-        f"From {SPEEDS[0]:g} to {SPEEDS[-1]:g} m/s F/(mu P) is {factors[0]:.4g}: leave out the word "
-        f"{WORD!r}.",
+        f"From {SPEEDS[0]:g} to {SPEEDS[-1]:g} m/s F/(mu P) is {factors[0]:.4g}: leave out the "
+        f"word {WORD!r}.",
     )

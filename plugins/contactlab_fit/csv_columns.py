@@ -120,7 +120,9 @@ def unit_of(name: str, text: str) -> str:
         if read.name == option and (read.per_impact if kind else read.material is not None)
     }
     if len(units) != 1:
-        rule = f"is read in {' and in '.join(sorted(units))} by several" if units else "is read by no"
+        rule = (
+            f"is read in {' and in '.join(sorted(units))} by several" if units else "is read by no"
+        )
         raise ValueError(f"heading {text!r}: {option} of each impact {rule} laws at hand")
     return units.pop()
 

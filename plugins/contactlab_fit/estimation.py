@@ -37,11 +37,10 @@ from contactlab_fit.fit_result import Estimate, Fit
 from contactlab_fit.intervals import TAIL, Spread, spread
 from contactlab_fit.measurements import Measurements, read_measurements
 from contactlab_fit.minima import minima
-from contactlab_fit.model import Model, scene_of, setup_of, simulation_of
+from contactlab_fit.model import Model, setup_of, simulation_of
 from contactlab_fit.parameters import (
     RESTITUTION,
     SHEAR_LOSS,
-    Setup,
     asks_for,
     find_parameter,
     those_of,
@@ -326,7 +325,7 @@ def _impacts(
         what="lengths", remedy="give one number, or as many as the others have",
     )  # fmt: skip
     given = {name: np.broadcast_to(column, size) for name, column in columns.items()}
-    setup = setup_of(scene, given, *size, model.setup.simulation)
+    setup = setup_of(scene, given, size[0], model.setup.simulation)
     result = attrs.evolve(model, setup=setup).impacts(values)
     fitted = [parameter.name for parameter in model.parameters]
     return normal_motion_alone(result) if lacks_friction(scene, given, fitted) else result

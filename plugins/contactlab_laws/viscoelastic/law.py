@@ -32,7 +32,8 @@ PAIRS = "must be two or more pairs of speed and e"
 
 def pair_speeds(table: object) -> tuple[tuple[float, float], ...]:
     """Return a table of speeds and restitutions as pairs, or refuse it."""
-    speeds, e = speed_pairs("restitutions", table, "e")
+    pairs = speed_pairs("restitutions", table, "e").T
+    e = pairs[:, 1]
     if not np.all((e >= 0.0) & (e <= 1.0)):
         remedy = "write [[speed, e], [speed, e]], speeds in m/s"
         raise refuse("restitutions", table, "must have e from 0 to 1", remedy)
