@@ -5,6 +5,7 @@ They are given as a function of the speed, or as a table in which they are linea
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Mapping
 from typing import Any, TypeAlias
 
@@ -150,4 +151,7 @@ def law_of_slip(friction: Any) -> Any:
     """Return the function, or the speeds and coefficients of a table {slip speed: mu}, sorted."""
     if callable(friction):
         return friction
-    return speed_pairs("friction_coefficient", sorted(friction.items(), key=lambda p: p[0]), "mu")
+    name, pairs = "friction_coefficient", list(friction.items())
+    with contextlib.suppress(TypeError):  # a speed that is no number is refused with the table
+        pairs.sort(key=lambda pair: pair[0])
+    return speed_pairs(name, pairs, "mu")

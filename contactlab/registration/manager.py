@@ -193,6 +193,7 @@ class Manager(pluggy.PluginManager):
         if known is not None:
             self.unregister(known)
         self._infos[name] = info
+        self.faults.pop(info.qualified, None)  # what is imported anew is judged anew
         theirs = [each for each in self.installed() if each.module == info.module]
         declared = {hook for each in theirs for hook in _hooks(each.kind)}
         place = self._place(name)

@@ -108,7 +108,8 @@ def refuse_other_bits(
         rule = f"{where} are of {kept.computer}; {name} has other bits on {fresh.computer}"
         remedy = "go on where it was begun, or name another folder"
         raise refuse(argument, str(folder), rule, remedy)
-    rule = f"{name} of {where} is another now: a function or a file of the laws, or of a column, has changed"
+    changed = "a function or a file of the laws, or of a column, has changed"
+    rule = f"{name} of {where} is another now: {changed}"
     raise refuse(argument, str(folder), rule, ANOTHER)
 
 

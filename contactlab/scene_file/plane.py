@@ -61,7 +61,7 @@ def rim(spin: Real, arm: tuple[Real, Real]) -> tuple[Real, Real]:
 
 
 def of_bodies(
-    table: Table, bodies: list[Any], contacts: Mapping[str, Array]
+    table: Table, bodies: list[Any], contacts: Mapping[str, Any]
 ) -> tuple[Scene, Encounter]:
     """Return scene and encounter of bodies by speeds along ``normal`` and ``along``."""
     n, t = directions(table)
