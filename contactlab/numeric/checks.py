@@ -300,14 +300,15 @@ def quantity(
     """
     keywords: Any = {"kw_only": True} if kw_only else {}  # False would override the class
     further: dict[str, Any] = {"unknown": True} if unknown else {}
-    words = [rule.sentence]
+    read = ["one number, or one an impact"] if per_impact else []
     if per_impact:
         further["per_impact"] = True
-        words.append("one number, or one an impact")
     if material is not None:
         further |= {"material": material, "required": default is attrs.NOTHING}
         default = None if default is attrs.NOTHING else default
-        words.append(f"or a property of the materials: {material.sentence}")
+        read.append(f"or a property of the materials: {material.sentence}")
+    if read:
+        further["read"] = ", ".join(read)
     return attrs.field(
         default=default,
         **keywords,
@@ -316,7 +317,7 @@ def quantity(
         metadata={
             "unit": unit,
             "rule": rule,
-            "range": ", ".join(words),
+            "range": rule.sentence,
             "empty": empty,
             **further,
         },

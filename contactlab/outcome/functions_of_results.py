@@ -65,7 +65,7 @@ def _each(value: Callable[[Any], Any], result: Any, said: list[str]) -> Any:
     numbers = np.full(shape, np.nan)
     for place in range(shape[0]):
         one = _each(value, result[place], said)
-        if np.ndim(one):
+        if np.ndim(one) and np.shape(one) != shape[1:]:
             said.append(f"it gave the shape {np.shape(one)} for one impact of a batch")
             one = None
         numbers[place] = np.nan if one is None else one

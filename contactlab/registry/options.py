@@ -57,14 +57,15 @@ def options(law: type) -> list[Option]:
     listed = []
     for name, parameter in inspect.signature(law).parameters.items():
         metadata = fields[name].metadata if name in fields else {}
-        rule = str(metadata.get("range", ""))
+        rule, read = str(metadata.get("range", "")), str(metadata.get("read", ""))
+        read = read and f"It is {read}."
         listed.append(
             Option(
                 name=name,
                 default=parameter.default,
                 unit=str(metadata.get("unit", "")),
                 rule=rule + ", if given" if rule and parameter.default is None else rule,
-                meaning=by_name.get(name, ""),
+                meaning=" ".join(filter(None, (by_name.get(name, ""), read))),
             )
         )
     return listed

@@ -166,7 +166,7 @@ def test_a_column_that_fails_for_an_impact_is_told_once_and_the_others_stand(
 
 @pytest.mark.parametrize(
     ("needs", "told"),
-    [((), "ZeroDivisionError"), (("sizez",), "needs 'sizez', which is none of sizes, motion")],
+    [((), "ZeroDivisionError"), (("sizez",), "needs 'sizez', none of sizes, motion")],
 )
 def test_the_check_of_a_column_tells_what_is_wrong(run, install, needs, told):
     source = FAILS.replace("1.2", "0.5").format(needs=needs)  # psi1 of an impact of the check

@@ -45,6 +45,8 @@ def test_an_option_of_a_law_is_one_number(name):
         one = isinstance(value, float) and "pairs" not in option.rule
         alone = {option.name: np.array(value)[()]} if one else {}
         assert contactlab.create(name, **alone) is not None
+        if "one number, or one an impact" in option.meaning:
+            continue
         with pytest.raises(ValueError, match=rf"{option.name} = .*must be"):
             contactlab.create(name, **{option.name: np.array([value, value])})
 
