@@ -117,6 +117,26 @@ def test_a_central_elastic_run_loads_no_module_for_other_scenes():
     assert sorted(loaded("\n".join(lines))) == sorted(OF_A_RUN.split())
 
 
+OTHERS = ("contactlab_fit", "contactlab_pages", "contactlab_halfspace", "contactlab.study")
+
+
+@pytest.mark.parametrize("normal", ["hertz", "viscoelastic"])
+def test_a_run_loads_no_module_of_fits_pages_study_or_half_space(normal):
+    lines = (
+        "import json, sys",
+        "from contactlab import HalfSpace, Material, Scene, Simulation, Sphere",
+        "steel = Material.named('steel')",
+        "scene = Scene.at_angle(Sphere(0.01, steel), HalfSpace(steel), lambda slip: 0.1 + 0 * slip,",
+        "                       speed=1.0, angle_deg=[10.0, 30.0])",
+        f"result = Simulation(normal={normal!r}).run(scene)",
+        "str(result.plan), str(result), result.psi2",
+        "print(json.dumps([name for name in sys.modules if name.startswith('contactlab')]))",
+    )
+    names = loaded("\n".join(lines))
+    assert "contactlab.runs.simulation" in names
+    assert [name for name in names if name.startswith(OTHERS)] == []
+
+
 def test_only_the_named_law_is_imported(stages):
     _, laws = stages[2]
     assert {name.split(".")[1] for name in laws if "." in name} == {"coulomb"}
