@@ -13,6 +13,7 @@ from contactlab.impact.material import Material
 from contactlab.impact.of_speed import spread_over
 from contactlab.impact.scene import Scene
 from contactlab.numeric.named import split_heading
+from contactlab.numeric.types import Real
 
 
 class Combined(NamedTuple):
@@ -31,8 +32,9 @@ class Combined(NamedTuple):
     of: Callable[[Any, Any, tuple[Material, Material]], Any]
 
 
-def _by_compliance(first: Any, second: Any, materials: tuple[Material, Material]) -> Any:
-    one, other = map(normal_compliance, materials)
+def _by_compliance(first: Real, second: Real, materials: tuple[Material, Material]) -> Any:
+    parts: Any = map(normal_compliance, materials)
+    one, other = parts
     return (first * one + second * other) / (one + other)
 
 
@@ -74,7 +76,7 @@ def number_in(law: Law, option: str, scene: Scene) -> Any:
     if not isinstance(value, np.ndarray):
         return value
     name = f"{law_kind(law)}.{option}"
-    for heading, each in scene.options.items():
+    for heading, each in scene._options.items():
         if split_heading(heading)[0] == name:
             return each.numbers
     return spread_over(name, value, scene.shape)

@@ -33,7 +33,7 @@ class Batches(Motions):
         encounter: Any
         unit_friction: bool
         has_units: bool
-        of_slip: Any
+        _of_slip: Any
         _index: Any
         _axes: tuple[tuple[str, Array], ...]
         _varied: tuple[tuple[str, Array], ...]
@@ -102,8 +102,8 @@ class Batches(Motions):
                     "must have a friction coefficient if, and only if, scenes[0] has",
                     "give friction_coefficient to every Scene.nondimensional, or to none",
                 )
-        if len({id(getattr(scene.of_slip, "law", None)) for scene in scenes}) > 1:
-            scenes = [scene._with(of_slip=None) for scene in scenes]  # of several functions
+        if len({id(getattr(scene._of_slip, "law", None)) for scene in scenes}) > 1:
+            scenes = [scene._with(_of_slip=None) for scene in scenes]  # of several functions
         kinds = {
             tuple(type(getattr(scene.encounter, name, None)) for name in ("body", "target"))
             for scene in scenes

@@ -90,6 +90,8 @@ class Encounter:
     contact, target_contact : vector
         From the centre of mass of a ``RigidBody`` to the contact, in m, in the frame of all other
         vectors and of its inertia. A sphere's follows from its radius.
+    of_slip : OfSlip, optional
+        The function or table of the friction coefficient, as of a ``Scene``.
 
     Raises
     ------
@@ -111,7 +113,7 @@ class Encounter:
     contact: Array = vector("m", default=NOTHING)
     target_contact: Array = vector("m", default=NOTHING)
     #: How friction follows from slip; None where it is given by numbers.
-    of_slip: OfSlip | None = attrs.field(default=None, eq=False, repr=False)
+    of_slip: OfSlip | None = attrs.field(default=None, eq=False, repr=False, kw_only=True)
     #: Batch shape: () for one encounter.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
 
@@ -364,7 +366,7 @@ class Encounter:
         return f"friction presses them together, lambda = {lam:.3g} below -1 (Painlevé)"
 
 
-def _plain(*bodies: Any) -> bool:
+def _plain(*bodies: Sphere | HalfSpace | RigidBody) -> bool:
     """Return whether no material has properties."""
     return not any(body.material.properties for body in bodies)
 

@@ -26,7 +26,9 @@ LawOfSlip: TypeAlias = (
 SAME_SLIP = 1e-12
 
 
-def numbers_at(argument: str, function: Callable[..., Any], speed: Any, shape: Any) -> Any:
+def numbers_at(
+    argument: str, function: Callable[..., Numbers], speed: Real, shape: tuple[int, ...]
+) -> Any:
     """Return what a function gives at speeds in m/s, as an array of ``shape``; unchecked numbers.
 
     The function takes one float, or an array of ``shape``.
@@ -40,10 +42,10 @@ def numbers_at(argument: str, function: Callable[..., Any], speed: Any, shape: A
     return spread_over(argument, found, shape)
 
 
-def spread_over(argument: str, numbers: Any, shape: tuple[int, ...]) -> Any:
+def spread_over(argument: str, numbers: Numbers, shape: tuple[int, ...]) -> Any:
     """Return numbers of the shape of the impacts, read-only, or refuse those of another."""
     try:
-        return np.broadcast_to(numbers, shape)
+        return np.broadcast_to(np.asarray(numbers), shape)
     except ValueError:
         rule = f"must be one number, or of the shape {shape} of the impacts"
         raise refuse(argument, numbers, rule, "give one number for each impact") from None
@@ -72,7 +74,7 @@ def speed_pairs(argument: str, table: object, what: str) -> Array:
     return pairs.T
 
 
-def interpolate(argument: str, pairs: Array, speed: Any, what: str) -> Any:
+def interpolate(argument: str, pairs: Array, speed: Real, what: str) -> Any:
     """Return the numbers of a table at speeds, linear between its own, or refuse one outside."""
     known, values = pairs
     wrong = (np.asarray(speed) < known[0]) | (np.asarray(speed) > known[-1])
@@ -105,12 +107,12 @@ class OfSlip:
         """Return the numbers: a function stays in its process."""
         return {"law": None, "numbers": self.numbers, "slip": self.slip}
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
+    def __setstate__(self, state: Mapping[str, object]) -> None:
         for name, value in state.items():
             object.__setattr__(self, name, value)
 
     @classmethod
-    def of(cls, law: Any, slip: Any, shape: tuple[int, ...]) -> OfSlip:
+    def of(cls, law: Callable[..., Numbers] | Array, slip: Real, shape: tuple[int, ...]) -> OfSlip:
         """Return the friction coefficients at slip speeds, checked, one of each impact."""
         name = "friction_coefficient"
         if callable(law):
@@ -120,7 +122,7 @@ class OfSlip:
         numbers = real(name, found, rule=NON_NEGATIVE, remedy="it has no unit", empty=True)
         return cls(law, numbers, spread(slip, shape))
 
-    def at(self, friction: Any, slip: Any, shape: tuple[int, ...]) -> OfSlip | None:
+    def at(self, friction: Real, slip: Real, shape: tuple[int, ...]) -> OfSlip | None:
         """Return it for other slip speeds; None where another friction coefficient was given."""
         if np.shape(friction) != np.shape(self.numbers) or not np.all(friction == self.numbers):
             return None
@@ -135,7 +137,7 @@ def friction(*, empty: bool = False) -> Any:
     field = quantity("1", rule=NON_NEGATIVE, empty=empty)
     checked = field.converter
 
-    def convert(value: Any, owner: Any, field: Any) -> Any:
+    def convert(value: object, owner: object, field: attrs.Attribute[object]) -> Any:
         return value if is_law_of_slip(value) else checked.converter(value, owner, field)
 
     field.converter = attrs.Converter(convert, takes_self=True, takes_field=True)
@@ -147,10 +149,11 @@ def is_law_of_slip(friction: object) -> bool:
     return callable(friction) or isinstance(friction, Mapping)
 
 
-def law_of_slip(friction: Any) -> Any:
+def law_of_slip(friction: object) -> Any:
     """Return the function, or the speeds and coefficients of a table {slip speed: mu}, sorted."""
     if callable(friction):
         return friction
+    assert isinstance(friction, Mapping)
     name, pairs = "friction_coefficient", list(friction.items())
     with contextlib.suppress(TypeError):  # a speed that is no number is refused with the table
         pairs.sort(key=lambda pair: pair[0])

@@ -154,9 +154,9 @@ class Scene(Batches):
         default=None, converter=_tensors, eq=key, repr=False, kw_only=True
     )
     planar: bool = instance(bool, default=True, kw_only=True, repr=False)
-    options: Mapping[str, Any] = attrs.field(default=NOTHING, kw_only=True, repr=False)
+    _options: Mapping[str, Any] = attrs.field(default=NOTHING, kw_only=True, repr=False)
     #: How friction follows from slip; None where it is given by numbers.
-    of_slip: OfSlip | None = attrs.field(default=None, eq=False, kw_only=True, repr=False)
+    _of_slip: OfSlip | None = attrs.field(default=None, eq=False, kw_only=True, repr=False)
     #: Batch shape: () for one impact.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
     _index: Any = attrs.field(init=False, eq=False, repr=False)
@@ -183,7 +183,7 @@ class Scene(Batches):
         along: tuple[float, float, float] | None = None,
         inverse_mass: Numbers | None = None,
         planar: bool = True,
-        options: Mapping[str, Any] = NOTHING,
+        options: Mapping[str, object] = NOTHING,
         of_slip: OfSlip | None = None,
     ) -> None: ...
 
@@ -206,7 +206,7 @@ class Scene(Batches):
         )
         if 0 in shape:
             raise refuse("shape", shape, "a scene must hold at least one impact")
-        if self.of_slip is not None or is_law_of_slip(self.friction_coefficient):
+        if self._of_slip is not None or is_law_of_slip(self.friction_coefficient):
             self._set_friction(shape)
         object.__setattr__(self, "shape", shape)
         index = batch.lock_arrays(np.arange(math.prod(shape)).reshape(shape)) if shape else 0
@@ -224,10 +224,10 @@ class Scene(Batches):
                 raise refuse("friction_coefficient", self.friction_coefficient, rule, "give bodies")
             found: OfSlip | None = OfSlip.of(law_of_slip(self.friction_coefficient), slip, shape)
         else:
-            before = self.of_slip
+            before = self._of_slip
             assert before is not None
             found = before.at(self.friction_coefficient, slip, shape)
-        object.__setattr__(self, "of_slip", found)
+        object.__setattr__(self, "_of_slip", found)
         if found is not None:
             object.__setattr__(self, "friction_coefficient", found.numbers)
 
@@ -240,8 +240,8 @@ class Scene(Batches):
                 for name, number in self.numbers().items()
                 if isinstance(number, np.ndarray)
             }
-        if self.options:
-            shapes |= {name: np.shape(each.numbers) for name, each in self.options.items()}
+        if self._options:
+            shapes |= {name: np.shape(each.numbers) for name, each in self._options.items()}
         if self.inverse_mass is not None:
             shapes["inverse_mass"] = self.inverse_mass.shape[:-2]
             if not self.planar:

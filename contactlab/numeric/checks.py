@@ -269,7 +269,7 @@ def quantity(
     empty: bool = False,
     unknown: bool = False,
     per_impact: bool = False,
-    material: Any = None,
+    material: object = None,
 ) -> Any:
     """Return an attrs field for a checked real quantity with its unit in the metadata.
 
@@ -306,7 +306,8 @@ def quantity(
     if material is not None:
         further |= {"material": material, "required": default is attrs.NOTHING}
         default = None if default is attrs.NOTHING else default
-        read.append(f"or a property of the materials: {material.sentence}")
+        combined: Any = material
+        read.append(f"or a property of the materials: {combined.sentence}")
     if read:
         further["read"] = ", ".join(read)
     return attrs.field(

@@ -25,8 +25,8 @@ class Named(Mapping[str, Any]):
 
     __slots__ = ("_numbers",)
 
-    def __init__(self, numbers: Mapping[str, Any] | None = None) -> None:
-        self._numbers = dict(numbers or {})
+    def __init__(self, numbers: Mapping[str, object] | None = None) -> None:
+        self._numbers: dict[str, Any] = dict(numbers or {})
 
     def __getitem__(self, name: str) -> Any:
         return self._numbers[name]

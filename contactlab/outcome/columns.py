@@ -295,9 +295,9 @@ def columns(result: WithScene, whole: Scene | None = None) -> list[tuple[str, st
         table += [(name, column.unit, values) for name, values in parts]
     options = {
         split_heading(heading)[0]: (*split_heading(heading), each.numbers)
-        for heading, each in scene.options.items()
+        for heading, each in scene._options.items()
     }
-    if scene.of_slip is not None:
+    if scene._of_slip is not None:
         options["friction_coefficient"] = "friction_coefficient", "1", scene.friction_coefficient
     names = {name for name, *_ in table}
     varied = [

@@ -39,9 +39,11 @@ def values_of(
     return values
 
 
-def _numbers(value: Callable[[Any], Any], result: Any) -> Any:
+def _numbers(value: Callable[[object], object], result: object) -> Any:
     """Return the numbers of a function of a result, or refuse what is none, or of another shape."""
-    given, shape = value(result), result.scene.shape
+    of: Any = result
+    given: Any = value(result)
+    shape = of.scene.shape
     if given is None or type(given) is float:
         return given
     try:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import attrs
 import numpy as np
@@ -11,14 +12,23 @@ import numpy as np
 from contactlab.contracts.law import Law, law_kind
 from contactlab.contracts.parameters import Combined
 from contactlab.impact.cautions import name_bodies
+from contactlab.impact.material import Material
 from contactlab.impact.of_speed import spread_over
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Rule, real, refuse, unit_remedy
 from contactlab.numeric.named import Named, OfImpacts, mark_of, split_heading
 from contactlab.numeric.names import nearest
 from contactlab.numeric.taken import Taken
+from contactlab.numeric.types import Array, Real
 from contactlab.registry.composition import Laws
 from contactlab.registry.registry import REGISTRY
+
+
+class Body(Protocol):
+    """A body of any shape, by its material."""
+
+    @property
+    def material(self) -> Material: ...
 
 
 class Read(NamedTuple):
@@ -73,14 +83,14 @@ def bound(laws: Laws, scene: Scene) -> tuple[Laws, Scene]:
     if not any(options_read(type(law)) for law in laws):
         return laws, scene
     changed: dict[str, Any] = {}
-    numbers = dict(scene.options)
+    numbers = dict(scene._options)
     for kind, law in laws.by_kind().items():
         used, own = bound_law(law, scene)
         numbers |= own
         if used is not law:
             changed[kind] = used
     if numbers:
-        scene = scene._with(options=Named(numbers))
+        scene = scene._with(_options=Named(numbers))
     return laws.changed(**changed) if changed else laws, scene
 
 
@@ -97,9 +107,9 @@ def bound_law(law: Law, scene: Scene) -> tuple[Law, dict[str, Any]]:
     return law, numbers
 
 
-def _each(name: str, unit: str, value: Any, scene: Scene) -> OfImpacts:
+def _each(name: str, unit: str, value: Array, scene: Scene) -> OfImpacts:
     """Return the numbers of the impacts of a scene; a part of a batch has had them before."""
-    before: OfImpacts | None = scene.options.get(f"{name} ({unit})")
+    before: OfImpacts | None = scene._options.get(f"{name} ({unit})")
     if before is not None and before.whole == mark_of(value):
         return before
     return OfImpacts.of(value, spread_over(name, value, scene.shape))
@@ -109,7 +119,8 @@ def _from_materials(law: Law, option: Read, scene: Scene) -> Any:
     """Return a law with an option that two materials give; as it is if they have none."""
     name, unit = option.name, option.unit
     place = f"{law_kind(law)}: {name}"
-    bodies, given = name_bodies(scene), getattr(law, name)
+    bodies: Mapping[str, Body] = name_bodies(scene)
+    given = getattr(law, name)
     found: dict[str, Any] = {}
     for body, each in bodies.items():
         if (own := each.material.property_named(name)) is not None:
@@ -153,12 +164,12 @@ def _from_materials(law: Law, option: Read, scene: Scene) -> Any:
         raise refuse(where, value, rule, "leave out the property, or the other option") from None
 
 
-def _same(given: Any, value: Any) -> bool:
+def _same(given: Real, value: Real) -> bool:
     """Return whether an option has the value that the materials give, as of a law of a run."""
     return np.shape(given) == np.shape(value) and bool(np.all(given == value))
 
 
-def _refuse_misspelt(law: Law, name: str, bodies: dict[str, Any]) -> None:
+def _refuse_misspelt(law: Law, name: str, bodies: Mapping[str, Body]) -> None:
     """Refuse a property that is nearly, and not, the name that a law reads."""
     known = {option.name for option in options_read(type(law))}
     for body, each in bodies.items():

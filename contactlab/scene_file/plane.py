@@ -61,7 +61,7 @@ def rim(spin: Real, arm: tuple[Real, Real]) -> tuple[Real, Real]:
 
 
 def of_bodies(
-    table: Table, bodies: list[Any], contacts: Mapping[str, Any]
+    table: Table, bodies: list[Any], contacts: Mapping[str, Array]
 ) -> tuple[Scene, Encounter]:
     """Return scene and encounter of bodies by speeds along ``normal`` and ``along``."""
     n, t = directions(table)
@@ -81,6 +81,8 @@ def of_bodies(
     before = vector(*velocity(table))
     struck = vector(*(_number(table, key) for key in STRUCK_KEYS[:2]))
 
+    about: dict[str, Any] = dict(contacts)
+
     def met() -> Encounter:
         return Encounter(
             body=bodies[0],
@@ -91,7 +93,7 @@ def of_bodies(
             spin=spin,
             target_velocity=struck,
             target_spin=target_spin,
-            **contacts,
+            **about,
         )
 
     encounter = table.make(met)

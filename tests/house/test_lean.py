@@ -98,9 +98,9 @@ def test_running_a_law_imports_no_other_law():
 #: What one elastic impact of spheres loads beside laws, contracts and numbers: nothing of bodies of
 #: other shapes, of spin about the normal, of sweeps and files, of normal laws without closed form.
 OF_A_RUN = """
-acceptance answer answers batches bodies bring capability cautions columns composition decoupled
+acceptance answer answers batches bodies bound bring capability cautions columns composition decoupled
 energy error_model failed_motion groups hertz history hooks installed inverse_mass kinetics
-law_classes law_words loading manager material motion names normal_motion numerical_error plan
+law_classes law_words loading manager material motion names normal_motion numerical_error of_speed plan
 planning registry result scene simulation solve way
 """
 
@@ -126,8 +126,9 @@ def test_a_run_loads_no_module_of_fits_pages_study_or_half_space(normal):
         "import json, sys",
         "from contactlab import HalfSpace, Material, Scene, Simulation, Sphere",
         "steel = Material.named('steel')",
-        "scene = Scene.at_angle(Sphere(0.01, steel), HalfSpace(steel), lambda slip: 0.1 + 0 * slip,",
-        "                       speed=1.0, angle_deg=[10.0, 30.0])",
+        "ball, wall = Sphere(0.01, steel), HalfSpace(steel)",
+        "mu = {0.0: 0.2, 2.0: 0.1}",
+        "scene = Scene.at_angle(ball, wall, mu, speed=1.0, angle_deg=[10.0, 30.0])",
         f"result = Simulation(normal={normal!r}).run(scene)",
         "str(result.plan), str(result), result.psi2",
         "print(json.dumps([name for name in sys.modules if name.startswith('contactlab')]))",
