@@ -105,7 +105,13 @@ class Material:
         )
 
     def property_named(self, name: str) -> tuple[Either, str] | None:
-        """Return the property ``name`` and the unit that was given with it, or None."""
+        """Return a property and the unit that was given with it, empty if none; None without it.
+
+        Parameters
+        ----------
+        name : str
+            The name without its unit.
+        """
         for heading, number in self.properties.items():
             own, unit = split_heading(heading)
             if own == name:

@@ -28,7 +28,8 @@ class Body(Protocol):
     """A body of any shape, by its material."""
 
     @property
-    def material(self) -> Material: ...
+    def material(self) -> Material:
+        """The material."""
 
 
 class Read(NamedTuple):
