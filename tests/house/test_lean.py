@@ -99,7 +99,8 @@ def test_running_a_law_imports_no_other_law():
 #: other shapes, of spin about the normal, of sweeps and files, of normal laws without closed form.
 OF_A_RUN = """
 acceptance answer answers batches bodies bound bring capability cautions columns composition
-decoupled energy error_model failed_motion groups hertz history hooks installed inverse_mass kinetics
+decoupled energy error_model failed_motion groups hertz history hooks installed inverse_mass
+kinetics
 law_classes law_words loading manager material motion names normal_motion numerical_error
 of_speed plan planning registry result scene simulation solve way
 """
