@@ -62,6 +62,8 @@ def _sources(entry: materials.Entry) -> str:
     lines = [f"\nelastic constants: {entry.elastic_source}", f"density: {entry.density_source}"]
     if entry.yield_stress is not None:
         lines.append(f"yield stress: {entry.yield_stress / 1e6:.4g} MPa, {entry.yield_source}")
+    for name, number in entry.properties.items():
+        lines.append(f"property {name}: {number:.6g}, {entry.properties_source}".rstrip(", "))
     lines += [f"note: {entry.note}"] if entry.note else []
     works = [f"{key}: {text}" for key, text in materials.works(entry.name).items()]
     return "\n".join([*lines, "", *works])

@@ -33,7 +33,7 @@ OTHER_NAMES = {
 
 
 @arguments_told
-@attrs.frozen(init=False, kw_only=True)
+@attrs.frozen(init=False, kw_only=True, repr=False)
 class Material:
     """A linear elastic, isotropic material.
 
@@ -63,7 +63,7 @@ class Material:
     poisson_ratio: Either = quantity("1", rule=POISSON)
     density: Either = quantity("kg/m³", rule=POSITIVE, default=None, unknown=True)
     yield_stress: Either = quantity("Pa", rule=POSITIVE, default=None, unknown=True)
-    properties: Mapping[str, Numbers] = attrs.field(default=NOTHING, repr=False)
+    properties: Mapping[str, Numbers] = attrs.field(default=NOTHING)
 
     def __init__(
         self,
@@ -104,6 +104,10 @@ class Material:
             properties=named_numbers("properties", properties, taken=OWN_NUMBERS),
         )
 
+    def __repr__(self) -> str:
+        told = [each for each in NAMES if each != "properties" or self.properties]
+        return f"Material({', '.join(f'{each}={getattr(self, each)!r}' for each in told)})"
+
     def property_named(self, name: str) -> tuple[Either, str] | None:
         """Return a property and the unit that was given with it, empty if none; None without it.
 
@@ -138,6 +142,9 @@ class Material:
     def young_modulus(self) -> Either:
         """E = 2 G (1 + nu), in Pa."""
         return 2.0 * self.shear_modulus * (1.0 + self.poisson_ratio)
+
+
+NAMES = tuple(field.name for field in attrs.fields(Material))
 
 
 @attrs.frozen(kw_only=True)

@@ -15,7 +15,7 @@ from contactlab.impact.cautions import name_bodies
 from contactlab.impact.material import Material
 from contactlab.impact.of_speed import spread_over
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Rule, real, refuse, unit_remedy
+from contactlab.numeric.checks import Rule, real, refuse, some_known, unit_remedy
 from contactlab.numeric.named import Named, OfImpacts, mark_of, split_heading
 from contactlab.numeric.names import nearest
 from contactlab.numeric.taken import Taken
@@ -117,7 +117,10 @@ def _each(name: str, unit: str, value: Array, scene: Scene) -> OfImpacts:
 
 
 def _from_materials(law: Law, option: Read, scene: Scene) -> Any:
-    """Return a law with an option that two materials give; as it is if they have none."""
+    """Return a law with an option that two materials give.
+
+    It is as it is if they have none, or if another option stands in its place.
+    """
     name, unit = option.name, option.unit
     place = f"{law_kind(law)}: {name}"
     bodies: Mapping[str, Body] = name_bodies(scene)
@@ -129,13 +132,21 @@ def _from_materials(law: Law, option: Read, scene: Scene) -> Any:
             if stated and stated != unit:
                 rule = f"has the unit {stated}, and {REGISTRY.short_name(law)} reads it in {unit}"
                 raise refuse(f"{body}.material: {name}", number, rule, unit_remedy(unit))
-            found[body] = number
+            found[body] = some_known(
+                f"{body}.material: {name}", number, rule=option.rule, remedy=unit_remedy(unit)
+            )
     told = f"Material(properties={{{name!r}: ...}}) in {unit}"
     if not found:
         _refuse_misspelt(law, name, bodies)
         if option.required and given is None:
             rule = "is missing: neither the law nor the materials have it"
             raise refuse(place, None, rule, f"give the option, or {told} of both bodies")
+        return law
+    changed: Any = law  # every law with such an option is of attrs
+    try:
+        attrs.evolve(changed, **{name: float(np.nanmax(next(iter(found.values()))))})
+    except ValueError:
+        # Another option was given that says the same otherwise, as a restitution does: it stands.
         return law
     if lacking := [body for body in bodies if body not in found]:
         _refuse_misspelt(law, name, {body: bodies[body] for body in lacking})
@@ -157,12 +168,7 @@ def _from_materials(law: Law, option: Read, scene: Scene) -> Any:
     if given is not None and not isinstance(given, Taken) and not _same(given, value):
         rule = f"is given to the law, and {' and '.join(found)} have it as a property too"
         raise refuse(place, given, rule, "leave out the option, or the property")
-    try:
-        changed: Any = law  # every law with such an option is of attrs
-        return attrs.evolve(changed, **{name: value})
-    except ValueError as error:
-        rule = f"is a property of {' and '.join(found)}, and the law refuses it: {error}"
-        raise refuse(where, value, rule, "leave out the property, or the other option") from None
+    return attrs.evolve(changed, **{name: value})
 
 
 def _same(given: Real, value: Real) -> bool:

@@ -124,18 +124,17 @@ class Damped(NormalLaw):
         ("viscoelastic", {"relaxaton_time": 1e-6}, None, "did you mean 'relaxation_time'?"),
         ("viscoelastic", of_time(1e-6), {"relaxaton_time": 1e-6}, "did you mean"),
         ("viscoelastic", {"relaxation_time (m)": 1.0}, of_time(1.0), "has the unit m, and visco"),
-        ("viscoelastic", of_time(-1e-6), of_time(-1e-6), "of sphere and target = -1e-06: must be"),
+        (
+            "viscoelastic",
+            of_time(-1e-6),
+            of_time(-1e-6),
+            "sphere.material: relaxation_time = -1e-06: must",
+        ),
         (
             create("normal.viscoelastic", relaxation_time=1e-6),
             of_time(2e-6),
             of_time(2e-6),
             "normal: relaxation_time = 1e-06: is given to the law, and sphere and target have it",
-        ),
-        (
-            create("normal.viscoelastic", restitution=0.8),
-            of_time(2e-6),
-            of_time(2e-6),
-            "the law refuses it: restitution, relaxation_time",
         ),
         (Damped(), None, None, "normal: damping = None: is missing: neither the law nor"),
         (Damped(), {"damping": np.array([1.0, 2.0])}, {"damping": 1.0}, "must be one number"),
@@ -146,6 +145,16 @@ def test_what_materials_cannot_give(law, first, second, words):
     with pytest.raises(ValueError, match=r"relaxa|damping") as refused:
         Simulation(normal=law).run(scene(first, second, angle_deg=angle))
     assert words in str(refused.value)
+
+
+def test_a_restitution_that_is_given_stands_in_place_of_a_property():
+    simulation = simulated(create("normal.viscoelastic", restitution=0.8))
+    told = simulation.run(scene(of_time(2e-6), of_time(2e-6)))
+    assert told.psi2 == simulation.run(scene()).psi2
+    assert "restitution=0.8" in str(told.plan)
+    assert simulation.run(scene(of_time(2e-6))).psi2 == told.psi2  # nor does one body need it
+    taken = Simulation(normal="viscoelastic").run(scene(of_time(2e-6), of_time(2e-6)))
+    assert "was taken by default" not in str(taken.plan)  # the property stands for 0.9
 
 
 @pytest.mark.parametrize(
