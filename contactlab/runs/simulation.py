@@ -332,8 +332,9 @@ class Simulation:
             laws, scenes = bound(laws, scenes)
 
         def result_of(scene: Scene, piece: Piece) -> ImpactResult:
-            plan = plan_of(laws, scene, piece.columns, piece.motion)
-            return _result(solve.ways(laws, scene), scene, plan, piece.motion, time.perf_counter())
+            own, _ = bound(laws, scene)
+            plan = plan_of(own, scene, piece.columns, piece.motion)
+            return _result(solve.ways(own, scene), scene, plan, piece.motion, time.perf_counter())
 
         return swept_into(laws, scenes, into, result_of=result_of, **options)
 
