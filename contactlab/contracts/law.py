@@ -45,8 +45,7 @@ class Law(ABC):
        ``no_friction``           the tangential force is zero
        ``shares_loss``           the force depends on the slip velocity too, through the loss of
                                  a viscous normal law: increments then have ``sampled``
-       ``slip_speed``            mu depends on the slip speed: at one speed the force is Coulomb's
-                                 with a factor on mu, from 0 to 1
+       ``slip_speed``            mu has a factor from 0 to 1 of the slip speed
        ``vectors``               slip may turn: displacements, velocities and forces of shape
                                  (..., 2), in length at most mu times the friction load
        ``normal_spin``           whole-impact answers have ``normal_spin_change``, odd in the spin
