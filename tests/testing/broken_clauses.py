@@ -18,6 +18,7 @@ from tests.testing.broken_normal import Altered, Moving, Stepwise
 from tests.testing.fresh_faults import HERTZ, MOTION, STEPS, Steps
 from tests.testing.fresh_sound import Brush, HardSphere, Press
 from tests.testing.made import altered, broken
+from tests.testing.slip_laws import OfLoad
 
 NUMBERS: dict[str, Any] = {"force": 0.0, "calls": 0}
 
@@ -313,6 +314,7 @@ class ChangesTheSceneToo(Press):
 
 #: Each with the check meant for it, and words of what the check says of it.
 BROKEN = [
+    (OfLoad, "slip_speed", "At a slip speed of 0.0001 m/s F/(mu P) is"),
     (ClaimsAndExpects, "expected_failures", "It offers 'partial_slip' and expects to fail"),
     (RefusesNamelessly, "parameters", "extra = nan: refused without its name: must be 1"),
     (CopiesOtherwise, "copies", "A copy differs: "),

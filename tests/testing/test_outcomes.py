@@ -223,6 +223,7 @@ def test_words_that_a_law_may_offer_are_those_that_checks_test():
     assert known_words(contracts.TangentialLaw) == {
         "partial_slip",
         "rigid",
+        "slip_speed",
         "no_friction",
         "vectors",
         "elliptic",
