@@ -26,6 +26,7 @@ from contactlab.outcome.answer import Answer
 from contactlab.paths.path_steps import Followed, Points, follow_path
 from contactlab.registry import composition
 from contactlab.registry.acceptance import accept
+from contactlab.registry.bound import bound_laws
 from contactlab.registry.law_words import name_of
 from contactlab.solve.unfollowed import refusal
 
@@ -184,7 +185,7 @@ def load_path(
     array([0.697, 1.   ])
     """
     of_kind("scene", scene, Scene, remedy="make one: Scene(...)")
-    laws = _laws(scene, normal, tangential)
+    *laws, scene = _laws(scene, normal, tangential)
     points, origin, scene = _path(scene, approach, displacement, time)
     columns, states, status, detail = _follow_parts(laws, scene, points)
     return LoadPath(
@@ -201,8 +202,8 @@ def load_path(
     )
 
 
-def _laws(scene: Scene, normal: object, tangential: object) -> tuple[Any, Any]:
-    """Return the two laws of a path, or refuse them."""
+def _laws(scene: Scene, normal: object, tangential: object) -> tuple[Any, Any, Scene]:
+    """Return the two laws of a path, with what materials give, and the scene; or refuse them."""
     first = composition.law("normal", normal)
     second = composition.law("tangential", tangential)
     rule = "must answer to steps, as a SteppedTangentialLaw does"
@@ -211,11 +212,12 @@ def _laws(scene: Scene, normal: object, tangential: object) -> tuple[Any, Any]:
     )
     if (complaint := composition.misfit(first, second)) is not None:
         raise ValueError(complaint)
+    first, second, scene = bound_laws(first, second, scene)
     for law in (first, second):
         accept(law, scene)
     if (rate := unfollowed_rate(first, scene)) is not None:
         raise refusal(rate, scene, "along a path", f"take at least {LEAST_RESTITUTION}")
-    return first, second
+    return first, second, scene
 
 
 def _path(

@@ -81,18 +81,25 @@ def bound(laws: Laws, scene: Scene) -> tuple[Laws, Scene]:
     ValueError
         If an option is given twice or not at all, in another unit, or for other impacts.
     """
+    *used, scene = bound_laws(*laws, scene)
+    pairs = zip(laws.by_kind().items(), used, strict=True)
+    changed = {kind: own for (kind, law), own in pairs if own is not law}
+    return laws.changed(**changed) if changed else laws, scene
+
+
+def bound_laws(*given: Any) -> tuple[Any, ...]:
+    """Return some laws and the scene, which is the last, as ``bound`` does."""
+    *laws, scene = given
     if not any(options_read(type(law)) for law in laws):
-        return laws, scene
-    changed: dict[str, Any] = {}
-    numbers = dict(scene._options)
-    for kind, law in laws.by_kind().items():
-        used, own = bound_law(law, scene)
+        return given
+    used, numbers = [], dict(scene._options)
+    for law in laws:
+        one, own = bound_law(law, scene)
+        used.append(one)
         numbers |= own
-        if used is not law:
-            changed[kind] = used
     if numbers:
         scene = scene._with(_options=Named(numbers))
-    return laws.changed(**changed) if changed else laws, scene
+    return (*used, scene)
 
 
 def bound_law(law: Law, scene: Scene) -> tuple[Law, dict[str, Any]]:

@@ -124,7 +124,7 @@ class Table:
         remedy = nearest_of(key, self.known)
         if key in ELSEWHERE and key not in self.known:
             remedy = ELSEWHERE[key]
-        if PROPERTIES in self.known:
+        if PROPERTIES in self.known and not nearest(key, self.known):
             remedy += f"; a number that a law reads goes under [{self.at(PROPERTIES)}]"
         if "material" in self.known and key in MATERIAL_KEYS:
             remedy = f"a number of the material: write it under [{self.at('material')}]"

@@ -288,6 +288,22 @@ def test_a_law_of_a_plugin_reads_both():
         )
 
 
+def test_a_load_path_reads_both():
+    times = np.linspace(0.0, 1e-4, 41)[:, None]
+    pressed = np.full((41, 4), 1.0) * np.linspace(0.0, 1e-5, 41)[:, None]
+    impacts = scene({"damping": 2e-7}, {"damping": 2e-7}, angle_deg=ANGLES)
+    shares = np.array([0.5, 1.0, 2.0, 4.0])
+    path = contactlab.load_path(
+        impacts, pressed, 0.1 * pressed, normal=Damped(share=shares), time=times
+    )
+    for place, share in enumerate(shares):
+        alone = contactlab.load_path(
+            scene(), pressed[:, 0], 0.1 * pressed[:, 0],
+            normal=Damped(damping=2e-7 * share), time=times[:, 0],
+        )  # fmt: skip
+        assert path.normal_force[:, place] == pytest.approx(alone.normal_force, rel=1e-12)
+
+
 def test_options_tell_where_they_are_read_from():
     from contactlab.registry.options import options
 
