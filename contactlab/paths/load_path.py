@@ -185,7 +185,8 @@ def load_path(
     array([0.697, 1.   ])
     """
     of_kind("scene", scene, Scene, remedy="make one: Scene(...)")
-    *laws, scene = _laws(scene, normal, tangential)
+    first, second, scene = _laws(scene, normal, tangential)
+    laws = first, second
     points, origin, scene = _path(scene, approach, displacement, time)
     columns, states, status, detail = _follow_parts(laws, scene, points)
     return LoadPath(

@@ -104,7 +104,7 @@ def bound_laws(*given: Any) -> tuple[Any, ...]:
 
 def bound_law(law: Law, scene: Scene) -> tuple[Law, dict[str, Any]]:
     """Return a law with the options that materials give, and its numbers of each impact."""
-    numbers = {}
+    numbers: dict[str, Any] = {}
     for option in options_read(type(law)):
         if option.material is not None:
             law = _from_materials(law, option, scene)
