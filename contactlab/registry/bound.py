@@ -89,10 +89,12 @@ def bound(laws: Laws, scene: Scene) -> tuple[Laws, Scene]:
 
 def bound_laws(*given: Any) -> tuple[Any, ...]:
     """Return some laws and the scene, which is the last, as ``bound`` does."""
-    *laws, scene = given
+    laws: tuple[Law, ...] = given[:-1]
+    scene: Scene = given[-1]
     if not any(options_read(type(law)) for law in laws):
         return given
-    used, numbers = [], dict(scene._options)
+    used: list[Law] = []
+    numbers = dict(scene._options)
     for law in laws:
         one, own = bound_law(law, scene)
         used.append(one)
