@@ -164,7 +164,8 @@ class Encounter:
                 "give target_velocity, that of its surface at the contact",
             )
         self._check_normal(shape)
-        if self.of_slip is not None or is_law_of_slip(self.friction_coefficient):
+        mu = self.friction_coefficient
+        if self.of_slip is not None or (type(mu) is not float and is_law_of_slip(mu)):
             self._set_friction(shape)
 
     def _set_friction(self, shape: tuple[int, ...]) -> None:

@@ -138,7 +138,9 @@ def friction(*, empty: bool = False) -> Any:
     checked = field.converter
 
     def convert(value: object, owner: object, field: attrs.Attribute[object]) -> Any:
-        return value if is_law_of_slip(value) else checked.converter(value, owner, field)
+        if type(value) is not float and is_law_of_slip(value):
+            return value
+        return checked.converter(value, owner, field)
 
     field.converter = attrs.Converter(convert, takes_self=True, takes_field=True)
     return field

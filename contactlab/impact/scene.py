@@ -206,7 +206,8 @@ class Scene(Batches):
         )
         if 0 in shape:
             raise refuse("shape", shape, "a scene must hold at least one impact")
-        if self._of_slip is not None or is_law_of_slip(self.friction_coefficient):
+        mu = self.friction_coefficient
+        if self._of_slip is not None or (type(mu) is not float and is_law_of_slip(mu)):
             self._set_friction(shape)
         object.__setattr__(self, "shape", shape)
         index = batch.lock_arrays(np.arange(math.prod(shape)).reshape(shape)) if shape else 0
@@ -240,7 +241,7 @@ class Scene(Batches):
                 for name, number in self.numbers().items()
                 if isinstance(number, np.ndarray)
             }
-        if self._options:
+        if self._options is not NOTHING:
             shapes |= {name: np.shape(each.numbers) for name, each in self._options.items()}
         if self.inverse_mass is not None:
             shapes["inverse_mass"] = self.inverse_mass.shape[:-2]
@@ -286,7 +287,7 @@ class Scene(Batches):
         for name, body in (("sphere", self.sphere), ("target", self.target)):
             if body is not None and body.material.yield_stress is not None:
                 numbers[f"{name}.material.yield_stress"] = body.material.yield_stress
-            if body is not None and body.material.properties:
+            if body is not None and body.material.properties is not NOTHING:
                 for heading, number in body.material.properties.items():
                     numbers[f"{name}.material.properties[{heading!r}]"] = number
         return numbers

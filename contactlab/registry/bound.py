@@ -81,10 +81,18 @@ def bound(laws: Laws, scene: Scene) -> tuple[Laws, Scene]:
     ValueError
         If an option is given twice or not at all, in another unit, or for other impacts.
     """
+    if not _read_any(type(laws.normal), type(laws.tangential), type(laws.integrator)):
+        return laws, scene
     *used, scene = bound_laws(*laws, scene)
     pairs = zip(laws.by_kind().items(), used, strict=True)
     changed = {kind: own for (kind, law), own in pairs if own is not law}
     return laws.changed(**changed) if changed else laws, scene
+
+
+@lru_cache(maxsize=128)
+def _read_any(*classes: type[Law]) -> bool:
+    """Return whether any law has such an option; every run asks."""
+    return any(options_read(each) for each in classes)
 
 
 def bound_laws(*given: Any) -> tuple[Any, ...]:
