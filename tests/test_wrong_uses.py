@@ -168,7 +168,7 @@ angle_deg = 30
 """
 TOML = [
     ("radius = 0.01", "diameter = 0.02", "'radius', half the diameter", "radius = 0.01"),
-    ("radius = 0.01", 'radius = "10 mm"', "give it in m", "radius = 0.010"),
+    ("radius = 0.01", 'radius = "10 ms"', "give it in m", "radius = 0.010"),
     ("speed = 1.0", "", "speed: is missing", "speed = 1"),
     ('[target]\nkind = "half-space"', "[halfspace]", 'kind = "half-space"',
      '[target]\nkind = "half-space"'),

@@ -41,8 +41,11 @@ def find_drops(headings: Mapping[str, str]) -> dict[str, tuple[str, float]]:
     """
     found: dict[str, tuple[str, float]] = {}
     for text, alias in headings.items():
-        _, name, unit = name_and_unit(alias)
-        unit = unit or name_and_unit(text)[2]
+        try:
+            _, name, unit = name_and_unit(alias)
+            unit = unit or name_and_unit(text)[2]
+        except ValueError:
+            continue  # told with the other headings of its table
         if name not in DROPS:
             continue
         own = DROPS[name]
