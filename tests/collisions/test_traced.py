@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from contactlab import Encounter, HalfSpace, Material, Scene, Sphere, rebound
-from contactlab_laws.fronts import compiled
+from contactlab_laws import compiled
 from contactlab_laws.tables import elastic, regions, traced
 
 pytest.importorskip("table_builders", reason="table_builders is not in the wheel")

@@ -48,7 +48,7 @@ def test_the_wheel_stands_alone_with_or_without_a_compiler(tmp_path, monkeypatch
     (made,) = wheel.WheelBuilder(str(ROOT)).build(directory=str(tmp_path), versions=["standard"])
     assert [str(path) for path in tmp_path.iterdir()] == [made]
     with ZipFile(made) as archive:
-        assert ("contactlab_laws/fronts/_impacts.so" in archive.namelist()) == holds
+        assert ("contactlab_laws/compiled/_compiled.so" in archive.namelist()) == holds
     assert ("-none-any" in made) != holds
 
 

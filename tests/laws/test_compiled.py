@@ -9,11 +9,12 @@ import pytest
 import contactlab
 from contactlab import Scene, Simulation, Status, rebound
 from contactlab.cli.main import main
+from contactlab_laws import compiled as library
 from contactlab_laws.fronts import compiled
 from contactlab_laws.fronts.law import SOLVED
 from tests.longer import longer
 
-needs_library = pytest.mark.skipif(compiled.library() is None, reason=compiled.told())
+needs_library = pytest.mark.skipif(library.library() is None, reason=compiled.told())
 
 
 @pytest.fixture
@@ -22,9 +23,9 @@ def both(monkeypatch):
 
     def run(function):
         with monkeypatch.context() as patch:
-            patch.setenv(compiled.VARIABLE, "1")
+            patch.setenv(library.VARIABLE, "1")
             first = function()
-            patch.setenv(compiled.VARIABLE, "0")
+            patch.setenv(library.VARIABLE, "0")
             return first, function()
 
     return run
@@ -187,7 +188,7 @@ LIFTED = [
 @pytest.mark.parametrize("compiled_law", ["0", "1"])
 def test_friction_that_takes_all_force_off_is_no_corner(monkeypatch, compiled_law, sense):
     """At lam = 1, and a last bit beside it, answers are the mean of their neighbours'."""
-    monkeypatch.setenv(compiled.VARIABLE, compiled_law)
+    monkeypatch.setenv(library.VARIABLE, compiled_law)
     psi1, chi, eta = np.transpose(LIFTED)
 
     def run(lam, **options):
@@ -244,10 +245,10 @@ def test_histories_of_bodies_are_those_of_python(both):
 
 @pytest.mark.parametrize("word", ["0", " Off"])
 def test_what_computes_is_told(monkeypatch, capsys, word):
-    monkeypatch.setenv(compiled.VARIABLE, word)
+    monkeypatch.setenv(library.VARIABLE, word)
     assert main(["plugins", "show", "tangential.fronts"]) == 0
     assert "CONTACTLAB_COMPILED=0 leaves the compiled solver out" in capsys.readouterr().out
-    assert compiled.library() is None
+    assert library.library() is None
     plan = Simulation().plan(Scene.nondimensional(psi1=1.2, chi=3.0))
     assert plan.marched
     assert "one by one" not in str(plan)
@@ -261,30 +262,30 @@ def test_what_computes_is_told(monkeypatch, capsys, word):
 
 @needs_library
 def test_a_library_older_than_its_sources_is_left_out(monkeypatch):
-    monkeypatch.setattr(compiled, "digest", lambda: "other")
-    compiled._library.cache_clear()
+    monkeypatch.setattr(library, "digest", lambda: "other")
+    library._library.cache_clear()
     try:
-        assert compiled.library() is None
+        assert library.library() is None
         assert "older than its sources" in compiled.told()
     finally:
-        compiled._library.cache_clear()
+        library._library.cache_clear()
 
 
 @needs_library
 def test_a_library_without_its_sources_or_of_another_kind_is_left_out(monkeypatch):
     process = ctypes.CDLL(None)
     for place, name, value, words in (
-        (compiled, "SOURCES", (("contactlab", "kernels/none.h"),), "sources .* are not there"),
-        (compiled, "LIBRARY", "impacts.c", "does not load"),
+        (library, "SOURCES", (("contactlab", "kernels/none.h"),), "sources .* are not there"),
+        (library, "LIBRARY", "impacts.c", "does not load"),
         (ctypes, "CDLL", lambda _path: process, "does not load.*contactlab_impact_sources"),
     ):
         with monkeypatch.context() as patch:
             patch.setattr(place, name, value)
-            compiled._library.cache_clear()
-            assert compiled.library() is None
+            library._library.cache_clear()
+            assert library.library() is None
             assert re.search(words, compiled.told())
             assert rebound(1.2, 3.0) == pytest.approx(0.23537850255, abs=1e-10)
-    compiled._library.cache_clear()
+    library._library.cache_clear()
 
 
 def test_a_followed_law_stays_a_reference():

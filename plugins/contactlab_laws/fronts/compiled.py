@@ -1,25 +1,17 @@
-"""The exact law, compiled: ``contactlab_impact.h`` as a library that is built with the package."""
+"""The exact law, compiled: ``contactlab_impact.h`` as a library built with the package."""
 
 from __future__ import annotations
 
 import ctypes
-import hashlib
-import os
 from collections.abc import Sequence
-from functools import cache
-from importlib import resources
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.numeric.types import Array
+from contactlab_laws import compiled
+from contactlab_laws.compiled import library
 
-#: 0 in this variable leaves the library out, at the build and at run time.
-VARIABLE = "CONTACTLAB_COMPILED"
-#: Name of the library beside this module, and the sources that it is built of, by package.
-LIBRARY = "_impacts.so"
-SOURCES = (("contactlab", "kernels/contactlab_impact.h"), ("contactlab_laws", "fronts/impacts.c"))
 #: Least error of a step: of the compiled law, and of Python's if much accuracy is asked for.
 LEAST_ERROR = 5e-13
 #: Steps of an impact before it is given up; a hard one takes 30, one of kappa = 1e6 some 10,000.
@@ -43,64 +35,12 @@ LOST = (
     "There is no room for the memory of the contact",
     "No bodies have such numbers",
 )
-#: Words on an installation with the library.
-COMPILED = "compiled"
-
-
-def digest() -> str:
-    """Return the digest of the installed sources."""
-    content = hashlib.sha256()
-    for package, path in SOURCES:
-        content.update(resources.files(package).joinpath(path).read_bytes())
-    return content.hexdigest()
-
-
-def library() -> Any:
-    """Return the library, or None where there is none or it is left out."""
-    return _library(_wants_library())[0]
 
 
 def told() -> str:
     """Return in words whether the library is used, and why not."""
-    return _library(_wants_library())[1]
-
-
-def _wants_library() -> bool:
-    """Return whether the environment lets the library be used."""
-    return os.environ.get(VARIABLE, "").strip().lower() not in ("0", "false", "no", "off")
-
-
-@cache
-def _library(wanted: bool) -> tuple[Any, str]:
-    """Return the library, or None, and words about it."""
-    if not wanted:
-        return None, f"{BY_PYTHON}: {VARIABLE}=0 leaves the compiled solver out"
-    again = "install contactlab again where there is a C compiler"
-    with resources.as_file(resources.files(__package__).joinpath(LIBRARY)) as path:
-        if not path.exists():
-            return None, f"{BY_PYTHON}: the compiled solver was not built; {again}"
-        try:
-            found = ctypes.CDLL(str(path))
-            built_of = found.contactlab_impact_sources
-        except (OSError, AttributeError) as error:
-            return None, f"{BY_PYTHON}: the compiled solver does not load ({error}); {again}"
-    built_of.restype = ctypes.c_char_p
-    try:
-        sources = digest()
-    except OSError:
-        return None, f"{BY_PYTHON}: the sources of the compiled solver are not there; {again}"
-    if built_of().decode() != sources:
-        return None, f"{BY_PYTHON}: the compiled solver is older than its sources; {again}"
-    pointer = ctypes.c_void_p  # ``ndpointer`` takes longer than an impact
-    found.contactlab_impact_follow_all.argtypes = (
-        ctypes.c_long, pointer, ctypes.c_double, ctypes.c_int, pointer, pointer,
-    )  # fmt: skip
-    found.contactlab_impact_follow_all.restype = None
-    found.contactlab_impact_follow_kept.argtypes = (
-        pointer, ctypes.c_double, ctypes.c_int, ctypes.c_long, pointer, pointer, pointer,
-    )  # fmt: skip
-    found.contactlab_impact_follow_kept.restype = ctypes.c_long
-    return found, COMPILED
+    words = compiled.told()
+    return words if words == compiled.COMPILED else f"{BY_PYTHON}: {words}"
 
 
 def follow(

@@ -29,6 +29,7 @@ from contactlab.impact.hertz import slips_throughout
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import greater, spread
 from contactlab.numeric.types import Array, Mask, Real
+from contactlab_laws.compiled import library
 from contactlab_laws.fronts import compiled
 from contactlab_laws.jaeger.gross_slip import gross_slip
 from contactlab_laws.tables.elastic import ERROR, rebound
@@ -121,7 +122,7 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
 
     def solved(self, psi1: Array, chi: Array) -> Any:
         """Return psi2 - psi1 by the compiled law; None where it does not answer for all."""
-        if compiled.library() is None:
+        if library() is None:
             return None
         slips = slips_throughout(psi1, chi)
         change, _, known = compiled.central(np.where(slips, 0.5, psi1), chi)
@@ -129,7 +130,7 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
 
     def cost(self, scene: Scene, accuracy: float | None) -> Cost:
         """Return many impacts if none is followed, few if none has an answer from the table."""
-        by_table, known = bool(np.all(scene.chi <= LARGEST_CHI)), compiled.library() is not None
+        by_table, known = bool(np.all(scene.chi <= LARGEST_CHI)), library() is not None
         least = ERROR if by_table else COMPILED
         if self.table and (by_table or known) and (accuracy is None or accuracy >= least):
             block = WHOLE_IMPACTS
@@ -169,7 +170,7 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
 
 def _solve_in_c(scene: Scene, where: Mask) -> tuple[WholeImpact, ...]:
     """Return the answers of the compiled law, where it solves central impacts."""
-    if compiled.library() is None:
+    if library() is None:
         return ()
     columns = np.broadcast_arrays(scene.psi1, scene.chi, where)
     psi1, chi, wanted = (np.ravel(column) for column in columns)

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlab.numeric.types import Array
+from contactlab_laws.compiled import library
 from contactlab_laws.fronts import compiled
 from contactlab_laws.fronts.path import Impact
 from contactlab_laws.fronts.series import ORDER
@@ -66,7 +67,7 @@ def kept(numbers: Sequence[float], tolerance: float, most: int) -> tuple[Any, in
     most : int
         Steps by Python's solver after which the impact is given up.
     """
-    if compiled.library() is not None:
+    if library() is not None:
         ends, status, rows = compiled.kept(numbers, tolerance)
         if status != compiled.MEMORY:
             return ends, status, Steps.of(rows)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +51,8 @@ MOST_PULLS = 10
 TURNS, LEADING = 3, 0.4
 #: Energy of the deepest contact that is followed, over that of the approach without friction.
 DEEPEST = 1e10
+#: Sentence on an impact that grows deeper.
+TOO_DEEP = "Friction presses the contact deeper than the steps resolve."
 
 
 def needed_steps(scene: Scene, normal: NormalMotion, law: CausalTangentialLaw) -> Real:
@@ -112,12 +114,58 @@ def march_coupled(
     possible = np.isfinite(count)
     if not np.any(possible):
         return TangentialMotion.nothing(scene.shape, *refused, axes=kinetics.slip_axes(scene))
-    march = _March(scene, normal, law, count, usual)
+    divided = divide(scene, normal, count, usual)
+    if observer is None:
+        from contactlab_laws.springs import compiled  # it takes springs alone
+
+        motion = compiled.march(scene, normal, law, divided, refused)
+        if motion is not None:
+            return motion
+    march = _March(scene, normal, law, divided)
     if not np.all(possible):
         left_out = ~np.broadcast_to(possible, scene.shape)
         march.fail(refused[0], np.broadcast_to(refused[1], scene.shape)[left_out], left_out)
         march.alive &= ~left_out
     return march.run(observer)
+
+
+class Division(NamedTuple):
+    """Steps of impacts, numbers or arrays of the batch shape.
+
+    Attributes
+    ----------
+    step : float or array
+        Width in s; NaN where an impact is not followed.
+    leading : float or array
+        So many steps grow evenly at first, where forces depend on rates.
+    longest : float or array
+        Approaches without friction after which an impact is given up.
+    most : float or array
+        Steps after which it is.
+    """
+
+    step: Real
+    leading: Real
+    longest: Real
+    most: Real
+
+
+def divide(scene: Scene, normal: NormalMotion, count: Real, usual: float) -> Division:
+    """Return the steps of impacts, ``count`` and ``usual`` as of ``march_coupled``."""
+    longest = LONGEST / np.sqrt(np.maximum(kinetics.free_share(scene), LEAST_SHARE))
+    # steps raised for a contact that grows without end are no reason to follow it longer
+    lasting = np.where(_ended(normal), count, np.minimum(count, usual))
+    with np.errstate(invalid="ignore"):
+        step = np.where(np.isfinite(count), _duration(normal) / np.asarray(count), math.nan)
+    return Division(step, np.ceil(LEADING * np.asarray(count)), longest, longest * lasting)
+
+
+def tell_too_long(longest: float, compressions: int) -> str:
+    """Return the sentence on an impact that is given up as it lasts too long."""
+    return (
+        f"After {longest:.3g} durations of the approach without friction and {compressions} "
+        f"compression{'s' * (compressions > 1)}."
+    )
 
 
 def _nearer(tried: list[tuple[Real, Real]], answer: Real) -> Real:
@@ -145,8 +193,7 @@ class _March:
         scene: Scene,
         normal: NormalMotion,
         law: CausalTangentialLaw,
-        count: Real,
-        usual: float,
+        divided: Division,
     ) -> None:
         self.scene, self.normal, self.law, self.shape = scene, normal, law, scene.shape
         self.axes = 1 if scene.planar else 2
@@ -155,13 +202,7 @@ class _March:
         def entry(value: Real) -> Real:
             return float(value) if plain else np.array(np.broadcast_to(value, scene.shape))
 
-        self.step = entry(np.asarray(_duration(normal)) / count)
-        self.leading = np.ceil(LEADING * count)
-        self.longest = entry(LONGEST / np.sqrt(np.maximum(kinetics.free_share(scene), LEAST_SHARE)))
-        most = np.asarray(self.longest) * count
-        # steps raised for a contact that grows without end are no reason to follow it longer
-        in_vain = np.asarray(self.longest) * np.minimum(count, usual)
-        self.most = entry(np.where(_ended(normal), most, in_vain))
+        self.step, self.leading, self.longest, self.most = map(entry, divided)
         W: Any = scene.inverse_mass
         size = 1 + self.axes
         self.W = [[entry(W[..., i, j]) for j in range(size)] for i in range(size)]
@@ -187,8 +228,7 @@ class _March:
             self._follow(observer)
             jammed = self.greatest[1] > DEEPEST**0.4 * np.asarray(self.normal.maximum_approach)
             if np.any(jammed):
-                sentence = "Friction presses the contact deeper than the steps resolve."
-                self.fail(Status.UNRESOLVED, sentence, jammed)
+                self.fail(Status.UNRESOLVED, TOO_DEEP, jammed)
         except KeyboardInterrupt:
             raise
         except faults.LawFaultError as fault:
@@ -313,11 +353,7 @@ class _March:
         """Give up impacts that last too long."""
         count = int(np.max(self.compressions, where=late, initial=1))
         longest = float(np.max(self.longest, where=late, initial=LONGEST))
-        sentence = (
-            f"After {longest:.3g} durations of the approach without friction and {count} "
-            f"compression{'s' * (count > 1)}."
-        )
-        self.fail(Status.NOT_SEPARATED, sentence, late)
+        self.fail(Status.NOT_SEPARATED, tell_too_long(longest, count), late)
         self.alive = np.logical_and(self.alive, np.logical_not(late))
 
     def _refuse_below_zero(self, contact: NormalContact) -> None:

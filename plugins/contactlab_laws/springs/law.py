@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import attrs
+import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import (
@@ -28,8 +29,9 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Rule, choice, count, flag, quantity, refuse
 from contactlab.numeric.types import Real
 from contactlab_laws.differences import table as differences
-from contactlab_laws.jaeger.law import ProfileLaw, State
-from contactlab_laws.springs import doubling, errors, viscous, viscous_steps
+from contactlab_laws.jaeger.law import ProfileLaw, State, alike
+from contactlab_laws.jaeger.partial_slip import Scales
+from contactlab_laws.springs import compiled, doubling, errors, viscous, viscous_steps
 
 #: The word that springs without a loss in shear do not offer.
 NO_LOSS = frozenset({"shares_loss"})
@@ -148,7 +150,7 @@ class Springs(ProfileLaw, CausalTangentialLaw):
         if not measured:
             return Errors()
         if scene.inverse_mass is not None:
-            return errors.of_bodies(scene, self._even(), steps, shared=shared)
+            return errors.of_bodies(scene, self.even_springs(), steps, shared=shared)
         doubling = self.grid == "doubling"
         return errors.of_spheres(scene, self.springs, steps, shared=shared, doubling=doubling)
 
@@ -192,7 +194,7 @@ class Springs(ProfileLaw, CausalTangentialLaw):
             return self._viscous(
                 scene, normal, spanned, spanned=viscous.SPARE, grows=True, vectors=vectors
             )
-        return doubling.start(scene, self._even(), spanned=spanned, vectors=vectors)
+        return doubling.start(scene, self.even_springs(), spanned=spanned, vectors=vectors)
 
     def _viscous(
         self,
@@ -206,7 +208,7 @@ class Springs(ProfileLaw, CausalTangentialLaw):
     ) -> viscous.State:
         """Return springs that share the loss of the normal law, lengths in units of ``unit``."""
         law: Any = normal.law
-        springs = self._even() if grows else self.springs
+        springs = self.even_springs() if grows else self.springs
         return viscous.start(
             scene,
             law,
@@ -218,7 +220,7 @@ class Springs(ProfileLaw, CausalTangentialLaw):
             vectors=vectors,
         )
 
-    def _even(self) -> int:
+    def even_springs(self) -> int:
         """Return the number of springs, one more if odd: a doubling grid merges pairs."""
         return self.springs + self.springs % 2
 
@@ -244,7 +246,23 @@ class Springs(ProfileLaw, CausalTangentialLaw):
             return None
         if shares_loss(self, normal.law):
             return viscous_steps.advance_all(self.start(scene, normal), scene, normal, steps)
-        return super().advance_all(scene, normal, steps)
+        found = self._compiled(scene, normal, steps)
+        return super().advance_all(scene, normal, steps) if found is None else found
+
+    def _compiled(
+        self, scene: Scene, normal: NormalMotion, steps: Steps
+    ) -> AllStepsResponse | None:
+        """Return the forces of springs without loss by the compiled march; None without it."""
+        if type(self) is not Springs:  # a law derived from it may differ in the steps
+            return None
+        scales, count = Scales.of(scene, normal), len(steps.kick)
+        radius: Any = np.asarray(steps.contact.radius / scales.radius)
+        pressure = np.asarray(scales.pressure(radius, steps.contact.friction_load))
+        radius, pressure = radius.reshape(count, -1), pressure.reshape(count, -1)
+        if not (alike(radius) and alike(pressure)):
+            return None
+        columns = np.square(radius[:, 0]), pressure[:, 0]
+        return compiled.advance_all(self.springs, scene, scales, steps, columns)
 
     def fields(self, state: State | doubling.State | viscous.State) -> Mapping[str, NDArray[Any]]:
         """Return radius, displacement and limit (m), stuck and slipping of every spring."""

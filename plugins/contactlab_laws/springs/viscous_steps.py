@@ -12,7 +12,7 @@ from contactlab.contracts import AllStepsResponse, NormalMotion, Steps
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array, Real
 from contactlab_laws.jaeger.step import ROUNDING
-from contactlab_laws.springs import kelvin_voigt, viscous
+from contactlab_laws.springs import compiled, kelvin_voigt, viscous
 from contactlab_laws.springs.directions import Line, relax_limit
 from contactlab_laws.springs.slip_velocity import Slip, share_of_edge, solve_slip
 from contactlab_laws.springs.turning import TINY, Vectors
@@ -79,6 +79,9 @@ def advance_all(
     columns = contact.edge, contact.excess, decay
     if not all(map(_alike, columns)):
         return None
+    told = columns[0][:, 0], columns[1][:, 0], time[:, 0]
+    if (found := compiled.advance_all(springs, scene, state.scales, steps, told)) is not None:
+        return found
     grid = _grid(springs, *(each[:, 0] for each in columns))
     if grid is None:
         return None
