@@ -7,7 +7,7 @@ options (``quantity``, ``count``, ``choice``, ``flag``, ``restitution``), status
 from contactlab.contracts import faults, judges
 from contactlab.contracts.contact import NormalContact, without_tension
 from contactlab.contracts.integrator import CoupledIntegrator, Integrator
-from contactlab.contracts.law import API_VERSION, Law, claims
+from contactlab.contracts.law import API_VERSION, Law, claims, resolution_of
 from contactlab.contracts.motion import (
     ClosedFormMotion,
     NormalMotion,
@@ -38,6 +38,7 @@ from contactlab.contracts.tangential import (
     CoupledTangentialLaw,
     Errors,
     Increment,
+    Resolutions,
     Sampled,
     SteppedTangentialLaw,
     Steps,
@@ -91,6 +92,7 @@ __all__ = [
     "Pair",
     "PathTangentialLaw",
     "Real",
+    "Resolutions",
     "Rule",
     "Sample",
     "Sampled",
@@ -119,6 +121,7 @@ __all__ = [
     "no_force",
     "number_in",
     "quantity",
+    "resolution_of",
     "restitution",
     "shares_loss",
     "sliding",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 
-from contactlab.contracts.law import Law
+from contactlab.contracts.law import Law, resolution_of
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.tangential import Errors, TangentialLaw
 from contactlab.contracts.tangential_motion import Observer, TangentialMotion
@@ -45,7 +45,7 @@ class Integrator(Law, kind="integrator"):
 
         Errors are estimated by refining this value.
         """
-        return float(getattr(self, self.resolution)) if self.resolution else 0.0
+        return float(resolution_of(self)) if self.resolution else 0.0
 
     def errors(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Errors:
         """Return declared bounds of the numerical errors; NaN, the default: not declared."""

@@ -56,7 +56,9 @@ class Law(ABC):
     4. ``needs`` are the words of the normal law, and the classes of the other laws, beside which
        alone the law runs: a constant too. Parameters take words away from both by ``waives``.
     5. ``resolution`` names the parameter that makes answers finer, or is None: a count
-       (``steps``, ``annuli``), finer the greater, or ``tolerance``, finer the smaller.
+       (``steps``, ``annuli``), finer the greater, or ``tolerance``, finer the smaller. Where nobody
+       names it, it may be None: ``TangentialLaw.resolutions`` then chooses it, or it is
+       ``usual_resolution``.
     6. ``expected_failures`` maps the checks of ``contactlab.testing`` that the law fails by
        its nature to the reasons.
     """
@@ -73,6 +75,8 @@ class Law(ABC):
     needs: ClassVar[Any] = frozenset()
     #: Parameter that makes answers finer.
     resolution: ClassVar[str | None] = None
+    #: What it is where it is None.
+    usual_resolution: ClassVar[float | None] = None
     #: Checks that it fails by its nature, with the reasons.
     expected_failures: ClassVar[Any] = MappingProxyType({})
 
@@ -129,3 +133,16 @@ def requirements(law: Law) -> frozenset[str | type]:
     """
     required: frozenset[str | type] = law.needs.difference(law.waives())
     return required
+
+
+def resolution_of(law: Law) -> Any:
+    """Return the resolution of a law, a number: the usual one where nobody named it; None of none.
+
+    Parameters
+    ----------
+    law : Law
+    """
+    if law.resolution is None:
+        return None
+    named = getattr(law, law.resolution)
+    return law.usual_resolution if named is None else named

@@ -112,6 +112,22 @@ class Errors(NamedTuple):
     restitution: Real = math.nan
 
 
+class Resolutions(NamedTuple):
+    """Resolutions of impacts for which nobody named any, of the batch shape.
+
+    Attributes
+    ----------
+    own, integrator : float or array
+        Of the tangential law, and of the integrator.
+    reason : str
+        Why these, for a plan.
+    """
+
+    own: Real
+    integrator: Real
+    reason: str
+
+
 def shares_loss(tangential: Law, normal: Law) -> bool:
     """Return whether a tangential law loses energy in shear as a viscous normal law in pressure.
 
@@ -175,6 +191,19 @@ class TangentialLaw(Law, kind="tangential"):
             Error of psi2 that the integrator controls; None for the law's own.
         """
         return Errors()
+
+    def resolutions(self, scene: Scene, normal: Law, integrator: Law) -> Resolutions | None:
+        """Return its resolution and the integrator's for each impact, where nobody named either.
+
+        None, the default: they are ``usual_resolution``. Impacts with the same pair of numbers are
+        solved together, so that few pairs are best.
+
+        Parameters
+        ----------
+        normal, integrator : Law
+            The laws beside it.
+        """
+        return None
 
     def books_bound(self, scene: Scene) -> Real:
         """Return the largest imbalance of the energy books, over the energy at the start.

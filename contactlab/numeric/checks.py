@@ -396,12 +396,15 @@ def count(*, default: object = attrs.NOTHING, least: int = 1, most: int = 10_000
     Parameters
     ----------
     default : int, optional
-        Value if none is given; without a default the number is required.
+        Value if none is given; without a default the number is required. None may be given where
+        it is the default.
     least, most : int
         Smallest and largest accepted value.
     """
 
-    def checked(name: str, value: object) -> int:
+    def checked(name: str, value: object) -> Any:
+        if value is None and default is None:
+            return None
         return whole(name, value, least=least, most=most)
 
     rule = f"must be a whole number from {least} to {most}"

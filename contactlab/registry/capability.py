@@ -31,6 +31,8 @@ class Capability(NamedTuple):
         True if the tangential law loses energy in shear as the normal law in pressure.
     refusing : tuple of Law
         The laws that may refuse a scene.
+    unnamed : tuple of Law
+        The laws that have a resolution, and nobody named it.
     """
 
     closed: ClosedFormNormalLaw | None
@@ -44,6 +46,7 @@ class Capability(NamedTuple):
     tangential_claims: frozenset[str]
     shares_loss: bool
     refusing: tuple[Law, ...]
+    unnamed: tuple[Law, ...]
 
     @classmethod
     def of(cls, normal: NormalLaw, tangential: TangentialLaw, integrator: Integrator) -> Capability:
@@ -61,4 +64,10 @@ class Capability(NamedTuple):
             tangential_claims=claims(tangential),
             shares_loss=shares_loss(tangential, normal),
             refusing=tuple(filter(may_refuse, laws)),
+            unnamed=tuple(law for law in laws if law.resolution and _of(law) is None),
         )
+
+
+def _of(law: Law) -> object:
+    """Return the resolution of a law as it was named, or None."""
+    return getattr(law, law.resolution or "", None)

@@ -59,6 +59,9 @@ STEPS = {SteppedTangentialLaw}
 class Laws:
     """Three laws that fit together, the kinds of those that the user ``named``, what they can do.
 
+    Resolutions of the kinds ``by_scene`` were chosen for impacts, for a ``reason``, as nobody named
+    them.
+
     Iterating yields the laws in the order of their kinds.
     """
 
@@ -66,6 +69,8 @@ class Laws:
     tangential: TangentialLaw
     integrator: Integrator
     named: frozenset[str] = frozenset(KINDS)
+    by_scene: frozenset[str] = frozenset()
+    reason: str = ""
     capability: Capability = attrs.field(init=False, eq=False, repr=False)
 
     @capability.default

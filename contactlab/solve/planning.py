@@ -43,6 +43,7 @@ from contactlab.registry.composition import Laws
 from contactlab.registry.law_words import in_words, name_of
 from contactlab.solve.answers import Mask
 from contactlab.solve.normal_motion import normal_motion, normal_or_failed
+from contactlab.solve.resolution import as_named, tell_resolution
 from contactlab.solve.solve import ways
 from contactlab.solve.way import WHOLE, Masks, Way, ask
 
@@ -110,18 +111,19 @@ def _words(
     masks = Masks.of(columns)
     if not some(masks.known):
         return (), (), ()
-    used = way.laws
+    used = as_named(way.laws)
     law = f"{in_words(used.normal)}, {way.how()}"
     computed = [Clause(f"normal motion: {law}", masks.known)]
     elongation = elongation_of(way.scene.pair)
     if some(elliptic := masks.known & (elongation > 1.0)):
         text = "contact: an ellipse of semi-axes {:.3g} : 1, by the circle that is as stiff"
         computed.append(Clause(text, elliptic, (spread(elongation, scene.shape),)))
-    if used is not laws:
+    if any(type(new) is not type(old) for old, new in zip(laws, used, strict=True)):
         computed.append(Clause(_in_place(laws, used), masks.known))
     if some(masks.marched):
         text = f"tangential motion: {in_words(used.integrator)} over {in_words(used.tangential)}"
         computed.append(Clause(text, masks.marched, code=TANGENTIAL_MOTION))
+        computed += tell_resolution(way.laws, masks.marched)
     alone = way.one_by_one(masks)
     if scene.shape and some(alone) and (path := used.capability.path) is not None:
         cost = path.cost(way.scene.central, used.integrator.accuracy)
@@ -147,7 +149,7 @@ def _words(
             error = columns.psi2_error
             from contactlab.solve.error_cautions import of_errors  # of marches only
 
-            cautions += tuple(of_errors(used, way.scene, error, masks.marched, advice))
+            cautions += tuple(of_errors(way.laws, way.scene, error, masks.marched, advice))
     return tuple(computed), tuple(left_out), cautions
 
 

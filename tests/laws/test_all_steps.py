@@ -14,7 +14,7 @@ from tests.testing.broken_impacts import AllAtOnce
 
 
 def test_batches_of_one_scaled_contact_are_taken_at_once(monkeypatch):
-    """Hertz impacts of any speed are one contact in units of their own; of two axes none in Python."""
+    """Hertz impacts of any speed are one contact in units of their own; two axes none in Python."""
     law = contactlab.create("tangential.springs", springs=9)
     impact = Scene.nondimensional(psi1=np.array([0.3, 1.2, 3.0]), chi=np.array([1.0, 1.4, 2.0]))
     unlike = attrs.evolve(impact, normal_speed=np.array([0.1, 1.0, 7.0]))

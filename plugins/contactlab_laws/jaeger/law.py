@@ -17,6 +17,7 @@ from contactlab.contracts import (
     NormalMotion,
     Steps,
     TangentialResponse,
+    resolution_of,
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat
@@ -39,14 +40,17 @@ class State(NamedTuple):
 
 
 class ProfileLaw(PartialSlip, AllStepsTangentialLaw):
-    """A law of independent springs; a subclass gives their number."""
+    """A law of independent springs; ``resolution`` is their number."""
 
     expected_failures: ClassVar[Mapping[str, str]] = {
         "coulomb_at_a_point_damped": "each spring is limited separately: that is Coulomb's law "
         "at a point only while the stuck part is a disc, as in elastic Hertz impacts",
     }
 
-    springs: int
+    @property
+    def number(self) -> int:
+        """The number of springs."""
+        return int(resolution_of(self))
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of every law, of separately limited springs, and of the pressure."""
@@ -70,7 +74,7 @@ class ProfileLaw(PartialSlip, AllStepsTangentialLaw):
     ) -> tuple[TangentialResponse, State]:
         """Return the force after the step."""
         shape, scales, memory = state
-        own = bundle(self.springs)
+        own = bundle(self.number)
         radius = step.float_of_one(after.radius) / scales.radius
         pressure = scales.pressure(radius, step.float_of_one(after.friction_load))
         radius, pressure = step.common(radius, shape), step.common(pressure, shape)
@@ -89,8 +93,8 @@ class ProfileLaw(PartialSlip, AllStepsTangentialLaw):
     ) -> AllStepsResponse | None:
         """Return the forces of one impact, or of a batch whose contacts differ in scale only."""
         # Batches of several axes and runs of large tables are faster step by step.
-        shape, own = scene.shape, bundle(self.springs)
-        columns = max(self.springs, math.prod(shape))
+        shape, own = scene.shape, bundle(self.number)
+        columns = max(self.number, math.prod(shape))
         if len(shape) > 1 or len(steps.drift) * columns > LARGEST_RUN:
             return None
         scales = Scales.of(scene, normal)
@@ -118,7 +122,7 @@ class ProfileLaw(PartialSlip, AllStepsTangentialLaw):
         of w where the spring is at its limit, 0 elsewhere.
         """
         shape, scales, memory = state
-        squares = bundle(self.springs).squares
+        squares = bundle(self.number).squares
         items = math.prod(shape)
 
         def of_all(rows: Array) -> Array:

@@ -23,6 +23,7 @@ from contactlab.contracts import (
     claims,
     faults,
     judges,
+    resolution_of,
     shares_loss,
 )
 from contactlab.contracts.status import Status
@@ -121,18 +122,24 @@ class FixedSteps(CoupledIntegrator):
     """Even steps over the contact's duration, under any normal law; a subclass samples them."""
 
     resolution: ClassVar[str | None] = "steps"
+    usual_resolution: ClassVar[float | None] = 200
     needs: ClassVar[frozenset[type]] = frozenset({SteppedTangentialLaw})
 
-    steps: int = count(default=200, most=MOST_STEPS)
+    steps: int | None = count(default=None, most=MOST_STEPS)
     refine: bool = flag(default=True)
 
     @abstractmethod
     def divide(self, normal: NormalMotion, count: int, *, graded: bool) -> Steps:
         """Return ``count`` steps of a normal motion, ``graded`` towards its ends or even."""
 
+    @property
+    def _steps(self) -> int:
+        """The steps of an impact whose stiffness they resolve."""
+        return int(resolution_of(self))
+
     def _taken(self, needed: Real) -> Real:
         """Return how many steps each impact takes: ``steps``, or more if these are too few."""
-        return refine_count(self.steps, needed) if self.refine else float(self.steps)
+        return refine_count(self._steps, needed) if self.refine else float(self._steps)
 
     def resolution_for(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Real:
         """Return how many steps each impact takes."""
@@ -155,8 +162,8 @@ class FixedSteps(CoupledIntegrator):
 
     def _take_coupled(self, needed: Real) -> Real:
         """Return the steps of each impact in the approach without friction; infinite if refused."""
-        most = MOST_STEPS if self.refine else self.steps
-        return np.where(needed <= most, np.maximum(self.steps, needed), np.inf)
+        most = MOST_STEPS if self.refine else self._steps
+        return np.where(needed <= most, np.maximum(self._steps, needed), np.inf)
 
     def cautions(
         self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw
@@ -164,14 +171,14 @@ class FixedSteps(CoupledIntegrator):
         """Return a sentence if the steps are too few: the steps taken instead, or needed."""
         needed = needed_steps(normal, tangential, scene)
         most = _most(needed)
-        if most <= self.steps:
+        if most <= self._steps:
             return ()
-        share = for_share(np.broadcast_to(needed > self.steps, scene.shape))
+        share = for_share(np.broadcast_to(needed > self._steps, scene.shape))
         if self.refine and most <= MOST_STEPS:
-            to = int(np.max(refine_count(self.steps, needed)))
-            raised = f"steps raised from {self.steps} to {to}{share}"
+            to = int(np.max(refine_count(self._steps, needed)))
+            raised = f"steps raised from {self._steps} to {to}{share}"
             return (f"{raised}: fewer do not resolve the stiffness",)
-        return (f"{self.steps} steps are too few{share}: this scene needs {most:.6g}",)
+        return (f"{self._steps} steps are too few{share}: this scene needs {most:.6g}",)
 
     def integrate(
         self,
@@ -197,7 +204,7 @@ class FixedSteps(CoupledIntegrator):
                 needed = needed_steps(normal, law)
             if observer is not None:
                 needed = float(np.max(needed))
-            return in_groups(normal, self.steps, needed, self._taken(needed), even)
+            return in_groups(normal, self._steps, needed, self._taken(needed), even)
         except faults.LawFaultError as fault:
             return TangentialMotion.nothing(scene.shape, fault.status, fault.detail)
 
@@ -212,7 +219,7 @@ class FixedSteps(CoupledIntegrator):
         assert isinstance(tangential, CausalTangentialLaw)
         needed = coupled.needed_steps(scene, normal, tangential)
         taken = self._take_coupled(needed)
-        refused = Status.TOO_FEW_STEPS, refusals(self.steps, needed)
+        refused = Status.TOO_FEW_STEPS, refusals(self._steps, needed)
         return coupled.march_coupled(
-            scene, normal, tangential, taken, observer, refused, usual=self.steps
+            scene, normal, tangential, taken, observer, refused, usual=self._steps
         )

@@ -40,7 +40,7 @@ class PaperSteps(FixedSteps):
 
     api_version: ClassVar[int] = 2
 
-    steps: int = count(default=500, most=MOST_STEPS)
+    steps: int | None = count(default=500, most=MOST_STEPS)
 
     def divide(self, normal: NormalMotion, count: int, *, graded: bool) -> Steps:
         """Return steps sampled at their ends, even whatever the contact."""
@@ -56,8 +56,9 @@ class Symplectic(FixedSteps):
 
     Parameters
     ----------
-    steps : int
-        Steps from first touch to separation.
+    steps : int, optional
+        Steps from first touch to separation: 200, or what the tangential law asks for, if neither
+        has a resolution by name.
     refine : bool
         Where ``steps`` are too few for the stiffness of the law: take more (the default),
         or refuse with the status ``TOO_FEW_STEPS`` and the number needed.

@@ -33,14 +33,16 @@ LONG, NONE, DEEP, INPUT = 1, 2, 3, 4
 AT_A_TIME = 1e6
 
 
-def answers(law: Law, normal: Law) -> bool:
-    """Return whether both are laws that are compiled, and there is a compiled library."""
+def knows(law: Law, normal: Law, integrator: Law | None = None) -> bool:
+    """Return whether these are laws that are compiled."""
     from contactlab_laws.hertz import Hertz
+    from contactlab_laws.march.schemes import Symplectic
     from contactlab_laws.springs.law import Springs
     from contactlab_laws.viscoelastic.law import Viscoelastic
 
     # a law that is derived from them may answer otherwise
-    return type(law) is Springs and type(normal) in (Hertz, Viscoelastic) and library() is not None
+    known = type(law) is Springs and type(normal) in (Hertz, Viscoelastic)
+    return known and type(integrator) in (Symplectic, type(None))
 
 
 def march(
@@ -51,9 +53,9 @@ def march(
     refused: tuple[Status, str | NDArray[np.object_]],
 ) -> TangentialMotion | None:
     """Return the motion of ``march_coupled``; None where Python has to follow an impact."""
-    if not answers(law, normal.law):
+    if (found := library()) is None or not knows(law, normal.law):
         return None
-    found, shape = library(), scene.shape
+    shape = scene.shape
     items, axes = math.prod(shape), 1 if scene.planar else 2
     loss, springs = shares_loss(law, normal.law), law.even_springs()
     if not loss and "elastic_hertz" not in normal.claims:

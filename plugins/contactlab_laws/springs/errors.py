@@ -15,6 +15,7 @@ import numpy as np
 from contactlab.contracts import Errors
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import plain
 from contactlab.numeric.types import Real
 from contactlab_laws.march.coupled import deepest
 
@@ -40,6 +41,21 @@ LARGEST_LAM, JAMS, LEAST_FREE = 3.0, 1.0, 0.1
 #: times the root of ``deepest``; that of psi2 half of 1 + chi + abs(eta) times as large. Measured
 #: up to this chi: at most .9 of it in 600 random planar impacts and 100 in space, e .02 to .999.
 LOSS_BY_SPRINGS, LOSS_BY_STEPS, LOSS_CHI = 2.0, 4.0, 20.0
+#: Springs and steps that leave an error of 2.1e-3, half of it each: over the root of x, and over
+#: its power 3/4; the fewest; and x up to which they follow it, the largest at which errors were
+#: measured, in powers of ``LEVEL``, so that impacts of a batch share them.
+SPRINGS, STEPS, FEWEST_SPRINGS, FEWEST_STEPS = 21.0, 134.0, 20, 120
+LARGEST, LEVEL = 1000.0, math.sqrt(2.0)
+
+
+def resolve(scene: Scene) -> tuple[Real, Real]:
+    """Return springs, an even number, and steps that leave an error of 2.1e-3 in psi2."""
+    x = np.asarray(kinetics.largest_chi(scene) + kinetics.size_of(scene, np.asarray(scene.eta)))
+    # the infinite eta of an impact without friction is none
+    x = np.clip(np.where(np.isfinite(x), x, 0.0), LEVEL**-1, LARGEST)
+    x = np.minimum(LEVEL ** np.ceil(np.log(x) / math.log(LEVEL) - 1e-9), LARGEST)
+    springs = 2.0 * np.ceil(0.5 * np.maximum(SPRINGS * np.sqrt(x), FEWEST_SPRINGS))
+    return plain(springs), plain(np.ceil(np.maximum(STEPS * x**0.75, FEWEST_STEPS)))
 
 
 def of_spheres(scene: Scene, springs: int, steps: Real, *, shared: bool, doubling: bool) -> Errors:

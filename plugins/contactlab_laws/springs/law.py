@@ -14,12 +14,15 @@ from contactlab.contracts import (
     CausalTangentialLaw,
     Errors,
     Increment,
+    Law,
     NormalContact,
     NormalMotion,
+    Resolutions,
     Steps,
     TangentialLaw,
     TangentialResponse,
     WholeImpact,
+    resolution_of,
     shares_loss,
     sliding,
     unfollowed_rate,
@@ -28,6 +31,7 @@ from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Rule, choice, count, flag, quantity, refuse
 from contactlab.numeric.types import Real
+from contactlab_laws.compiled import library, told
 from contactlab_laws.differences import table as differences
 from contactlab_laws.jaeger.law import ProfileLaw, State, alike
 from contactlab_laws.jaeger.partial_slip import Scales
@@ -57,10 +61,12 @@ class Springs(ProfileLaw, CausalTangentialLaw):
 
     Parameters
     ----------
-    springs : int
+    springs : int, optional
         Springs along the radius of the largest contact. With four steps to a spring the two
         errors are about equal at 100 steps; 12 springs and 80 steps leave 4e-4 in psi2
-        at chi = 1.44, 3e-3 at chi = 3. Even with ``grid="doubling"``.
+        at chi = 1.44, 3e-3 at chi = 3. Even with ``grid="doubling"``. Where nobody names springs
+        nor steps, both grow with chi + abs(eta), so that psi2 is off by 2.1e-3 at most up to 1,000,
+        if the march is compiled; else they are 50 and 200.
     grid : str
         What the springs span: the ``"largest"`` contact of the impact, or ``"doubling"``, a power
         of two times the radius of the pair that follows the contact as it grows and shrinks
@@ -86,27 +92,37 @@ class Springs(ProfileLaw, CausalTangentialLaw):
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = ProfileLaw.offers | {"vectors", "shares_loss"}
     resolution: ClassVar[str | None] = "springs"
+    usual_resolution: ClassVar[float | None] = 50
 
-    springs: int = count(default=50, most=100_000)
+    springs: int | None = count(default=None, most=100_000)
     grid: str = choice("largest", "doubling", default="largest")
     shear_loss: float = quantity("1", rule=SHEAR_LOSS, default=1.0)
     table: bool = flag(default=False)
 
     def __attrs_post_init__(self) -> None:
-        if self.grid == "doubling" and self.springs % 2:
+        if self.grid == "doubling" and self.number % 2:
             rule = 'must be even with grid = "doubling", which merges springs in pairs'
-            raise refuse("springs", self.springs, rule, f"take {self.springs + 1}")
+            raise refuse("springs", self.springs, rule, f"take {self.number + 1}")
 
     def waives(self) -> frozenset[str]:
         """Return the loss that springs share with a viscous normal law, if they are told not to."""
         return super().waives() if self.shear_loss else NO_LOSS
+
+    def resolutions(self, scene: Scene, normal: Law, integrator: Law) -> Resolutions | None:
+        """Return springs and steps by chi + abs(eta), where the march is compiled."""
+        if self.grid == "doubling" or not compiled.knows(self, normal, integrator):
+            return None
+        if library() is None:
+            usual = float(resolution_of(self)), float(resolution_of(integrator))
+            return Resolutions(*usual, f"the usual, as the march is not compiled, {told()}")
+        return Resolutions(*errors.resolve(scene), "by chi + abs(eta), in a compiled march")
 
     def books_bound(self, scene: Scene) -> Real:
         """Return 0.05 + 0.03/n: the fewest steps leave 0.03, one spring 0.02 whatever the steps.
 
         Both fall as the squares of steps and springs; with 50 and 200 it is 1e-4.
         """
-        return 0.05 + 0.03 / self.springs
+        return 0.05 + 0.03 / self.number
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
         """Return the whole-impact answers, with those of gross slip throughout."""
@@ -144,7 +160,7 @@ class Springs(ProfileLaw, CausalTangentialLaw):
         """Return the errors under Hertz, and of springs that wholly share a loss; else NaN."""
         shared = shares_loss(self, normal.law)
         if shared:
-            measured = self.shear_loss == 1.0 and self.springs >= errors.LEAST_MEASURED
+            measured = self.shear_loss == 1.0 and self.number >= errors.LEAST_MEASURED
         else:
             measured = "elastic_hertz" in normal.claims
         if not measured:
@@ -152,7 +168,7 @@ class Springs(ProfileLaw, CausalTangentialLaw):
         if scene.inverse_mass is not None:
             return errors.of_bodies(scene, self.even_springs(), steps, shared=shared)
         doubling = self.grid == "doubling"
-        return errors.of_spheres(scene, self.springs, steps, shared=shared, doubling=doubling)
+        return errors.of_spheres(scene, self.number, steps, shared=shared, doubling=doubling)
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of springs, or of their loss where they share one."""
@@ -163,13 +179,13 @@ class Springs(ProfileLaw, CausalTangentialLaw):
         fitted = self.shear_loss != 1.0
         own = evidence.cautions(scene, normal, fitted=fitted)
         own = (*differences.choice(scene, normal, shared=True), *own)
-        if self.springs < errors.LEAST_MEASURED and kinetics.rubs(scene):
-            own = (NOISE.format(self.springs, errors.LEAST_MEASURED), *own)
+        if self.number < errors.LEAST_MEASURED and kinetics.rubs(scene):
+            own = (NOISE.format(self.number, errors.LEAST_MEASURED), *own)
         return (*TangentialLaw.cautions(self, scene, normal), *own)
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return 2 G* a, and half a spring more on a doubling grid, whose cells are not a's."""
-        half = 2.0 / self.springs if self.grid == "doubling" else 0.0  # over a > A/4
+        half = 2.0 / self.number if self.grid == "doubling" else 0.0  # over a > A/4
         return super().stiffness(scene, normal) * (1.0 + half)
 
     def start(self, scene: Scene, normal: NormalMotion) -> Any:
@@ -181,7 +197,7 @@ class Springs(ProfileLaw, CausalTangentialLaw):
                 scene, normal, unit, spanned=None if follows else 1.0, grows=follows
             )
         if self.grid == "doubling":
-            return doubling.start(scene, self.springs)
+            return doubling.start(scene, self.number)
         return super().start(scene, normal)
 
     def begin(self, scene: Scene, normal: NormalMotion, *, vectors: bool = False) -> Any:
@@ -208,7 +224,7 @@ class Springs(ProfileLaw, CausalTangentialLaw):
     ) -> viscous.State:
         """Return springs that share the loss of the normal law, lengths in units of ``unit``."""
         law: Any = normal.law
-        springs = self.even_springs() if grows else self.springs
+        springs = self.even_springs() if grows else self.number
         return viscous.start(
             scene,
             law,
@@ -222,7 +238,7 @@ class Springs(ProfileLaw, CausalTangentialLaw):
 
     def even_springs(self) -> int:
         """Return the number of springs, one more if odd: a doubling grid merges pairs."""
-        return self.springs + self.springs % 2
+        return self.number + self.number % 2
 
     def advance(
         self,
@@ -262,7 +278,7 @@ class Springs(ProfileLaw, CausalTangentialLaw):
         if not (alike(radius) and alike(pressure)):
             return None
         columns = np.square(radius[:, 0]), pressure[:, 0]
-        return compiled.advance_all(self.springs, scene, scales, steps, columns)
+        return compiled.advance_all(self.number, scene, scales, steps, columns)
 
     def fields(self, state: State | doubling.State | viscous.State) -> Mapping[str, NDArray[Any]]:
         """Return radius, displacement and limit (m), stuck and slipping of every spring."""

@@ -1,0 +1,112 @@
+"""Resolutions that nobody named: those that the tangential law asks for, or the usual ones."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.contracts import faults
+from contactlab.contracts.law import law_kind, resolution_of
+from contactlab.numeric.arrays import spread
+from contactlab.outcome.plan import Clause
+from contactlab.registry.composition import Laws
+from contactlab.solve.answers import Mask
+from contactlab.solve.way import Way
+
+#: Why a resolution is the usual one.
+USUAL = "the usual, as nobody named one"
+
+
+def with_resolutions(way: Way, *, as_one: bool) -> list[Way]:
+    """Return the ways of impacts whose laws have resolutions alike, each named.
+
+    Impacts ``as_one`` have the finest that one of them asks for.
+    """
+    laws, scene = way.laws, way.scene
+    found = None
+    if len(laws.capability.unnamed) > 1:
+        with faults.blaming(laws.tangential):
+            found = laws.tangential.resolutions(scene, laws.normal, laws.integrator)
+    if found is None:
+        return [way._replace(laws=_usual(laws))]
+    parts, steps, reason = found
+    if isinstance(parts, float) and isinstance(steps, float):
+        return [way._replace(laws=_chosen(laws, parts, steps, reason))]
+    both = np.stack([spread(each, scene.shape) for each in (parts, steps)])
+    most = both.reshape(2, -1).max(axis=1)
+    same = (both == most.reshape(2, *(1,) * len(scene.shape))).all(axis=0)
+    if as_one or same.all():
+        return [way._replace(laws=_chosen(laws, *most.tolist(), reason))]
+    ways = []
+    for pair in sorted(set(map(tuple, both.reshape(2, -1).T.tolist()))):
+        where = (both == np.reshape(pair, (2, *(1,) * len(scene.shape)))).all(axis=0)
+        part = way.taking(where)
+        ways.append(
+            part._replace(where=_within(way.where, where), laws=_chosen(laws, *pair, reason))
+        )
+    return ways
+
+
+def _within(outer: Any, where: Mask) -> Any:
+    """Return a part of a part as a mask of the whole batch."""
+    if outer is ... or isinstance(outer, slice):
+        return where
+    mask = np.array(outer, dtype=bool)
+    mask[mask] = where
+    return mask
+
+
+def _chosen(laws: Laws, parts: float, steps: float, reason: str) -> Laws:
+    """Return the laws with a number of parts and of steps."""
+    return _with(laws, (("tangential", parts), ("integrator", steps)), reason)
+
+
+def _usual(laws: Laws) -> Laws:
+    """Return the laws with the usual resolutions of those that have none by name."""
+    given = tuple((law_kind(law), resolution_of(law)) for law in laws.capability.unnamed)
+    return _with(laws, given, USUAL)
+
+
+def _with(laws: Laws, resolutions: tuple[tuple[str, float], ...], reason: str) -> Laws:
+    """Return the laws with resolutions, by kind."""
+    try:
+        return _kept(laws, resolutions, reason)
+    except TypeError:  # a law with a parameter that has no hash
+        return _made(laws, resolutions, reason)
+
+
+def _made(laws: Laws, resolutions: tuple[tuple[str, float], ...], reason: str) -> Laws:
+    changed = {}
+    for kind, value in resolutions:
+        law: Any = getattr(laws, kind)
+        changed[kind] = attrs.evolve(law, **{law.resolution: type(law.usual_resolution)(value)})
+    return laws.changed(**changed, by_scene=frozenset(changed), reason=reason)
+
+
+_kept = lru_cache(maxsize=256)(_made)
+
+
+def as_named(laws: Laws) -> Laws:
+    """Return the laws as the user named them."""
+    changed: dict[str, Any] = {}
+    for kind, law in laws.by_kind().items():
+        if kind in laws.by_scene:
+            changed[kind] = attrs.evolve(law, **{law.resolution: None})
+    return laws.changed(**changed, by_scene=frozenset(), reason="") if changed else laws
+
+
+def tell_resolution(laws: Laws, marched: Mask) -> list[Clause]:
+    """Return what is chosen of resolutions, if the scene chose any."""
+    if not laws.by_scene:
+        return []
+    found = {
+        str(law.resolution): float(resolution_of(law))
+        for kind, law in laws.by_kind().items()
+        if kind in laws.by_scene
+    }
+    words = " and ".join(f"{{:.0f}} {name}" for name in found)
+    values = tuple(np.full(marched.shape, value) for value in found.values())
+    return [Clause(f"resolution: {words}: {laws.reason}", marched, values)]
