@@ -16,9 +16,6 @@ from contactlab.registry.composition import Laws
 from contactlab.solve.answers import Mask
 from contactlab.solve.way import Way
 
-#: Why a resolution is the usual one.
-USUAL = "the usual, as nobody named one"
-
 
 def with_resolutions(way: Way, *, as_one: bool) -> list[Way]:
     """Return the ways of impacts whose laws have resolutions alike, each named.
@@ -32,21 +29,19 @@ def with_resolutions(way: Way, *, as_one: bool) -> list[Way]:
             found = laws.tangential.resolutions(scene, laws.normal, laws.integrator)
     if found is None:
         return [way._replace(laws=_usual(laws))]
-    parts, steps, reason = found
+    parts, steps, _ = found
     if isinstance(parts, float) and isinstance(steps, float):
-        return [way._replace(laws=_chosen(laws, parts, steps, reason))]
+        return [way._replace(laws=_chosen(laws, parts, steps, found.reason))]
     both = np.stack([spread(each, scene.shape) for each in (parts, steps)])
     most = both.reshape(2, -1).max(axis=1)
     same = (both == most.reshape(2, *(1,) * len(scene.shape))).all(axis=0)
     if as_one or same.all():
-        return [way._replace(laws=_chosen(laws, *most.tolist(), reason))]
+        return [way._replace(laws=_chosen(laws, float(most[0]), float(most[1]), found.reason))]
     ways = []
     for pair in sorted(set(map(tuple, both.reshape(2, -1).T.tolist()))):
         where = (both == np.reshape(pair, (2, *(1,) * len(scene.shape)))).all(axis=0)
-        part = way.taking(where)
-        ways.append(
-            part._replace(where=_within(way.where, where), laws=_chosen(laws, *pair, reason))
-        )
+        used = _chosen(laws, pair[0], pair[1], found.reason)
+        ways.append(way.taking(where)._replace(where=_within(way.where, where), laws=used))
     return ways
 
 
@@ -67,7 +62,7 @@ def _chosen(laws: Laws, parts: float, steps: float, reason: str) -> Laws:
 def _usual(laws: Laws) -> Laws:
     """Return the laws with the usual resolutions of those that have none by name."""
     given = tuple((law_kind(law), resolution_of(law)) for law in laws.capability.unnamed)
-    return _with(laws, given, USUAL)
+    return _with(laws, given, "")
 
 
 def _with(laws: Laws, resolutions: tuple[tuple[str, float], ...], reason: str) -> Laws:
@@ -99,14 +94,14 @@ def as_named(laws: Laws) -> Laws:
 
 
 def tell_resolution(laws: Laws, marched: Mask) -> list[Clause]:
-    """Return what is chosen of resolutions, if the scene chose any."""
-    if not laws.by_scene:
+    """Return what is chosen of resolutions, if the tangential law says why."""
+    if not laws.reason:
         return []
     found = {
         str(law.resolution): float(resolution_of(law))
         for kind, law in laws.by_kind().items()
         if kind in laws.by_scene
     }
-    words = " and ".join(f"{{:.0f}} {name}" for name in found)
+    words = "up to " + " and ".join(f"{{:.0f}} {name}" for name in found)
     values = tuple(np.full(marched.shape, value) for value in found.values())
     return [Clause(f"resolution: {words}: {laws.reason}", marched, values)]

@@ -19,6 +19,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.whole_impact import no_force
 from contactlab.outcome.plan import PSI2_ERROR, TANGENTIAL_MOTION
+from contactlab_laws.compiled import library, told
 from tests.laws.normal_laws import Damped, ForceFree, LinearSpring, in_si
 
 CHI = 1.4411764706
@@ -27,6 +28,12 @@ UNDECLARED = "not declared; run(scene, estimate_error=True) estimates it"
 SPRINGS = {"tangential": "springs", "integrator": "symplectic"}
 
 MARCHED = "tangential motion: symplectic over springs"
+RESOLUTION = "resolution: up to 30 springs and 226 steps: by chi + abs(eta), in a compiled march"
+if library() is None:
+    RESOLUTION = (
+        "resolution: up to 50 springs and 200 steps: the usual, as the march is not compiled, "
+        + told()
+    )
 
 
 def scene(psi1=1.2):
@@ -43,6 +50,7 @@ def test_the_plan_of_one_impact_that_is_marched():
     assert list(map(str, plan.computed)) == [
         "normal motion: hertz, in closed form",
         MARCHED,
+        RESOLUTION,
         f"numerical error of psi2: at most {plan.psi2_error:.2g}, declared",
     ]
     assert list(map(str, plan.left_out)) == ["history: not asked for"]
@@ -60,6 +68,7 @@ def test_the_plan_of_a_batch_says_which_impacts():
         MARCHED: [
             False, True, False, False,
         ],
+        RESOLUTION: [False, True, False, False],
         f"numerical error of psi2: at most {most:.2g}, declared": [True] * 4,
     }  # fmt: skip
     march = "march of the tangential motion: "
