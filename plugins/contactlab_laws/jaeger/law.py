@@ -108,7 +108,7 @@ class ProfileLaw(PartialSlip, AllStepsTangentialLaw):
         if not shape:
             force, work = all_steps.advance_all(own, scaled, float(scene.slip_velocity))
             return AllStepsResponse(force * scales.force, float(work * scales.work), True)
-        if not (alike(scaled.radius) and alike(scaled.pressure)):
+        if not (_alike(scaled.radius) and _alike(scaled.pressure)):
             return None
         scaled = scaled._replace(radius=scaled.radius[:, 0], pressure=scaled.pressure[:, 0])
         forces, works = all_steps.advance_batch(own, scaled, scene.slip_velocity, *shape)
@@ -138,7 +138,7 @@ class ProfileLaw(PartialSlip, AllStepsTangentialLaw):
         return spring_fields(radius, deflection, limit, metres=column(scales.metres))
 
 
-def alike(rows: Array) -> bool:
+def _alike(rows: Array) -> bool:
     """Return whether all impacts agree, to rounding, in each row."""
     first = rows[:, :1]
     return rows.shape[1] == 1 or bool((np.abs(rows - first) <= step.ROUNDING * first).all())

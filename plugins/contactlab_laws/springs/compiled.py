@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,9 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat, spread_object
 from contactlab.numeric.types import Array, Real
 from contactlab_laws.compiled import library
+from contactlab_laws.jaeger.partial_slip import Scales
 from contactlab_laws.march.coupled import DEEPEST, TOO_DEEP, Division, tell_too_long
+from contactlab_laws.springs import viscous
 
 #: Numbers of a contact, of an end, of a step of a known motion, and of an impact along it.
 CONTACT, END, SAMPLE, IMPACT = 16, 17, 7, 7
@@ -31,17 +33,22 @@ CONTACT, END, SAMPLE, IMPACT = 16, 17, 7, 7
 LONG, NONE, DEEP, INPUT = 1, 2, 3, 4
 #: Springs that are moved in a call, a third of a second at most: Ctrl-C is heard between two calls.
 AT_A_TIME = 1e6
+#: Rounding errors, over the largest number, up to which steps of impacts count as alike: those of a
+#: contact that comes of a table.
+ROUNDING = 4e-13
 
 
-def knows(law: Law, normal: Law, integrator: Law | None = None) -> bool:
-    """Return whether these are laws that are compiled."""
+def knows(law: Law, normal: Law | None, integrator: Law | None = None) -> bool:
+    """Return whether a march of these laws is compiled; None stands for any normal law.
+
+    Laws that are derived from them may answer otherwise.
+    """
     from contactlab_laws.hertz import Hertz
     from contactlab_laws.march.schemes import Symplectic
     from contactlab_laws.springs.law import Springs
     from contactlab_laws.viscoelastic.law import Viscoelastic
 
-    # a law that is derived from them may answer otherwise
-    known = type(law) is Springs and type(normal) in (Hertz, Viscoelastic)
+    known = type(law) is Springs and type(normal) in (Hertz, Viscoelastic, type(None))
     return known and type(integrator) in (Symplectic, type(None))
 
 
@@ -162,48 +169,106 @@ def _tell(
     return list(statuses), list(details)
 
 
-def advance_all(
-    springs: int, scene: Scene, scales: Any, steps: Steps, columns: tuple[Array, ...]
-) -> AllStepsResponse | None:
-    """Return the forces of impacts along known motions that differ in scale only; or None.
+class Path(NamedTuple):
+    """Steps of impacts along known motions, rows of shape (K, items), or (K, 1) of all alike.
 
-    ``columns`` are b² and the pressure of each step, shape (K,), over the largest radius and over
-    that of the contact of this radius; with loss b², the excess, and the relaxation time in s of
-    the first impact.
+    Attributes
+    ----------
+    drift, kick : array
+        In s.
+    edge : array
+        b² over the square of the unit of length.
+    load : array
+        Without loss the pressure, of the contact over that of Hertz's of this radius; with loss the
+        mean friction load in units of force.
+    limit, excess, time : array
+        With loss: the friction load, the excess, and the relaxation time in s.
     """
+
+    drift: Array
+    kick: Array
+    edge: Array
+    load: Array
+    limit: Array | None = None
+    excess: Array | None = None
+    time: Array | None = None
+
+
+def advance_all(springs: int, scene: Scene, scales: Scales, path: Path) -> AllStepsResponse | None:
+    """Return the forces of impacts along known motions; None without a compiled library."""
     if (found := library()) is None:
         return None
-    shape, lossy = scene.shape, len(columns) == 3
-    count, items = len(steps.kick), math.prod(shape)
-    drift, kick, load, limit = (
-        np.asarray(each).reshape(count, -1)[:, 0]
-        for each in (steps.drift, steps.kick, steps.friction_load, steps.contact.friction_load)
-    )
-    table, one = np.zeros((count, SAMPLE)), np.empty((items, IMPACT))
-    unit = flat(np.asarray(steps.drift)[-1], shape)  # times of impacts that are alike go with it
-    table[:, 0], table[:, 1], table[:, 2] = drift / unit[0], kick / unit[0], columns[0]
-    one[:, 0], one[:, 3] = flat(scene.slip_velocity, shape), flat(scales.force, shape)
-    one[:, 4], one[:, 5] = unit, flat(scene.pair.tangential_mass, shape)
-    one[:, 6] = flat(scales.displacement, shape)
-    if lossy:
-        peak = flat(scales.normal_force, shape)[0]
-        table[:, 3], table[:, 4] = load / peak, limit / peak
-        table[:, 5], table[:, 6] = columns[1], columns[2] / unit[0]
-        one[:, 1] = one[:, 2] = unit
-    else:
-        table[:, 3] = columns[1]
-        one[:, 1] = unit * one[:, 6]
-        one[:, 2] = unit * one[:, 3] / one[:, 5]
+    shape, lossy, count = scene.shape, path.time is not None, len(path.drift)
+    items = math.prod(shape)
+    unit = path.drift.max(axis=0)  # times of impacts that are alike go with it
+    unit = np.broadcast_to(np.where(unit > 0.0, unit, 1.0), items)
+    impacts = np.empty((items, IMPACT))
+    force, scale = flat(scales.force, shape), flat(scales.displacement, shape)
+    mass = flat(scene.pair.tangential_mass, shape)
+    columns = flat(scene.slip_velocity, shape), unit, unit, force, unit, mass, scale
+    for place, column in enumerate(columns):
+        impacts[:, place] = column
+    if not lossy:
+        impacts[:, 1] *= scale
+        impacts[:, 2] *= force / mass
+    rows = [path.drift / unit, path.kick / unit, path.edge, path.load]
+    if path.limit is not None and path.excess is not None and path.time is not None:
+        rows += [path.limit, path.excess, path.time / unit]
     out, forces = np.empty((items, 2)), np.empty((items, count))
-    left = np.zeros(found.contactlab_march_room(1, springs) // 8 + 1)
-    arguments = (
-        items, springs, int(lossy), table.ctypes.data, count, one.ctypes.data, AT_A_TIME,
-        left.ctypes.data, out.ctypes.data, forces.ctypes.data,
-    )  # fmt: skip
-    while found.contactlab_march_paths(*arguments) < items:
-        pass
+    together = items if all(map(_alike, rows)) else 1
+    room = found.contactlab_march_room(1, springs) // 8 + 1
+    for first in range(0, items, together):
+        table, left = np.zeros((count, SAMPLE)), np.zeros(room)
+        for place, row in enumerate(rows):
+            table[:, place] = row[:, min(first, row.shape[1] - 1)]
+        arguments = (
+            together, springs, int(lossy), table.ctypes.data, count, impacts[first:].ctypes.data,
+            AT_A_TIME, left.ctypes.data, out[first:].ctypes.data, forces[first:].ctypes.data,
+        )  # fmt: skip
+        while found.contactlab_march_paths(*arguments) < together:
+            pass
     out *= flat(scales.metres if lossy else scales.work, shape)[:, None]
     if not shape:
         return AllStepsResponse(forces[0], float(out[0, 0]), True, float(out[0, 1]))
     work, loss = (np.ascontiguousarray(each).reshape(shape) for each in out.T)
     return AllStepsResponse(np.ascontiguousarray(forces.T).reshape(count, *shape), work, True, loss)
+
+
+def _alike(rows: Array) -> bool:
+    """Return whether all impacts agree, to rounding, in each step."""
+    near = np.abs(rows - rows[:, :1]) <= ROUNDING * np.abs(rows).max(initial=0.0)
+    return rows.shape[1] == 1 or bool(near.all())
+
+
+def path_of(state: viscous.State, scene: Scene, steps: Steps) -> Path:
+    """Return the steps of springs that share the loss of the normal law."""
+    count, shape = len(steps.kick), scene.shape
+
+    def rows(column: Real) -> Array:
+        table: Array = np.asarray(column)
+        if table.size == count:
+            return table.reshape(count, 1)
+        return np.broadcast_to(table, (count, *shape)).reshape(count, -1)
+
+    contact = viscous.read_contact(state, steps.contact, (steps.approach, steps.rate), rows)
+    unit = np.reshape(state.scales.normal_force, (1, -1))
+    return Path(
+        drift=rows(steps.drift),
+        kick=rows(steps.kick),
+        edge=contact.edge,
+        load=rows(steps.friction_load) / unit,
+        limit=rows(steps.contact.friction_load) / unit,
+        excess=contact.excess,
+        time=contact.time,
+    )
+
+
+def path_without_loss(scales: Scales, steps: Steps) -> Path:
+    """Return the steps of springs without loss."""
+    count = len(steps.kick)
+    radius = np.asarray(steps.contact.radius / scales.radius)
+    pressure = np.asarray(scales.pressure(radius, steps.contact.friction_load))
+    drift, kick, radius, pressure = (
+        np.asarray(each).reshape(count, -1) for each in (steps.drift, steps.kick, radius, pressure)
+    )
+    return Path(drift, kick, np.square(radius), pressure)

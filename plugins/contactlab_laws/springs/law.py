@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import attrs
-import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import (
@@ -33,9 +32,9 @@ from contactlab.numeric.checks import Rule, choice, count, flag, quantity, refus
 from contactlab.numeric.types import Real
 from contactlab_laws.compiled import library, told
 from contactlab_laws.differences import table as differences
-from contactlab_laws.jaeger.law import ProfileLaw, State, alike
+from contactlab_laws.jaeger.law import ProfileLaw, State
 from contactlab_laws.jaeger.partial_slip import Scales
-from contactlab_laws.springs import compiled, doubling, errors, viscous, viscous_steps
+from contactlab_laws.springs import compiled, doubling, errors, viscous
 
 #: The word that springs without a loss in shear do not offer.
 NO_LOSS = frozenset({"shares_loss"})
@@ -110,7 +109,8 @@ class Springs(ProfileLaw, CausalTangentialLaw):
 
     def resolutions(self, scene: Scene, normal: Law, integrator: Law) -> Resolutions | None:
         """Return springs and steps by chi + abs(eta), where the march is compiled."""
-        if self.grid == "doubling" or not compiled.knows(self, normal, integrator):
+        alone = None if scene.inverse_mass is None else normal  # known motions are of any law
+        if self.grid == "doubling" or not compiled.knows(self, alone, integrator):
             return None
         if library() is None:
             usual = float(resolution_of(self)), float(resolution_of(integrator))
@@ -260,25 +260,17 @@ class Springs(ProfileLaw, CausalTangentialLaw):
         """Return the forces of all steps; None where springs go step by step."""
         if self.grid == "doubling":
             return None
+        if type(self) is not Springs or library() is None:  # another may differ in its steps
+            return (
+                None if shares_loss(self, normal.law) else super().advance_all(scene, normal, steps)
+            )
         if shares_loss(self, normal.law):
-            return viscous_steps.advance_all(self.start(scene, normal), scene, normal, steps)
-        found = self._compiled(scene, normal, steps)
-        return super().advance_all(scene, normal, steps) if found is None else found
-
-    def _compiled(
-        self, scene: Scene, normal: NormalMotion, steps: Steps
-    ) -> AllStepsResponse | None:
-        """Return the forces of springs without loss by the compiled march; None without it."""
-        if type(self) is not Springs:  # a law derived from it may differ in the steps
-            return None
-        scales, count = Scales.of(scene, normal), len(steps.kick)
-        radius: Any = np.asarray(steps.contact.radius / scales.radius)
-        pressure = np.asarray(scales.pressure(radius, steps.contact.friction_load))
-        radius, pressure = radius.reshape(count, -1), pressure.reshape(count, -1)
-        if not (alike(radius) and alike(pressure)):
-            return None
-        columns = np.square(radius[:, 0]), pressure[:, 0]
-        return compiled.advance_all(self.number, scene, scales, steps, columns)
+            state = self.start(scene, normal)
+            path = compiled.path_of(state, scene, steps)
+            return compiled.advance_all(self.number, scene, state.scales, path)
+        scales = Scales.of(scene, normal)
+        path = compiled.path_without_loss(scales, scene, steps)
+        return compiled.advance_all(self.number, scene, scales, path)
 
     def fields(self, state: State | doubling.State | viscous.State) -> Mapping[str, NDArray[Any]]:
         """Return radius, displacement and limit (m), stuck and slipping of every spring."""
