@@ -260,16 +260,15 @@ class Springs(ProfileLaw, CausalTangentialLaw):
         """Return the forces of all steps; None where springs go step by step."""
         if self.grid == "doubling":
             return None
+        shared = shares_loss(self, normal.law)
         if type(self) is not Springs or library() is None:  # another may differ in its steps
-            return (
-                None if shares_loss(self, normal.law) else super().advance_all(scene, normal, steps)
-            )
-        if shares_loss(self, normal.law):
+            return None if shared else super().advance_all(scene, normal, steps)
+        if shared:
             state = self.start(scene, normal)
             path = compiled.path_of(state, scene, steps)
             return compiled.advance_all(self.number, scene, state.scales, path)
         scales = Scales.of(scene, normal)
-        path = compiled.path_without_loss(scales, scene, steps)
+        path = compiled.path_without_loss(scales, steps)
         return compiled.advance_all(self.number, scene, scales, path)
 
     def fields(self, state: State | doubling.State | viscous.State) -> Mapping[str, NDArray[Any]]:
