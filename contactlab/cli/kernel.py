@@ -15,12 +15,12 @@ from contactlab.cli import arguments as shared
 from contactlab.outcome.files import written
 from contactlab.registration.hooks import Execute, hookimpl
 
-#: Files of ``contactlab/kernels``: springs on a doubling grid (theory §13), bounces, exact impacts
-#: and bodies of any shape (theory §14), types, notes.
+#: Files of ``contactlab/kernels``: springs on a doubling grid (theory §13), bounces, exact impacts,
+#: bodies of any shape and marches of springs (theory §14), types, notes.
 FILES = (
     "contactlab_springs.h", "contactlab_springs.mjs", "contactlab_springs.d.mts",
     "contactlab_bounce.h", "contactlab_bounce.mjs", "contactlab_bounce.d.mts",
-    "contactlab_impact.h", "contactlab_bodies.h",
+    "contactlab_impact.h", "contactlab_bodies.h", "contactlab_march.h",
     "package.json", "README.md", "LICENSE",
 )  # fmt: skip
 

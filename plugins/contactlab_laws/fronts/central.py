@@ -29,7 +29,8 @@ MOST_STEPS, OFTEN = 3000, 1e3
 class FrontStretch(Stretch):
     """A stretch within whose front all sticks, and outside which all slips one way.
 
-    Its ``steps`` end at the phases ``stops``; ``psi1`` is that of the impact.
+    Its ``steps`` end at the phases ``stops``; ``psi1`` is that of the impact. ``fronts`` are those
+    of the phases at which ``states`` was asked.
     """
 
     sign: int
@@ -41,6 +42,7 @@ class FrontStretch(Stretch):
     steps: Steps
     stops: Array
     psi1: float
+    fronts: dict[float, float] = attrs.field(factory=dict, repr=False)
 
     def fields(
         self, normal: ClosedFormMotion, contact: ScaledContact, factor: float
@@ -50,7 +52,8 @@ class FrontStretch(Stretch):
         ``front`` (m) is the radius within which the contact sticks.
         """
         ring, largest = (np.arange(RINGS) + 0.5) / RINGS, float(normal.maximum_radius)
-        front = max(0.0, float(self._at(contact)[2, 0]))
+        front = self.fronts.get(float(contact.phase))
+        front = max(0.0, float(self._at(contact)[2, 0]) if front is None else front)
         touching, inside = ring < contact.radius, ring < front
         shown = self.sign if factor > 0.0 else -self.sign
         return {
@@ -62,7 +65,9 @@ class FrontStretch(Stretch):
 
     def states(self, contact: ScaledContact) -> tuple[Array, Array]:
         """Return (change of velocity since first touch, force)."""
-        change, force, _ = self._at(contact)
+        change, force, fronts = self._at(contact)
+        phases = np.atleast_1d(contact.phase)
+        self.fronts.update(zip(phases.tolist(), fronts.tolist(), strict=True))
         least = -2.0 * self.psi1  # energy of slip never exceeds that at first touch
         return np.clip(change, least, 0.0), force
 
