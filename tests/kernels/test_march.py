@@ -1,4 +1,4 @@
-"""The march of springs in C under sanitizers; its answers: ``tests/laws/test_compiled_march.py``."""
+"""The march of springs in C under sanitizers; its answers are tested with the laws."""
 
 import subprocess
 
