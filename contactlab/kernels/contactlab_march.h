@@ -931,4 +931,79 @@ static inline void contactlab_march_along_lossy(int n, const contactlab_march_sa
   path->force = force[0];
 }
 
+/* d(b, V)/dx of a Kelvin-Voigt impact in scaled units (theory, section 15), dT = 2 b dx. */
+static inline void contactlab_march_slope(const double *s, double a, int loads, double *d)
+{
+  const double cube = s[0] * s[0] * s[0];
+  d[0] = loads ? s[1] : s[1] - 1.25 * a * cube;
+  d[1] = -2.5 * s[0] * (loads ? cube + 1.5 * a * s[1] * s[0] : cube);
+  d[2] = 2.0 * s[0];
+}
+
+/* b, V and T after so many steps of Runge and Kutta. */
+static inline void contactlab_march_advance(double *s, double a, int loads, double width, int steps)
+{
+  int k, i;
+  for (k = 0; k < steps; ++k) {
+    double d1[3], d2[3], d3[3], d4[3], t[3];
+    contactlab_march_slope(s, a, loads, d1);
+    for (i = 0; i < 3; ++i) t[i] = s[i] + 0.5 * width * d1[i];
+    contactlab_march_slope(t, a, loads, d2);
+    for (i = 0; i < 3; ++i) t[i] = s[i] + 0.5 * width * d2[i];
+    contactlab_march_slope(t, a, loads, d3);
+    for (i = 0; i < 3; ++i) t[i] = s[i] + width * d3[i];
+    contactlab_march_slope(t, a, loads, d4);
+    for (i = 0; i < 3; ++i) s[i] += width / 6.0 * (d1[i] + 2.0 * (d2[i] + d3[i]) + d4[i]);
+  }
+}
+
+/* The normal motion of spheres at a = A v1/(C^2 R) as `steps` samples, an even number; returns the largest b, the unit of
+ * their edges. x at the ends, where V and then b vanish, are found by Newton's method from what is right to 3 %. */
+static inline double contactlab_march_course(double a, long steps, contactlab_march_sample *samples)
+{
+  enum { TURNS = 4, LEAST = 192 };
+  const long half = steps / 2;
+  const int parts = (int) ((LEAST + 2 * half - 1) / (2 * half));
+  double s[3] = {0.0, 1.0, 0.0}, middle = 0.0, largest = 1.0;
+  int phase, turn;
+  long k;
+  for (phase = 0; phase < 2; ++phase) {
+    const int loads = !phase;
+    double end = 1.2537 * pow(1.0 + a, loads ? -0.085 : 0.78), width;
+    for (turn = 0; turn < TURNS; ++turn) {
+      double last[3], d[3];
+      memcpy(last, s, sizeof last);
+      contactlab_march_advance(last, a, loads, end / LEAST, LEAST);
+      contactlab_march_slope(last, a, loads, d);
+      end -= loads ? last[1] / d[1] : last[0] / d[0];
+    }
+    width = end / (double) (2 * half * parts);
+    for (k = phase * half; k < (1 + phase) * half; ++k) {
+      contactlab_march_sample *o = samples + k;
+      const double rate = s[1], time = s[2];
+      double b;
+      contactlab_march_advance(s, a, loads, width, parts);
+      b = s[0] > 0.0 ? s[0] : 0.0;
+      o->drift = s[2] - middle;
+      middle = s[2];
+      o->edge = b * b;
+      o->excess = loads && s[1] > 0.0 ? a * s[1] : 0.0;
+      o->limit = b * (b * b + 1.5 * o->excess);
+      o->time = a;
+      contactlab_march_advance(s, a, loads, width, parts);
+      o->kick = s[2] - time;
+      o->load = (rate - s[1]) / (1.25 * o->kick);
+    }
+    if (loads) {
+      s[1] = 0.0;
+      largest = s[0];
+    }
+  }
+  for (k = 0; k < steps; ++k) {
+    samples[k].edge /= largest * largest;
+    samples[k].excess /= largest * largest;
+  }
+  return largest;
+}
+
 #endif

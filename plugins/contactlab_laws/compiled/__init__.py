@@ -86,6 +86,7 @@ def _declare(found: Any) -> None:
         "march_paths": (
             whole, whole, some, some, pointer, whole, pointer, number, *[pointer] * 3,
         ),
+        "march_rebounds": (None, whole, *[pointer] * 3, some, whole, *[pointer] * 3),
     }  # fmt: skip
     for name, (result, *arguments) in types.items():
         function = getattr(found, f"contactlab_{name}")

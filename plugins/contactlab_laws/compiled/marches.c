@@ -78,3 +78,20 @@ long contactlab_march_paths(long count, int springs, int lossy, const contactlab
   }
   return left->place;
 }
+
+/* psi2 of spheres that lose as their normal contact does, at psi1, chi and a; samples (steps), work as of a path. */
+void contactlab_march_rebounds(long count, const double *psi1, const double *chi, const double *a, int springs,
+    long steps, contactlab_march_sample *samples, double *work, double *psi2)
+{
+  double largest = 1.0;
+  long i;
+  for (i = 0; i < count; ++i) {
+    contactlab_march_impact one = {psi1[i], 1.0, 1.0, 1.0, 1.0, 1.0 / (2.5 * chi[i]), 1.0};
+    contactlab_march_path path;
+    if (!i || a[i] != a[i - 1]) largest = contactlab_march_course(a[i], steps, samples);
+    one.scale = 1.0 / (largest * largest);
+    contactlab_march_path_begin(&path, springs, work);
+    contactlab_march_along_lossy(springs, samples, steps, &one, &path, NULL);
+    psi2[i] = psi1[i] + path.change;
+  }
+}

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.numeric.types import Array
+from contactlab_laws.compiled import library
 from contactlab_laws.tables import restituted
 from contactlab_laws.tables.restituted_regions import RESTITUTED_CHI
 
@@ -14,6 +15,9 @@ from contactlab_laws.tables.restituted_regions import RESTITUTED_CHI
 SPRINGS, STEPS = 100, 800
 #: Below this e psi2 is linear in e to 1e-4: a slower rebound takes more steps than it is worth.
 LEAST = 1e-3
+#: Springs that are moved in a call of the compiled march, half a second; numbers of a sample, and of
+#: the work space: rows of springs, each as long as the next multiple of 8.
+AT_A_TIME, SAMPLE, ROWS, LANES = 10_000_000, 7, 16, 8
 
 
 def rebound(psi1: Any, chi: Any, restitution: Any, *, derivatives: bool = False) -> Any:
@@ -72,5 +76,21 @@ def _follow_springs(speed: Array, chi: Array, e: Array) -> Array:
             "springs": round(SPRINGS * 2.0 ** (level / 4)),
             "steps": 2 * round(STEPS * 2.0 ** (level / 2 - 1)),
         }
-        psi2[part] = batch.rebound(speed[part], chi[part], number_of(e[part]), **grid)
+        follow = batch.rebound if library() is None else _follow_in_c
+        psi2[part] = follow(speed[part], chi[part], number_of(e[part]), **grid)
     return psi2
+
+
+def _follow_in_c(psi1: Array, chi: Array, number: Array, *, springs: int, steps: int) -> Array:
+    """Return psi2 of psi1 >= 0 by the compiled march, as ``batch.rebound`` does."""
+    found, psi2 = library(), np.empty_like(psi1)
+    rows = [np.ascontiguousarray(each) for each in (psi1, chi, number)]
+    samples, work = np.empty((steps, SAMPLE)), np.empty(ROWS * (springs + LANES))
+    width = max(AT_A_TIME // (springs * steps), 1)  # Ctrl-C is heard between two calls
+    for first in range(0, psi1.size, width):
+        count = min(width, psi1.size - first)
+        found.contactlab_march_rebounds(
+            count, *(each[first:].ctypes.data for each in rows), springs, steps,
+            samples.ctypes.data, work.ctypes.data, psi2[first:].ctypes.data,
+        )  # fmt: skip
+    return np.clip(psi2, -psi1, psi1)
