@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab_laws.compiled import library
 from contactlab_laws.tables import restituted
 from contactlab_laws.tables.restituted_regions import RESTITUTED_CHI
@@ -81,7 +81,7 @@ def _follow_springs(speed: Array, chi: Array, e: Array) -> Array:
     return psi2
 
 
-def _follow_in_c(psi1: Array, chi: Array, number: Array, *, springs: int, steps: int) -> Array:
+def _follow_in_c(psi1: Array, chi: Array, number: Real, *, springs: int, steps: int) -> Array:
     """Return psi2 of psi1 >= 0 by the compiled march, as ``batch.rebound`` does."""
     found, psi2 = library(), np.empty_like(psi1)
     rows = [np.ascontiguousarray(each) for each in (psi1, chi, number)]
