@@ -30,5 +30,5 @@ def test_extreme_scenes_end_with_a_status(tmp_path, language, count):
     assert done + late + lost + deep + refused == count
     assert min(done, late, lost, refused) > 0.01 * count
     assert wrong == 0
-    assert gain < 1e-5  # by steps, 60 to an approach
-    assert books < 0.05  # by as few as 2 springs
+    assert gain < 1e-3  # by steps, 60 to an approach
+    assert books < 0.1  # by as few as 2 springs

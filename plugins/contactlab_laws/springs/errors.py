@@ -55,7 +55,7 @@ def resolve(scene: Scene) -> tuple[Real, Real]:
     """Return springs, an even number, and steps that leave an error of 2.1e-3 in psi2.
 
     With a loss it is 2.4e-3, as steps are graded. No less will do: near slip throughout 50 springs
-    and 200 steps were off by up to 0.15 from x = 30 on, in 900 random impacts of e from 0.3 to 0.98.
+    and 200 steps were off by up to 0.15 from x = 30 on, in 900 random impacts, e 0.3 to 0.98.
     """
     x = np.asarray(kinetics.largest_chi(scene) + kinetics.size_of(scene, np.asarray(scene.eta)))
     # the infinite eta of an impact without friction is none

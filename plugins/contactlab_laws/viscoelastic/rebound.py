@@ -15,8 +15,8 @@ from contactlab_laws.tables.restituted_regions import RESTITUTED_CHI
 SPRINGS, STEPS = 100, 800
 #: Below this e psi2 is linear in e to 1e-4: a slower rebound takes more steps than it is worth.
 LEAST = 1e-3
-#: Springs that are moved in a call of the compiled march, half a second; numbers of a sample, and of
-#: the work space: rows of springs, each as long as the next multiple of 8.
+#: Springs that are moved in a call of the compiled march, half a second; numbers of a sample; rows
+#: of springs of the work space, each as long as the next multiple of 8.
 AT_A_TIME, SAMPLE, ROWS, LANES = 10_000_000, 7, 16, 8
 
 
