@@ -43,7 +43,6 @@ from contactlab.registry.composition import Laws
 from contactlab.registry.law_words import in_words, name_of
 from contactlab.solve.answers import Mask
 from contactlab.solve.normal_motion import normal_motion, normal_or_failed
-from contactlab.solve.resolution import as_named, tell_resolution
 from contactlab.solve.solve import ways
 from contactlab.solve.way import WHOLE, Masks, Way, ask
 
@@ -111,7 +110,11 @@ def _words(
     masks = Masks.of(columns)
     if not some(masks.known):
         return (), (), ()
-    used = as_named(way.laws)
+    used, resolution = way.laws, []
+    if used.by_scene:
+        from contactlab.solve.resolution import as_named, tell_resolution  # most laws have none
+
+        used, resolution = as_named(used), tell_resolution(used, masks.marched)
     law = f"{in_words(used.normal)}, {way.how()}"
     computed = [Clause(f"normal motion: {law}", masks.known)]
     elongation = elongation_of(way.scene.pair)
@@ -123,7 +126,7 @@ def _words(
     if some(masks.marched):
         text = f"tangential motion: {in_words(used.integrator)} over {in_words(used.tangential)}"
         computed.append(Clause(text, masks.marched, code=TANGENTIAL_MOTION))
-        computed += tell_resolution(way.laws, masks.marched)
+        computed += resolution
     alone = way.one_by_one(masks)
     if scene.shape and some(alone) and (path := used.capability.path) is not None:
         cost = path.cost(way.scene.central, used.integrator.accuracy)

@@ -45,7 +45,7 @@ def with_resolutions(way: Way, *, as_one: bool) -> list[Way]:
     return ways
 
 
-def _within(outer: Any, where: Mask) -> Any:
+def _within(outer: object, where: Mask) -> Mask:
     """Return a part of a part as a mask of the whole batch."""
     if outer is ... or isinstance(outer, slice):
         return where

@@ -91,7 +91,7 @@ def test_running_a_law_imports_no_other_law():
     )
     heavy, laws = loaded(PROBE.replace("import contactlab\n", "\n".join(lines)))
     assert heavy == []
-    needed = {"hertz", "springs", "jaeger", "differences", "march"}
+    needed = {"hertz", "springs", "jaeger", "differences", "march", "compiled"}
     assert {name.split(".")[1] for name in laws if "." in name} == needed
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from contactlab.contracts import (
     AllStepsResponse,
+    CausalTangentialLaw,
     Ends,
     NormalMotion,
     Steps,
@@ -29,6 +30,12 @@ from contactlab_laws.springs import viscous
 
 #: Numbers of a contact, of an end, of a step of a known motion, and of an impact along it.
 CONTACT, END, SAMPLE, IMPACT = 16, 17, 7, 7
+#: Names of the classes that are compiled: to compare names loads none that nobody uses.
+LAW = "contactlab_laws.springs.law.Springs"
+COMPILED = {
+    LAW, "contactlab_laws.hertz.Hertz", "contactlab_laws.viscoelastic.law.Viscoelastic",
+    "contactlab_laws.march.schemes.Symplectic",
+}  # fmt: skip
 #: Statuses of scenes.
 LONG, NONE, DEEP, INPUT = 1, 2, 3, 4
 #: Springs that are moved in a call, a third of a second at most: Ctrl-C is heard between two calls.
@@ -43,36 +50,38 @@ def knows(law: Law, normal: Law | None, integrator: Law | None = None) -> bool:
 
     Laws that are derived from them may answer otherwise.
     """
-    from contactlab_laws.hertz import Hertz
-    from contactlab_laws.march.schemes import Symplectic
-    from contactlab_laws.springs.law import Springs
-    from contactlab_laws.viscoelastic.law import Viscoelastic
+    asked = [_name(each) for each in (law, normal, integrator) if each is not None]
+    return _name(law) == LAW and COMPILED.issuperset(asked)
 
-    known = type(law) is Springs and type(normal) in (Hertz, Viscoelastic, type(None))
-    return known and type(integrator) in (Symplectic, type(None))
+
+def _name(law: Law) -> str:
+    return f"{type(law).__module__}.{type(law).__qualname__}"
 
 
 def march(
     scene: Scene,
     normal: NormalMotion,
-    law: Any,
+    law: CausalTangentialLaw,
     divided: Division,
     refused: tuple[Status, str | NDArray[np.object_]],
 ) -> TangentialMotion | None:
     """Return the motion of ``march_coupled``; None where Python has to follow an impact."""
     if (found := library()) is None or not knows(law, normal.law):
         return None
-    shape = scene.shape
-    items, axes = math.prod(shape), 1 if scene.planar else 2
-    loss, springs = shares_loss(law, normal.law), law.even_springs()
+    from contactlab_laws.springs.law import Springs  # which imports this module
+
+    assert isinstance(law, Springs)
+    shape, axes, springs = scene.shape, 1 if scene.planar else 2, law.even_springs()
+    items, loss = math.prod(shape), shares_loss(law, normal.law)
     if not loss and "elastic_hertz" not in normal.claims:
         return None
-    c = _contacts(scene, normal, law, loss=loss)
+    c = _contacts(scene, normal, law.shear_loss if loss else None)
     row, column = np.array([0, 1], np.intc), np.array([0], np.intc)
+    deepest = DEEPEST**0.4 * np.asarray(normal.maximum_approach)
     numbers = np.empty((4, items))
-    for place, each in enumerate((divided.step, divided.leading, divided.most)):
+    columns = divided.step, divided.leading, divided.most, deepest
+    for place, each in enumerate(columns):
         numbers[place] = np.broadcast_to(each, shape).ravel()
-    numbers[3] = np.broadcast_to(DEEPEST**0.4 * np.asarray(normal.maximum_approach), shape).ravel()
     inverse: Any = scene.inverse_mass
     block = np.ascontiguousarray(np.broadcast_to(inverse, (*shape, 3, 3)), dtype=np.float64)
     end, steps, status = np.empty((items, END)), np.empty(items), np.empty(items, np.intc)
@@ -84,19 +93,32 @@ def march(
     )  # fmt: skip
     while found.contactlab_march_scenes(*arguments) < items:
         pass
-    left_out = np.isnan(numbers[0])
-    if np.any((status == INPUT) & ~left_out):
+    if np.any((status == INPUT) & ~np.isnan(numbers[0])):
         return None
-    lost = status != 0
-    end[lost] = math.nan
-    ended, detail = spread_object(Status.SUCCESS, shape), spread_object("", shape)
-    if lost.any():
+    statuses, details = spread_object(Status.SUCCESS, shape), spread_object("", shape)
+    if (lost := status != 0).any():
         told = _tell(law, divided, refused, end, steps, status, shape)
-        ended, detail = (np.array(each, dtype=object).reshape(shape)[()] for each in told)
-    return _motion(c, end, axes, shape, ended, detail, int(steps.max()))
+        statuses, details = (np.array(each, dtype=object).reshape(shape)[()] for each in told)
+        end[lost] = math.nan
+    rates = c[..., 0] + end[:, 0].reshape(shape)
+
+    def column_of(place: int) -> Real:
+        return np.array(end[:, place]).reshape(shape) if shape else float(end[0, place])
+
+    slip: Any = column_of(1) if axes == 1 else np.array(end[:, 1:3]).reshape(*shape, 2)
+    rate = rates if shape else float(rates)
+    return TangentialMotion(
+        slip_velocity_change=slip,
+        friction_work=column_of(6),
+        shear_loss=column_of(7),
+        normal=Ends(column_of(9), rate, *map(column_of, (10, 11, 12, 8, 13))),
+        status=statuses,
+        detail=details,
+        counters={"steps": int(steps.max())},
+    )
 
 
-def _contacts(scene: Scene, normal: NormalMotion, law: Any, *, loss: bool) -> Array:
+def _contacts(scene: Scene, normal: NormalMotion, shear_loss: float | None) -> Array:
     """Return the contacts at first touch, rows as of ``contactlab_march_contact``."""
     pair: Any = scene.pair
     c = np.zeros((*scene.shape, CONTACT))
@@ -113,39 +135,16 @@ def _contacts(scene: Scene, normal: NormalMotion, law: Any, *, loss: bool) -> Ar
     )  # fmt: skip
     for place, value in enumerate(columns, start=7):
         c[..., place] = value
-    if loss:
+    if shear_loss is not None:
         parts: Any = normal.law.start(normal.scene)  # type: ignore[attr-defined]
-        c[..., 14], c[..., 15] = parts.time, law.shear_loss
+        c[..., 14], c[..., 15] = parts.time, shear_loss
     return c
-
-
-def _motion(
-    c: Array, end: Array, axes: int, shape: tuple[int, ...], status: Any, detail: Any, steps: int
-) -> TangentialMotion:
-    """Return what the library left as a motion."""
-    end = end.reshape(*shape, END)
-
-    def column(place: int) -> Real:
-        return np.ascontiguousarray(end[..., place]) if shape else float(end[place])
-
-    slip: Any = column(1) if axes == 1 else np.ascontiguousarray(end[..., 1:3])
-    rate: Any = c[..., 0] + end[..., 0]
-    ends = column(9), rate if shape else float(rate), *map(column, (10, 11, 12, 8, 13))
-    return TangentialMotion(
-        slip_velocity_change=slip,
-        friction_work=column(6),
-        shear_loss=column(7),
-        normal=Ends(*ends),
-        status=status,
-        detail=detail,
-        counters={"steps": steps},
-    )
 
 
 def _tell(
     law: Law,
     divided: Division,
-    refused: tuple[Status, Any],
+    refused: tuple[Status, str | NDArray[np.object_]],
     end: Array,
     steps: Array,
     status: NDArray[np.intc],
