@@ -41,7 +41,7 @@ class Integrator(Law, kind="integrator"):
         return None
 
     def resolution_for(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Real:
-        """Return the resolution used for each impact, 0 if there is none; by default the option's.
+        """Return the resolution of each impact, 0 of none; by default the option's.
 
         Errors are estimated by refining this value.
         """

@@ -56,9 +56,8 @@ class Law(ABC):
     4. ``needs`` are the words of the normal law, and the classes of the other laws, beside which
        alone the law runs: a constant too. Parameters take words away from both by ``waives``.
     5. ``resolution`` names the parameter that makes answers finer, or is None: a count
-       (``steps``, ``annuli``), finer the greater, or ``tolerance``, finer the smaller. Where nobody
-       names it, it may be None: ``TangentialLaw.resolutions`` then chooses it, or it is
-       ``usual_resolution``.
+       (``steps``), finer the greater, or ``tolerance``, finer the smaller. None is one that nobody
+       named.
     6. ``expected_failures`` maps the checks of ``contactlab.testing`` that the law fails by
        its nature to the reasons.
     """
@@ -75,7 +74,7 @@ class Law(ABC):
     needs: ClassVar[Any] = frozenset()
     #: Parameter that makes answers finer.
     resolution: ClassVar[str | None] = None
-    #: What it is where it is None.
+    #: What None stands for.
     usual_resolution: ClassVar[float | None] = None
     #: Checks that it fails by its nature, with the reasons.
     expected_failures: ClassVar[Any] = MappingProxyType({})

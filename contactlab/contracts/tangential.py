@@ -193,7 +193,7 @@ class TangentialLaw(Law, kind="tangential"):
         return Errors()
 
     def resolutions(self, scene: Scene, normal: Law, integrator: Law) -> Resolutions | None:
-        """Return its resolution and the integrator's for each impact, where nobody named either.
+        """Return both resolutions of each impact, where nobody named them.
 
         None, the default: they are ``usual_resolution``. Impacts with the same pair of numbers are
         solved together, so that few pairs are best.
