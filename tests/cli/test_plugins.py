@@ -107,7 +107,7 @@ def test_show_says_what_a_law_does_and_takes(run):
     assert "partial_slip" in out
     entry = json.loads(run("plugins", "show", "integrator.symplectic", "--json").out)
     assert [(option["name"], option["default"]) for option in entry["options"]] == [
-        ("steps", 200),
+        ("steps", None),
         ("refine", True),
     ]
     assert entry["runs"] == "SteppedTangentialLaw"
