@@ -71,10 +71,10 @@ compare @foot.toml --tangential fronts,coulomb
 compare --psi1 1.2 --chi 1.44 --loops l.png --tangential springs,mindlin_cap --estimate-error
 fit @kharaz2001.toml --quantity psi2
 fit @kharaz2001.toml --fit friction_coefficient,stiffness_ratio --bootstrap 0 --json
-fit @kharaz2001.toml --bootstrap 20 --figure f.png --csv r.csv --laws coulomb,exact
-stability --quick --law tangential.walton --figure f.png --csv s.csv
+fit @kharaz2001.toml --bootstrap 20 --figure f.png --residuals r.csv --tangential coulomb,exact
+stability --quick --tangential walton --figure f.png --out s.csv
 figures --out f --only 1,2,3,4 --set integrator.steps=100
-bench --quick --law tangential.coulomb
+bench --quick --tangential coulomb
 report @steel_ball.toml --out r.html
 report @kharaz2001.toml --out r.html
 animate @thrown_ball.toml --ghost coulomb --out t.gif

@@ -278,7 +278,7 @@ def test_the_guide_shows_the_files_of_the_plugin():
 
 @pytest.mark.slow
 def test_third_party_plugin_is_put_through_the_stability_report(plugin_path, tmp_path):
-    command = ("-m", "contactlab", "stability", "--quick", "--law", "tangential.cundall", "--json")
+    command = ("-m", "contactlab", "stability", "--quick", "--tangential", "cundall", "--json")
     ran = python(*command, folder=tmp_path, path=plugin_path)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     assert json.loads(ran.stdout)["tried"] > 200

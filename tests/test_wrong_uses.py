@@ -206,7 +206,7 @@ COMMANDS = [
     ("run b.toml --restitution 0", "take at least 0.01", "run b.toml --restitution 0.01"),
     ("run b.toml --tangential annulus", "tangential='fronts', integrator='events'",
      "run b.toml --tangential fronts --integrator events"),
-    ("compare s.toml --laws springs,annulus", "'--tangential'",
+    ("compare s.toml --tangential springs,annulus", "'--tangential'",
      "compare --psi1 0.5:1:2 --chi 1.4 --tangential springs,annulus"),
     ("compare --psi1 0.5:1:2 --chi 1.4 --csv out.csv", "--csv > out.csv",
      "compare --psi1 0.5:1:2 --chi 1.4 --csv"),
@@ -270,5 +270,5 @@ def test_on_the_command_line(tmp_path, monkeypatch, capsys, typed, word, mended)
     assert main(typed.split()) == 2
     told = capsys.readouterr().err
     assert re.search(word, told), told
-    assert main([*mended.split(), *(["--no-estimate"] if "run" in mended else [])]) == 0
+    assert main([*mended.split(), *(["--no-estimate-error"] if "run" in mended else [])]) == 0
     capsys.readouterr()

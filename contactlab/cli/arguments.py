@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import csv
 import json
 import math
 import os
@@ -11,7 +12,7 @@ import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, Any, TextIO, TypedDict
 
 import attrs
 
@@ -20,10 +21,10 @@ from contactlab.cli.statuses import FAILED as FAILED
 from contactlab.cli.statuses import INTERRUPTED as INTERRUPTED
 from contactlab.cli.statuses import OK as OK
 from contactlab.numeric.progress import progress as progress  # exported to the subcommands
-from contactlab.outcome.files import distinct, unwritable, write_table
+from contactlab.outcome.files import distinct, unwritable, written
 from contactlab.registration.hooks import Execute
 from contactlab.registration.manager import MANAGER
-from contactlab.registration.names import KINDS
+from contactlab.registration.names import KINDS, full_name
 
 if TYPE_CHECKING:
     from contactlab.impact.scene import Scene
@@ -53,7 +54,7 @@ def _range_hint(text: str) -> str:
     if not written:
         return ""
     example = f"{written[1]}:{written[2]}:71"
-    return f"; a range is START:STOP:COUNT, {example}, in contactlab sweep and compare"
+    return f"; a range is START:STOP:COUNT, {example}, in contactlab run, sweep and compare"
 
 
 def names(text: str) -> list[str]:
@@ -132,6 +133,14 @@ def add_json(parser: argparse._ActionsContainer, instead_of: str = "the table") 
     """Add ``--json``."""
     words = f"print JSON instead of {instead_of}"
     parser.add_argument("--json", action="store_true", help=words)
+
+
+def add_forms(parser: argparse.ArgumentParser, instead_of: str = "the table") -> None:
+    """Add ``--json`` and ``--csv``, of which one is printed."""
+    form = parser.add_mutually_exclusive_group()
+    add_json(form, instead_of)
+    words = f"print CSV instead of {instead_of}"
+    form.add_argument("--csv", action="store_true", help=words)
 
 
 #: Suffixes of pictures, as in ``contactlab.figures.files.FORMATS``, which loads matplotlib.
@@ -263,37 +272,34 @@ def tell_normal_spin(scene: Scene, *simulations: Simulation | None) -> None:
         print(f"contactlab: caution: {sentence}", file=sys.stderr)
 
 
-def print_json(content: object) -> None:
-    """Print JSON; NaN has to be None before."""
-    print(json.dumps(content, indent=2, allow_nan=False))
+def print_json(content: object, stream: TextIO | None = None) -> None:
+    """Print JSON on stdout, or into a stream; NaN has to be None before."""
+    print(json.dumps(content, indent=2, allow_nan=False), file=stream)
 
 
-def write_items(path: Path, kind: type, items: Iterable[object]) -> None:
-    """Write a CSV with one row for each item of an attrs class, its fields as columns."""
+def items_csv(kind: type, items: Iterable[object], stream: TextIO) -> None:
+    """Write CSV with one row for each item of an attrs class, its fields as columns."""
     names = [field.name for field in attrs.fields(kind)]
-    write_table(path, names, ([getattr(item, name) for name in names] for item in items))
+    rows = ([getattr(item, name) for name in names] for item in items)
+    csv.writer(stream, lineterminator="\n").writerows([names, *rows])
+
+
+def write_report(path: Path, kind: type, items: Iterable[object], content: object) -> None:
+    """Write the items as CSV, or the content as JSON if the path ends so."""
+    with written(path) as stream:
+        if path.suffix.lower() == ".json":
+            print_json(content, stream)
+        else:
+            items_csv(kind, items, stream)
 
 
 def add_laws(
     parser: argparse.ArgumentParser, *, kinds: Sequence[str] = KINDS, many: bool = False
 ) -> None:
     """Add ``--set`` and an option for each kind of law; with ``many`` a list of names."""
-    for kind in kinds:
-        word = "integrator" if kind == "integrator" else f"{kind} law"
-        parser.add_argument(
-            f"--{kind}",
-            type=names if many else str,
-            metavar="A,B,..." if many else "NAME",
-            help=f"name of the {word}" + (", or several" if many else "") + "; or file.py:Class",
-        )
-    if kinds == KINDS and not many:
-        parser.add_argument(
-            "--restitution",
-            type=_number_or_words,
-            metavar="E",
-            help="in place of a normal law: one loss for pressure and shear that gives this e; or "
-            "e of the speed, '1 - 0.02 v^(1/5)', or a table in m/s, 0.5:0.95,2:0.9",
-        )
+    add_law_names(parser, kinds=kinds, many=many)
+    if "normal" in kinds:
+        add_restitution(parser)
     parser.add_argument(
         "--set",
         type=setting,
@@ -302,6 +308,31 @@ def add_laws(
         dest="settings",
         metavar="KIND.OPTION=VALUE",
         help="option of a law: tangential.annuli=50, integrator.steps=500; may be repeated",
+    )
+
+
+def add_law_names(
+    parser: argparse.ArgumentParser, *, kinds: Sequence[str] = KINDS, many: bool = False
+) -> None:
+    """Add an option for each kind of law; with ``many`` a list of names."""
+    for kind in kinds:
+        word = "integrator" if kind == "integrator" else f"{kind} law"
+        parser.add_argument(
+            f"--{kind}",
+            type=names if many else str,
+            metavar="A,B,..." if many else "NAME",
+            help=f"name of the {word}" + (", or several" if many else "") + "; or file.py:Class",
+        )
+
+
+def add_restitution(parser: argparse.ArgumentParser) -> None:
+    """Add ``--restitution``."""
+    parser.add_argument(
+        "--restitution",
+        type=_number_or_words,
+        metavar="E",
+        help="in place of a normal law: one loss for pressure and shear that gives this e; or "
+        "e of the speed, '1 - 0.02 v^(1/5)', or a table in m/s, 0.5:0.95,2:0.9",
     )
 
 
@@ -322,36 +353,38 @@ def add_progress(parser: argparse.ArgumentParser) -> None:
 
 def add_report(parser: argparse.ArgumentParser) -> None:
     """Add laws, size and outputs of a report over all laws."""
-    parser.add_argument(
-        "--law",
-        action="append",
-        metavar="NAME",
-        help="a law, such as tangential.springs, normal.tsuji or my_law.py:Stribeck; may be "
-        "repeated (default: all of a kind, under Hertz's normal law)",
-    )
+    for kind, default in (("normal", "hertz"), ("tangential", "all"), ("integrator", "all")):
+        words = f"names of laws, or file.py:Class (default: {default})"
+        add_names(parser, f"--{kind}", words)
     parser.add_argument("--quick", action="store_true", help="fewer scenes and resolutions")
-    parser.add_argument(
-        "--budget",
-        type=finite,
-        default=math.inf,
-        metavar="SECONDS",
-        help="begin no further run after this time",
-    )
+    add_time_limit(parser, "stop after this time, and report what is done")
     add_figure(parser, "also draw it")
-    add_file(parser, "--csv", ".csv")
-    add_json(parser)
+    add_file(parser, "--out", ".csv", ".json", words="also write .csv or .json")
+    add_forms(parser)
     add_progress(parser)
 
 
-def check_budget(seconds: float) -> None:
-    """Refuse a budget that is not positive."""
-    if seconds <= 0.0:
-        raise ValueError(f"--budget {seconds:g}: must be positive, in seconds")
+def add_time_limit(parser: argparse.ArgumentParser, words: str) -> None:
+    """Add ``--time-limit`` with ``words`` as its help."""
+    parser.add_argument("--time-limit", type=_seconds, metavar="SECONDS", help=words)
+
+
+def _seconds(text: str) -> float:
+    """Return the text as a positive time in s."""
+    if (seconds := finite(text)) <= 0.0:
+        raise argparse.ArgumentTypeError(f"{text!r}: must be positive, in seconds")
+    return seconds
+
+
+def chosen_laws(arguments: argparse.Namespace) -> list[str] | None:
+    """Return the laws named for a report over all laws, each with its kind; None if none is."""
+    chosen = {kind: getattr(arguments, kind) or [] for kind in KINDS}
+    return [full_name(kind, name) for kind in KINDS for name in chosen[kind]] or None
 
 
 def say_why_incomplete(report: Benchmark | Stability) -> str:
     """Return why a report over all laws is not complete."""
-    return "interrupted" if report.interrupted else "the budget ran out"
+    return "interrupted" if report.interrupted else "the time limit was reached"
 
 
 def scene_file(arguments: argparse.Namespace, read: Callable[..., SceneFile]) -> SceneFile:

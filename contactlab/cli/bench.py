@@ -3,8 +3,8 @@
 Examples
 --------
   contactlab bench --quick
-  contactlab bench --figure bench.png --csv bench.csv
-  contactlab bench --law tangential.springs --law normal.tsuji
+  contactlab bench --figure bench.png --out bench.csv
+  contactlab bench --tangential springs,annulus --normal tsuji
   contactlab bench --markdown --figure bench.png > bench.md
 """
 
@@ -37,26 +37,32 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the benchmark and report."""
-    shared.check_budget(arguments.budget)
-    if arguments.json and arguments.markdown:
-        raise ValueError("--json, --markdown: cannot be combined; leave out one")
-    chosen = methods(arguments.law)
+    for name in ("json", "csv"):
+        if getattr(arguments, name) and arguments.markdown:
+            raise ValueError(f"--{name}, --markdown: cannot be combined; leave out one")
+    laws = shared.chosen_laws(arguments)
+    chosen = methods(laws)
     with shared.progress(arguments.progress, "bench") as progress:
         benchmark = bench(
             chosen,
             quick=arguments.quick,
-            with_rebound=not arguments.law,
-            budget=arguments.budget,
+            with_rebound=not laws,
+            time_limit=arguments.time_limit,
             progress=progress,
         )
     saved = shared.save(
-        (arguments.csv, lambda path: shared.write_items(path, Row, benchmark.rows)),
+        (
+            arguments.out,
+            lambda path: shared.write_report(path, Row, benchmark.rows, _content(benchmark)),
+        ),
         (arguments.figure, lambda path: _draw(path, benchmark, **shared.look(arguments))),
         progress_wanted=arguments.progress,
         interrupted=benchmark.interrupted,
     )
     if arguments.json:
         shared.print_json(_content(benchmark))
+    elif arguments.csv:
+        shared.items_csv(Row, benchmark.rows, sys.stdout)
     else:
         print(markdown(benchmark) if arguments.markdown else _report(benchmark))
     return shared.INTERRUPTED if benchmark.interrupted else saved

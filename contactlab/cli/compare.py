@@ -24,13 +24,15 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
+import attrs
 import numpy as np
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.scene import add_file, add_ranges, check_alone, read
+from contactlab.cli.scene import add_file, add_groups, check_alone, read, restituted
 from contactlab.impact.scene import Scene
 from contactlab.numeric.names import nearest
 from contactlab.outcome.columns import find_quantity, json_value
+from contactlab.outcome.files import written
 from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.registration.names import KINDS, full_name, kind_of
 from contactlab.registry.composition import ON_A_PATH
@@ -59,7 +61,7 @@ DEFAULT_LAWS = ["fronts", "coulomb"]
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the scene, the laws, the quantities and the outputs."""
     add_file(parser, "a scene or a sweep (default: psi2 over psi1 of a solid sphere, chi = 49/34)")
-    add_ranges(parser)
+    add_groups(parser)
     words = "every installed tangential law that fits, one row a law"
     parser.add_argument("--all", action="store_true", help=words)
     shared.add_laws(parser, many=True)
@@ -73,9 +75,8 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         action="store_true",
         help="estimate the numerical error of each law for the figure's bands (--all always does)",
     )
-    form = parser.add_mutually_exclusive_group()
-    shared.add_json(form, "tables")
-    form.add_argument("--csv", action="store_true", help="print CSV instead of tables")
+    shared.add_file(parser, "--out", ".csv", ".json", words="also write .csv or .json")
+    shared.add_forms(parser, "tables")
     shared.add_progress(parser)
     return shared.check_outputs_first(execute)
 
@@ -85,6 +86,7 @@ def execute(arguments: argparse.Namespace) -> int:
     for quantity in arguments.quantity or ():
         find_quantity(quantity, where="--quantity")
     file = shared.scene_file(arguments, partial(_file, arguments))
+    file = attrs.evolve(file, laws=restituted(arguments, file.laws))
     named = bool(arguments.tangential)
     if arguments.all:
         compared = _all(arguments, file)
@@ -106,7 +108,16 @@ def execute(arguments: argparse.Namespace) -> int:
         )
     quantities = arguments.quantity or side_by_side.default_quantities(comparison)
     scored = arguments.all and bool(file.scene.shape)
+
+    def content() -> dict[str, object]:
+        whole = to_dict(comparison, quantities) | {"title": file.title}
+        whole["complete"] = not comparison.interrupted
+        if scored:
+            whole["scores"] = json_value(scores(comparison, compared))
+        return whole
+
     saved = shared.save(
+        (arguments.out, lambda path: _write(path, quantities, comparison, content())),
         (arguments.figure, lambda path: _draw(path, arguments, comparison)),
         (arguments.loops, lambda path: _draw_loops(path, arguments, file.scene, compared)),
         progress_wanted=arguments.progress,
@@ -115,11 +126,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.json or arguments.csv or arguments.all:  # these show no plan
         shared.tell_normal_spin(file.scene, *compared.values())
     if arguments.json:
-        content = to_dict(comparison, quantities) | {"title": file.title}
-        content["complete"] = not comparison.interrupted
-        if scored:
-            content["scores"] = json_value(scores(comparison, compared))
-        shared.print_json(content)
+        shared.print_json(content())
     elif arguments.csv:
         write_csv(comparison, quantities, sys.stdout)
     elif scored:
@@ -173,6 +180,15 @@ def _file(arguments: argparse.Namespace, defaults: Mapping[str, float] | None) -
         raise ValueError("--psi1, --chi: one of them may be a range; give the other one number")
     scene = Scene.nondimensional(**parameters)
     return SceneFile(path=Path("--psi1, --chi"), scene=scene, varied=varied)
+
+
+def _write(path: Path, quantities: Sequence[str], comparison: Comparison, content: object) -> None:
+    """Write a comparison as CSV, or its content as JSON if the path ends so."""
+    with written(path) as stream:
+        if path.suffix.lower() == ".json":
+            shared.print_json(content, stream)
+        else:
+            write_csv(comparison, quantities, stream)
 
 
 def _draw(path: Path, arguments: argparse.Namespace, comparison: Comparison) -> None:

@@ -9,7 +9,14 @@ from contactlab.impact.scene import entry_unit
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.numerical_error import error_cautions
 from contactlab.outcome.result import ImpactResult
-from contactlab.outcome.tables import answer, closing, largest_imbalance, sections, sweep_section
+from contactlab.outcome.tables import (
+    answer,
+    closing,
+    has_bodies,
+    largest_imbalance,
+    sections,
+    sweep_section,
+)
 from contactlab.outcome.text_table import table
 
 if TYPE_CHECKING:
@@ -30,9 +37,11 @@ def describe(
         body = [table(*sweep_section(result, shown)), largest_imbalance(result)]
     else:
         lines = "\n".join(f"{name:24} {words}" for name, words in answer(result))
-        body = [lines, *(table(*section) for section in sections(result))]
+        body = [table(*section) for section in sections(result)]
         if collision is not None:
-            body.insert(1, in_space(collision))
+            body.insert(0, in_space(collision))
+        # Who has bodies asks for velocities and spins: psi2 comes last.
+        body.insert(len(body) if has_bodies(result.scene) else 0, lines)
     ending = "\n".join(f"{name + ':':9} {words}" for name, words in closing(result))
     parts = [title, *body, cautions, str(result.plan), ending]
     return "\n\n".join(part for part in parts if part)

@@ -37,6 +37,26 @@ EPILOG = """examples:
 
 exit status: 0 success, 1 a run failed, 2 bad input, 130 interrupted
 """
+#: Headings of the list of commands; commands of other distributions stand under the last.
+HEADINGS = {
+    "compute": ("run", "sweep", "compare", "fit"),
+    "judge a law": ("bench", "stability", "validate", "plugins"),
+    "show": ("figures", "animate", "explore", "report"),
+    "take away": ("kernel", "cite", "materials", "guide"),
+}
+OTHERS = "of other plug-ins"
+#: Options that were renamed; the old name is refused with the new one.
+RENAMED = {
+    "--laws": "--tangential",
+    "--law": "--tangential (or --normal, --integrator)",
+    "--budget": "--time-limit",
+    "--seconds": "--time-limit",
+    "--estimate": "--estimate-error",
+    "--no-estimate": "--no-estimate-error",
+    "--figures": "--out",
+    "--inertia": "--inertia-ratio",
+    "--csv": "--residuals",
+}
 
 
 class Parser(argparse.ArgumentParser):
@@ -48,13 +68,31 @@ class Parser(argparse.ArgumentParser):
         if wrong:
             words = re.findall(r"[\w-]+", wrong[2])
             message += f"; {nearest(wrong[1], words)}"
+            if message.startswith("argument COMMAND"):  # they are many
+                message = f"no command {wrong[1]!r}; {nearest(wrong[1], words)}"
             if wrong[1] in ("help", "version"):
                 message = f"{wrong[1]} is an option: write contactlab --{wrong[1]}"
-        unknown = re.match(r"unrecognized arguments: (--[\w-]+)", message)
+        unknown = re.match(r"unrecognized arguments: (\S+?)(?: |=|$)", message)
         if unknown:
-            message += f"; {nearest(unknown[1], self._option_string_actions)}"
+            message += f"; {self._instead_of(unknown[1])}"
         message = message.rstrip("; ")
         self.exit(BAD_INPUT, f"{self.prog}: error: {message} (see {self.prog} --help)\n")
+
+    def _instead_of(self, word: str) -> str:
+        """Return what to write in place of a word that no option takes; empty if unknown."""
+        options = self._options()
+        if not word.startswith("-"):
+            return f"--csv prints; to write a file: --out {word}" if "--csv" in options else ""
+        new = RENAMED.get(word, "")
+        if new.partition(" ")[0] in options:
+            return f"{word} is now {new}"
+        return nearest(word, options)
+
+    def _options(self) -> list[str]:
+        """Return the options of the parser, and of the actions below it."""
+        below = [action.choices for action in self._actions if isinstance(action.choices, dict)]
+        parsers = [self, *(each for choices in below for each in choices.values())]
+        return [option for parser in parsers for option in parser._option_string_actions]
 
     def _print_message(self, message: str, file: SupportsWrite[str] | None = None) -> None:
         """Print help or an error; the method of argparse hides write errors."""
@@ -150,9 +188,10 @@ def _find_commands(words: Sequence[str]) -> tuple[Mapping[str, PluginInfo], bool
 def _parser(names: Mapping[str, PluginInfo], called: bool) -> argparse.ArgumentParser:
     """Return the parser with subcommands; it imports their modules if they are called."""
     raw = argparse.RawDescriptionHelpFormatter
+    about = "Oblique impact of elastic bodies, with contact laws as plug-ins."
     parser = Parser(
         prog="contactlab",
-        description="Oblique impact of elastic bodies, with contact laws as plug-ins.",
+        description=about if called else "\n\n".join([about, *_listed(names)]),
         epilog=EPILOG,
         formatter_class=raw,
     )
@@ -161,7 +200,11 @@ def _parser(names: Mapping[str, PluginInfo], called: bool) -> argparse.ArgumentP
         "--traceback", action="store_true", help="show the traceback of an error (before COMMAND)"
     )
     subparsers = parser.add_subparsers(
-        dest="command", metavar="COMMAND", required=True, parser_class=Parser
+        dest="command",
+        metavar="COMMAND",
+        required=True,
+        parser_class=Parser,
+        help=argparse.SUPPRESS,
     )
     for name, info in names.items():
         if called:
@@ -175,11 +218,24 @@ def _parser(names: Mapping[str, PluginInfo], called: bool) -> argparse.ArgumentP
             added.epilog = examples.replace("Examples\n--------", "examples:")
             added.set_defaults(execute=execute, parser=added)
         else:
-            summary = _docstring(info.module).partition("\n\n")[0].replace("%", "%%")
-            ours = info.distribution == PROJECT
-            origin = "" if ours else f" ({info.distribution} {info.version})"
-            subparsers.add_parser(name, help=summary + origin)
+            subparsers.add_parser(name)
     return parser
+
+
+def _listed(names: Mapping[str, PluginInfo]) -> list[str]:
+    """Return the commands under their headings, a line each."""
+    headings = {name: heading for heading, members in HEADINGS.items() for name in members}
+    order = [*headings, *sorted(names.keys() - headings)]
+    width = max(map(len, names), default=0)
+    lines: dict[str, list[str]] = {}
+    for name in order:
+        if (info := names.get(name)) is None:
+            continue
+        summary = " ".join(_docstring(info.module).partition("\n\n")[0].split())
+        origin = "" if info.distribution == PROJECT else f" ({info.distribution} {info.version})"
+        line = f"  {name.ljust(width)}  {summary}{origin}"
+        lines.setdefault(headings.get(name, OTHERS), []).append(line)
+    return ["\n".join([f"{heading}:", *members]) for heading, members in lines.items()]
 
 
 def _docstring(module: str) -> str:

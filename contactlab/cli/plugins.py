@@ -17,9 +17,9 @@ import textwrap
 from collections import Counter
 from typing import Any
 
-from contactlab.cli.arguments import FAILED, OK, add_progress, finite, print_json, progress
+from contactlab.cli.arguments import FAILED, OK, add_progress, add_time_limit, print_json, progress
 from contactlab.contracts import Integrator, Law, PathTangentialLaw, Scene, TangentialLaw
-from contactlab.numeric.checks import POSITIVE, real, refuse
+from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
 from contactlab.outcome.text_table import WIDTH, table
 from contactlab.registration.hooks import Execute, hookimpl
@@ -55,12 +55,10 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         action.add_argument(
             "name", metavar="NAME", help="such as tangential.annulus, or my_law.py:Stribeck"
         )
-    check.add_argument(
-        "--seconds",
-        type=finite,
-        metavar="S",
-        help="time limit of each check, and of the import (default 60); after three checks out of "
-        "time the others are not tried",
+    add_time_limit(
+        check,
+        "of each check, and of the import (default 60); after three checks out of time the others "
+        "are not tried",
     )
     add_progress(check)
     for action in (listing, show, check):
@@ -228,8 +226,7 @@ def _check(arguments: argparse.Namespace) -> int:
     from contactlab.testing.limits import SECONDS
     from contactlab.testing.outcomes import REMEDY
 
-    limit = SECONDS if arguments.seconds is None else arguments.seconds
-    seconds = float(real("--seconds", limit, rule=POSITIVE, remedy="in s"))
+    seconds = SECONDS if arguments.time_limit is None else arguments.time_limit
     with progress(arguments.progress, f"checking {arguments.name}") as counted:
         outcomes = examine(arguments.name, progress=counted, seconds=seconds)
     failures = [outcome for outcome in outcomes if not outcome.verdict.good]

@@ -6,6 +6,7 @@ Examples
   contactlab run examples/steel_ball.toml --tangential coulomb
   contactlab run examples/steel_ball.toml --tangential annulus --history force.csv
   contactlab run examples/sweep.toml --out sweep.csv
+  contactlab run --psi1 0:7:8 --chi 1.4412
   contactlab run --psi1 1.2 --chi 1.4412 --stick-slip map.png --style slides
   contactlab run --psi1 1.2 --chi 1.4412 --json
 """
@@ -25,6 +26,7 @@ from contactlab.cli import arguments as shared
 from contactlab.cli.describe import describe
 from contactlab.cli.scene import add_scene, inputs
 from contactlab.contracts.status import Status
+from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
 from contactlab.outcome import export
 from contactlab.outcome.columns import json_value
@@ -40,8 +42,8 @@ if TYPE_CHECKING:
 @hookimpl
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the scene, the laws and the outputs."""
-    add_scene(parser)
-    shared.add_json(parser)
+    add_scene(parser, ranges=True)
+    shared.add_forms(parser)
     shared.add_file(parser, "--out", *WRITERS, words="also write .json, .csv or .npz")
     words = "also write the history of a single impact"
     shared.add_file(parser, "--history", ".csv", words=words)
@@ -49,7 +51,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     words = "also draw regions of stick and slip over the contact of a single impact"
     shared.add_file(parser, "--stick-slip", *shared.PICTURES, words=words)
     parser.add_argument(
-        "--estimate",
+        "--estimate-error",
         action=argparse.BooleanOptionalAction,
         default=True,
         help="estimate the numerical error of a single impact by finer runs (the default)",
@@ -75,9 +77,9 @@ def execute(arguments: argparse.Namespace) -> int:
             result = simulation.run(
                 scene,
                 history="fields" if arguments.stick_slip else history,
-                estimate_error=arguments.estimate,
+                estimate_error=arguments.estimate_error,
             )
-    varied: Mapping[str, Real] = file.varied if file else {}
+    varied: Mapping[str, Real] = file.varied if file else _varied(arguments, scene)
     encounter = file.encounter if file else None
     collision = None
     if encounter is not None:
@@ -94,11 +96,22 @@ def execute(arguments: argparse.Namespace) -> int:
         progress_wanted=arguments.progress,
         interrupted=was_interrupted(result),
     )
-    if not arguments.json:
+    if arguments.csv:  # no plan is shown
+        for sentence in error_cautions(result):
+            print(f"contactlab: caution: {sentence}", file=sys.stderr)
+        shared.tell_normal_spin(result.scene, simulation)
+        export.print_csv(result, sys.stdout)
+    elif not arguments.json:
         title = file.title if file else ""
         print(describe(result, title=title, varied=varied, collision=collision))
     status = report(result, as_json=arguments.json, varied=varied, collision=collision)
     return max(saved, status)
+
+
+def _varied(arguments: argparse.Namespace, scene: Scene) -> dict[str, Real]:
+    """Return the ranges of the arguments by name, each of the scene's shape."""
+    groups = {"psi1": scene.psi1, "chi": scene.chi}
+    return {name: value for name, value in groups.items() if np.ndim(getattr(arguments, name))}
 
 
 def draw(path: Path, result: ImpactResult, **look: Unpack[shared.Drawing]) -> None:

@@ -10,6 +10,8 @@ import numpy as np
 
 from contactlab.cli import arguments as shared
 from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import refuse
+from contactlab.numeric.types import Real
 from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab.scene_file.laws import beside
@@ -53,27 +55,21 @@ def read(
     return read_scene(arguments.scene, defaults=defaults, allow_code=arguments.allow_code)
 
 
-def add_scene(parser: argparse.ArgumentParser) -> None:
+def add_scene(parser: argparse.ArgumentParser, *, ranges: bool = False) -> None:
     """Add the scene file, ``--psi1``, ``--chi`` and the laws."""
     add_file(parser)
-    parser.add_argument(
-        "--psi1", type=shared.finite, help="non-dimensional angle of incidence psi1, without a file"
-    )
-    parser.add_argument(
-        "--chi", type=shared.finite, help="inertia ratio (38): 1.4412 for a solid sphere, nu = 0.3"
-    )
+    add_groups(parser, ranges=ranges)
     shared.add_laws(parser)
 
 
-def add_ranges(parser: argparse.ArgumentParser) -> None:
-    """Add ``--psi1`` and ``--chi``, each one number or a range."""
+def add_groups(parser: argparse.ArgumentParser, *, ranges: bool = True) -> None:
+    """Add ``--psi1`` and ``--chi``, each one number, or with ``ranges`` a range too."""
+    convert, metavar = (numbers, "NUMBER or START:STOP:COUNT") if ranges else (None, "NUMBER")
     for name, words in (
-        ("psi1", "angle of incidence, 0 for no slip"),
-        ("chi", "inertia ratio, 1.4412 for a solid sphere"),
+        ("psi1", "angle of incidence, 0 for no slip, without a file"),
+        ("chi", "inertia ratio (38): 1.4412 for a solid sphere, nu = 0.3"),
     ):
-        parser.add_argument(
-            f"--{name}", type=numbers, metavar="START:STOP:COUNT", help=f"{words}; or one number"
-        )
+        parser.add_argument(f"--{name}", type=convert or shared.finite, metavar=metavar, help=words)
 
 
 def numbers(text: str) -> Any:
@@ -99,10 +95,12 @@ def check_alone(arguments: argparse.Namespace) -> None:
     """Refuse psi1 or chi beside a scene file."""
     if arguments.scene and not (arguments.psi1 is None and arguments.chi is None):
         if getattr(arguments, "csv", False) and not arguments.scene.endswith(".toml"):
-            told = f"{arguments.scene}: is read as a scene file, as --csv prints"
-            raise ValueError(f"{told}; to write a file: --csv > {arguments.scene}")
+            raise ValueError(
+                f"{arguments.scene!r} was read as a scene. --csv prints; to write a file: "
+                f"--out {arguments.scene}"
+            )
         raise ValueError(
-            "--psi1, --chi: cannot stand beside a scene file; leave out the file, or both of them"
+            f"--psi1, --chi: {arguments.scene} is a scene already; leave out the file, or both"
         )
 
 
@@ -113,21 +111,28 @@ def inputs(arguments: argparse.Namespace) -> Inputs:
     return Inputs(file, scene, compose_laws(arguments, file.laws if file else LawChoice()))
 
 
+def restituted(arguments: argparse.Namespace, choice: LawChoice) -> LawChoice:
+    """Return the laws of ``choice``, the normal law replaced by that of ``--restitution``."""
+    if arguments.restitution is None:
+        return choice
+    if arguments.normal is not None:
+        normal = arguments.normal
+        told = beside(
+            normal if isinstance(normal, str) else ",".join(normal),
+            arguments.restitution,
+            given="--restitution ",
+            law="--normal ",
+            option="--set normal.restitution=",
+        )
+        raise ValueError(told)
+    settings = dict(getattr(arguments, "settings", ()))
+    return choice.without("normal").set(settings).restituted(arguments.restitution)
+
+
 def compose_laws(arguments: argparse.Namespace, choice: LawChoice) -> Simulation:
     """Return the laws of ``choice``, replaced by the laws and options of the arguments."""
     settings = dict(arguments.settings)
-    if arguments.restitution is not None:
-        if arguments.normal is not None:
-            told = beside(
-                arguments.normal,
-                arguments.restitution,
-                given="--restitution ",
-                law="--normal ",
-                option="--set normal.restitution=",
-            )
-            raise ValueError(told)
-        choice = choice.without("normal").set(settings).restituted(arguments.restitution)
-    choice = choice.choose(
+    choice = restituted(arguments, choice).choose(
         normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
     )
     return choice.set(settings).simulation()
@@ -138,9 +143,27 @@ def _scene(arguments: argparse.Namespace, file: SceneFile | None) -> Any:
     check_alone(arguments)
     if file is not None:
         return file.scene
-    groups = (arguments.psi1, arguments.chi)
-    if None in groups:
-        missing = "--chi" if groups[1] is None else "--psi1"
-        missing = "a scene file, or --psi1 and --chi" if groups == (None, None) else missing
+    psi1, chi = arguments.psi1, arguments.chi
+    if psi1 is None or chi is None:
+        missing = "--chi" if chi is None else "--psi1"
+        missing = "a scene file, or --psi1 and --chi" if psi1 is chi else missing
         raise ValueError(f"{missing}: must be given (chi is 1.4412 for a solid sphere, nu = 0.3)")
-    return Scene.nondimensional(psi1=groups[0], chi=groups[1])
+    if np.ndim(psi1) or np.ndim(chi):
+        return grid(psi1, chi)
+    return Scene.nondimensional(psi1=psi1, chi=chi)
+
+
+def grid(psi1: Real | None, chi: Real | None) -> Scene:
+    """Return the scene of every psi1 with every chi, psi1 varying fastest."""
+    remedy = "contactlab sweep --out folder/ holds more"
+    return Scene.grid(**grid_entries(psi1, chi, most=MOST_IMPACTS, remedy=remedy))
+
+
+def grid_entries(psi1: Real | None, chi: Real | None, *, most: int, remedy: str) -> dict[str, Any]:
+    """Return the entries of a grid, or refuse more impacts than ``most``."""
+    if psi1 is None or chi is None:
+        missing = " and ".join(n for n, v in (("--psi1", psi1), ("--chi", chi)) if v is None)
+        raise ValueError(f"{missing}: must be given, or a sweep file")
+    if (size := np.size(psi1) * np.size(chi)) > most:
+        raise refuse("--psi1, --chi", size, f"at most {most} impacts", remedy)
+    return {"chi": np.atleast_1d(chi), "psi1": np.atleast_1d(psi1)}

@@ -3,8 +3,8 @@
 Examples
 --------
   contactlab stability --quick
-  contactlab stability --figure stability.png --csv stability.csv
-  contactlab stability --law tangential.springs --budget 60
+  contactlab stability --figure stability.png --out stability.csv
+  contactlab stability --tangential springs --time-limit 60
 """
 
 from __future__ import annotations
@@ -41,22 +41,26 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Run the report; the status is 1 if any answer is silently wrong or a law raised."""
-    shared.check_budget(arguments.budget)
     if arguments.width == "one":
         raise ValueError("--width one: the map is too wide for one column; use --width two")
-    chosen = methods(arguments.law)
+    chosen = methods(shared.chosen_laws(arguments))
     with shared.progress(arguments.progress, "stability") as progress:
         result = stability(
-            chosen, quick=arguments.quick, budget=arguments.budget, progress=progress
+            chosen, quick=arguments.quick, time_limit=arguments.time_limit, progress=progress
         )
     saved = shared.save(
-        (arguments.csv, lambda path: shared.write_items(path, Outcome, result.outcomes)),
+        (
+            arguments.out,
+            lambda path: shared.write_report(path, Outcome, result.outcomes, _content(result)),
+        ),
         (arguments.figure, lambda path: _draw(path, arguments, chosen, result)),
         progress_wanted=arguments.progress,
         interrupted=result.interrupted,
     )
     if arguments.json:
         shared.print_json(_content(result))
+    elif arguments.csv:
+        shared.items_csv(Outcome, result.outcomes, sys.stdout)
     else:
         print(report(result))
     if result.interrupted:

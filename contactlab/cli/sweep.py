@@ -26,17 +26,16 @@ import numpy as np
 from contactlab.cli import arguments as shared
 from contactlab.cli.run import draw, report, was_interrupted
 from contactlab.cli.scene import (
-    MOST_IMPACTS,
     add_file,
-    add_ranges,
+    add_groups,
     check_alone,
     compose_laws,
+    grid,
+    grid_entries,
     read,
 )
 from contactlab.contracts.status import Status, succeeded
-from contactlab.impact.grid import GridParts
 from contactlab.impact.scene import Scene, entry_unit
-from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Real
 from contactlab.outcome.answer import ImpactError
 from contactlab.outcome.chunk_forms import form_of
@@ -66,11 +65,9 @@ MOST_ROWS = 25
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the scenes, the laws and the outputs."""
     add_file(parser, "a sweep, instead of ranges")
-    add_ranges(parser)
+    add_groups(parser)
     shared.add_laws(parser)
-    form = parser.add_mutually_exclusive_group()
-    shared.add_json(form)
-    form.add_argument("--csv", action="store_true", help="print psi1, chi, psi2 as CSV")
+    shared.add_forms(parser)
     words = (
         f"{', '.join(WRITERS)}; or a folder/ for more impacts than memory holds, which goes on "
         "from a stopped sweep: files of NumPy, or in a folder.parquet/ of Parquet"
@@ -92,7 +89,7 @@ def execute(arguments: argparse.Namespace) -> int:
         raise ValueError(f"{arguments.scene}: holds a single impact; use contactlab run")
     if _is_folder(arguments.out):
         return _into_folder(arguments, file)
-    scene = file.scene if file else _ranges(arguments.psi1, arguments.chi)
+    scene = file.scene if file else grid(arguments.psi1, arguments.chi)
     simulation = compose_laws(arguments, file.laws if file else LawChoice())
     keep = _folder(arguments.out) if arguments.resume else None
     before = 0 if keep is None else _done(keep)
@@ -170,7 +167,13 @@ def _into_folder(arguments: argparse.Namespace, file: SceneFile | None) -> int:
         if getattr(arguments, name):
             rule = f"--{name}: needs all impacts in memory; leave it out, or name a file with --out"
             raise ValueError(rule)
-    scenes = file.scene if file else _parts(arguments.psi1, arguments.chi)
+    scenes = (
+        file.scene
+        if file
+        else Scene.grid_in_parts(
+            **grid_entries(arguments.psi1, arguments.chi, most=MOST_IN_A_FOLDER, remedy="vary less")
+        )
+    )
     simulation = compose_laws(arguments, file.laws if file else LawChoice())
     with (
         shared.progress(arguments.progress, "impacts") as progress,
@@ -241,27 +244,6 @@ def _count_done(result: ImpactResult) -> int:
     if succeeded(result.status):
         return len(result)
     return sum(status not in NOT_COMPUTED for status in result.status)
-
-
-def _ranges(psi1: Real | None, chi: Real | None) -> Scene:
-    """Return the scene of every psi1 with every chi, psi1 varying fastest."""
-    remedy = "--out folder/ holds more"
-    return Scene.grid(**_grid(psi1, chi, most=MOST_IMPACTS, remedy=remedy))
-
-
-def _parts(psi1: Real | None, chi: Real | None) -> GridParts:
-    """Return the scenes of ``_ranges`` one after another."""
-    return Scene.grid_in_parts(**_grid(psi1, chi, most=MOST_IN_A_FOLDER, remedy="vary less"))
-
-
-def _grid(psi1: Real | None, chi: Real | None, *, most: int, remedy: str) -> dict[str, Any]:
-    """Return the entries of a grid, or refuse more impacts than ``most``."""
-    if psi1 is None or chi is None:
-        missing = " and ".join(n for n, v in (("--psi1", psi1), ("--chi", chi)) if v is None)
-        raise ValueError(f"{missing}: must be given, or a sweep file")
-    if (size := np.size(psi1) * np.size(chi)) > most:
-        raise refuse("--psi1, --chi", size, f"at most {most} impacts", remedy)
-    return {"chi": np.atleast_1d(chi), "psi1": np.atleast_1d(psi1)}
 
 
 def _rows(

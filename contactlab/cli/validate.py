@@ -3,7 +3,7 @@
 Examples
 --------
   contactlab validate
-  contactlab validate --figures pictures
+  contactlab validate --out pictures
   contactlab validate --json
 """
 
@@ -37,7 +37,7 @@ DRAWN = (
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the outputs."""
     parser.add_argument(
-        "--figures",
+        "--out",
         type=shared.folder_of,
         metavar="DIR",
         help="draw a picture of each source in this folder",
@@ -49,11 +49,11 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Validate and report; the status is 1 if a bound is not met."""
-    folder: Path | None = arguments.figures
+    folder: Path | None = arguments.out
     if folder is not None:
         if not folder.parent.is_dir():
-            raise ValueError(f"--figures {folder}: there is no folder {folder.parent}")
-        shared.make_folder("--figures", folder)
+            raise ValueError(f"--out {folder}: there is no folder {folder.parent}")
+        shared.make_folder("--out", folder)
     findings: list[Finding] = []
     gathered: list[Evidence] = []
     interrupted = False

@@ -5,13 +5,14 @@ To add a file format, add a writer and a line in ``WRITERS``.
 
 from __future__ import annotations
 
+import csv
 import json
 import math
 import zipfile
 import zlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,10 +54,16 @@ def write_json(result: ImpactResult, path: str | Path) -> None:
 
 def write_csv(result: ImpactResult, path: str | Path) -> None:
     """Write one row for each impact, with the unit in each heading."""
+    with written(path) as stream:
+        print_csv(result, stream)
+
+
+def print_csv(result: ImpactResult, stream: TextIO) -> None:
+    """Write what ``write_csv`` writes into a stream."""
     table = columns(result)
     headings = [csv_heading(name, unit, result.scene) for name, unit, _ in table]
     cells = [_spread(values, result.scene.shape) for _, _, values in table]
-    write_table(path, headings, list(zip(*cells, strict=True)))
+    csv.writer(stream, lineterminator="\n").writerows([headings, *zip(*cells, strict=True)])
 
 
 def write_history_csv(result: ImpactResult, path: str | Path) -> None:

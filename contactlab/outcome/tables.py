@@ -208,26 +208,33 @@ def _drop_gaps(result: ImpactResult, headings: list[str], rows: list[Row]) -> Se
     return Section(headings, shown)
 
 
+def has_bodies(scene: Scene) -> bool:
+    """Return whether a scene is of bodies, not of psi1 and chi alone."""
+    return scene.sphere is not None or scene.encounter is not None
+
+
 def _velocities(result: ImpactResult) -> list[Row]:
-    """Return velocities before and after the impact."""
+    """Return velocities before and after the impact; of bodies psi is the last."""
     scene, bodies = result.scene, result.scene.sphere is not None
-    rows: list[Row] = [
+    slip = scene.slip_velocity, result.rebound_slip_velocity
+    local = [
+        *_pairs("local tangential velocity", *slip, "m/s"),
         *_pairs("local angle psi", scene.psi1, result.psi2, "1"),
-        *_pairs(
-            "local tangential velocity", scene.slip_velocity, result.rebound_slip_velocity, "m/s"
-        ),
     ]
+    rows: list[Row] = []
     if kinetics.turns(scene):
         spins = scene.normal_spin, result.rebound_normal_spin
         rows.append(["spin about the normal", *spins, "rad/s"])
     if not bodies:
-        return [*rows, ["normal velocity", scene.normal_speed, result.normal_velocity, "m/s"]]
+        normal = ["normal velocity", scene.normal_speed, result.normal_velocity, "m/s"]
+        return [normal, *rows, *local] if has_bodies(scene) else [*local[::-1], *rows, normal]
     after_tangential = result.rebound_tangential_velocity
     after_angle = QUANTITIES["rebound_angle_deg"].read(result)
-    rows += [
+    rows = [
         ["normal velocity", scene.normal_speed, result.rebound_normal_velocity, "m/s"],
         ["tangential velocity", scene.tangential_velocity, after_tangential, "m/s"],
         ["spin", scene.spin, result.rebound_spin, "rad/s"],
+        *rows,
         ["angle of the path", np.degrees(result.incidence_angle), after_angle, "deg"],
     ]
     if isinstance(scene.target, Sphere):
@@ -236,7 +243,7 @@ def _velocities(result: ImpactResult) -> list[Row]:
             ["target: tangential velocity", 0.0, result.target_rebound_tangential_velocity, "m/s"],
             ["target: spin", 0.0, result.target_rebound_spin, "rad/s"],
         ]
-    return rows
+    return [*rows, *local]
 
 
 def _pairs(name: str, before: Real, after: Real, unit: str) -> list[Row]:
@@ -272,7 +279,7 @@ def _contact(result: ImpactResult) -> list[Row]:
         for column in columns_of(scene)
         if column.name in foreign()
     ]
-    if scene.sphere is None and scene.encounter is None:
+    if not has_bodies(scene):
         return rows
     sizes: list[Row] = [["largest contact radius", motion.maximum_radius, "m"]]
     if scene.pair.axis_ratio != 1.0:

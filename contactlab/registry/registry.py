@@ -28,6 +28,7 @@ from contactlab.registration.names import (
     is_place,
     meant,
     same_distribution,
+    short_name,
     split_name,
 )
 from contactlab.registry.loading import IN_FILES, check_class, law_at, law_class
@@ -35,6 +36,9 @@ from contactlab.registry.loading import IN_FILES, check_class, law_at, law_class
 __all__ = [
     "BLOCK_VARIABLE", "KINDS", "REGISTRY", "PluginError", "PluginInfo", "PluginWarning", "Registry",
 ]  # fmt: skip
+
+#: What messages call a law of each kind.
+CALLED = {"normal": "normal law", "tangential": "friction law", "integrator": "integrator"}
 
 
 class Registry:
@@ -50,6 +54,7 @@ class Registry:
        else the law of the only distribution that offers it. If several others do, it is refused.
     3. ``CONTACTLAB_BLOCK_PLUGINS`` takes names of either form, and names of distributions, whose
        laws are then all blocked. Blocked laws do not count in rule 2.
+    4. A name without its kind means the law of this name if only one kind has it.
     """
 
     def __init__(self) -> None:
@@ -114,6 +119,10 @@ class Registry:
             for info in installed
             if info.name == plain and same_distribution(info.distribution, distribution)
         ]
+        if not matches and "." not in plain:
+            full = {info.name for info in installed if info.name.partition(".")[2] == plain}
+            if len(full) == 1:  # the only law of this name
+                return self.info(f"{distribution}:{full.pop()}".removeprefix(":"))
         if not matches:
             raise self._unknown(name)
         if matches[0].malformed:
@@ -205,17 +214,23 @@ class Registry:
         """Return the refusal of a name that is not installed, with the nearest installed name."""
         distribution, plain = split_name(str(name))
         kind, _, short = plain.rpartition(".")
-        names = self.names(kind if kind in KINDS else None)
-        offered = [info.qualified for info in self.installed() if info.name == plain]
+        offered = [
+            info.qualified
+            for info in self.installed()
+            if plain in (info.name, short_name(info.name))
+        ]
         if offered:
-            hint = f"{plain!r} is offered as {' and '.join(map(repr, offered))}; "
+            hint = f"write {' or '.join(map(repr, offered))}. "
         elif distribution:
             others = {info.distribution for info in self.installed()} - {distribution}
             hint = nearest(distribution, others)
         else:  # kinds are left out, which would make any two names similar
-            hint = nearest(short, names) or nearest(short, self.names(), alike=1.0)
-        return refuse(
-            "name", name, "no such law is installed", f"{hint}installed: {', '.join(names)}"
+            near = nearest(short, [short_name(each) for each in self.names(kind)])
+            hint = near or nearest(short, self.names(), alike=0.5 if kind not in KINDS else 1.0)
+        typed = f"{distribution}:{short}" if distribution else short
+        what = CALLED.get(kind, f"{kind} law" if kind else "law")
+        return ValueError(
+            f"no {what} {typed!r} is installed; {hint}all names: contactlab plugins list"
         )
 
 

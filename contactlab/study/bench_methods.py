@@ -192,11 +192,11 @@ def methods(laws: Iterable[str] | None = None) -> list[Method]:
                     f"does not fit {integrators}" if integrators else "fits no installed integrator"
                 )
                 under = full_name("normal", normal)
-                raise ValueError(f"--law {tangential}: {misfit} under {under}")
+                raise ValueError(f"--tangential {tangential}: {misfit} under {under}")
             fitting += of_law
     if laws is not None and not fitting:
         listed = ", ".join(name for names in named.values() for name in names)
-        raise ValueError(f"--law {listed}: no installed tangential law fits")
+        raise ValueError(f"{listed}: no installed tangential law fits")
     return fitting
 
 

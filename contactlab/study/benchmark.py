@@ -63,7 +63,8 @@ class Row:
 class Benchmark:
     """Rows, and for each method the order of convergence observed in its rms error.
 
-    ``complete`` is False if the budget or Ctrl-C left rows out; ``interrupted`` is True on Ctrl-C.
+    ``complete`` is False if the time limit or Ctrl-C left rows out; ``interrupted`` is True on
+    Ctrl-C.
     """
 
     rows: tuple[Row, ...]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import math
-import time
 from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -28,6 +27,7 @@ from contactlab.study.stability_judge import (
     Outcome,
     judge,
 )
+from contactlab.study.time_limit import time_limited
 
 #: A case of more work than this, in steps of one part, is skipped. Work is not time: which cases
 #: are tried does not depend on the machine.
@@ -42,7 +42,7 @@ class Stability:
 
     Outcomes hold numerical errors, against the law's own exact answer. ``models`` holds the model
     errors of laws whose exact answer is not that of the elastic continuum. ``complete`` is False
-    if the budget or Ctrl-C left cases out; ``interrupted`` is True on Ctrl-C.
+    if the time limit or Ctrl-C left cases out; ``interrupted`` is True on Ctrl-C.
     """
 
     outcomes: tuple[Outcome, ...]
@@ -105,7 +105,7 @@ def stability(
     methods: Sequence[Method],
     *,
     quick: bool = False,
-    budget: float = np.inf,
+    time_limit: float | None = None,
     progress: Callable[[int, int], object] | None = None,
     judge: Callable[[Cell], Outcome] = judge,
 ) -> Stability:
@@ -116,8 +116,8 @@ def stability(
     methods : sequence of Method
     quick : bool
         Fewer scenes and resolutions, without the long ones.
-    budget : float
-        Seconds after which no further case is begun; ``complete`` then is False.
+    time_limit : float, optional
+        Seconds of clock after which the report ends; ``complete`` then is False.
     progress : callable, optional
         Called as ``progress(done, total)``.
     judge : callable
@@ -128,12 +128,11 @@ def stability(
     Stability
         Ctrl-C keeps the outcomes that there are.
     """
-    until = time.perf_counter() + budget
     listed = [case for method in methods for case in all_cases(method, quick=quick)]
     elastic = [method for method in methods if method.normal == DEFAULT_NORMAL]
     largest = QUICK_LARGEST if quick else LARGEST
-    # A budget cuts all methods alike: family by family, and within a family by work. Model errors
-    # come after the map, which has cached the costly exact answers.
+    # A time limit cuts all methods alike: family by family, and within a family by work. Model
+    # errors come after the map, which has cached the costly exact answers.
     jobs: list[Callable[[], Outcome | ModelError | None]] = [
         partial(judge if work(case) <= largest else _skip, case)
         for case in sorted(listed, key=lambda case: (case.family == MAP, case.family, work(case)))
@@ -145,12 +144,14 @@ def stability(
     items: list[Any] = []
     interrupted = False
     try:
-        for done, job in enumerate(jobs, start=1):
-            if time.perf_counter() > until:
-                break
-            items.append(job())
-            if progress is not None:
-                progress(done, len(jobs))
+        with time_limited(time_limit) as over:
+            for done, job in enumerate(jobs, start=1):
+                item = job()
+                if over():  # the item may have been stopped half-way
+                    break
+                items.append(item)
+                if progress is not None:
+                    progress(done, len(jobs))
     except KeyboardInterrupt:
         interrupted = True
     return Stability(

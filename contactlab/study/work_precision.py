@@ -25,6 +25,7 @@ from contactlab.study.bench_methods import Method, Options, scenes
 from contactlab.study.benchmark import ALIKE, ROUNDING, Benchmark, Row
 from contactlab.study.posed import need_units, pose
 from contactlab.study.stability_references import converges, reference_for
+from contactlab.study.time_limit import time_limited
 
 #: Tolerance of the exact answers: finer than the default, which is measured too.
 EXACT_TOLERANCE = 1e-12
@@ -48,7 +49,7 @@ def bench(
     *,
     quick: bool = False,
     with_rebound: bool = False,
-    budget: float = np.inf,
+    time_limit: float | None = None,
     progress: Callable[[int, int], object] | None = None,
 ) -> Benchmark:
     """Return errors and run times of every method at every resolution.
@@ -60,8 +61,8 @@ def bench(
         Fewer scenes and resolutions.
     with_rebound : bool
         Whether ``contactlab.rebound`` is measured too, before the methods.
-    budget : float
-        Seconds after which no further resolution is begun; ``complete`` then is False.
+    time_limit : float, optional
+        Seconds of clock after which the report ends; ``complete`` then is False.
     progress : callable, optional
         Called as ``progress(done, total)`` after each resolution.
 
@@ -70,28 +71,32 @@ def bench(
     Benchmark
         Ctrl-C keeps the resolutions that are done.
     """
-    truths = {key: _truths(*key, quick=quick) for key in {_limit(method) for method in methods}}
     resolutions = [
         (method, resolution) for method in methods for resolution in method.resolutions(quick=quick)
     ]
-    started, rows, slow = time.perf_counter(), [], set[str]()
+    rows: list[Row] = []
+    slow: set[str] = set()
     limit = SLOW_QUICK if quick else SLOW
     interrupted = False
     try:
-        if with_rebound:
-            rows.append(_rebound_row(quick=quick))
-        for done, (method, resolution) in enumerate(resolutions, start=1):
-            if time.perf_counter() - started > budget:
-                break
-            rows.append(
-                _left_out(method, resolution)
-                if method.name in slow
-                else _row(method, resolution, truths[_limit(method)], quick=quick)
-            )
-            if rows[-1].time_s > limit:
-                slow.add(method.name)
-            if progress is not None:
-                progress(done, len(resolutions))
+        with time_limited(time_limit) as over:
+            keys = {_limit(method) for method in methods}
+            truths = {key: _truths(*key, quick=quick) for key in keys}
+            if with_rebound:
+                rows.append(_rebound_row(quick=quick))
+            for done, (method, resolution) in enumerate(resolutions, start=1):
+                row = (
+                    _left_out(method, resolution)
+                    if method.name in slow
+                    else _row(method, resolution, truths[_limit(method)], quick=quick)
+                )
+                if over():  # the row may have been stopped half-way
+                    break
+                rows.append(row)
+                if row.time_s > limit:
+                    slow.add(method.name)
+                if progress is not None:
+                    progress(done, len(resolutions))
     except KeyboardInterrupt:
         interrupted = True
     orders = {

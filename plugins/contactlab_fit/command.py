@@ -5,7 +5,7 @@ Examples
   contactlab fit examples/kharaz2001.toml --quantity tangential_restitution
   contactlab fit impacts.csv bodies.toml --fit friction_coefficient,stiffness_ratio
   contactlab fit impacts.csv bodies.toml --fit friction_coefficient,restitution,shear_loss
-  contactlab fit impacts.csv bodies.toml --laws exact,coulomb,mindlin_cap --figure fit.png
+  contactlab fit impacts.csv bodies.toml --tangential exact,coulomb,mindlin_cap --figure fit.png
   contactlab fit --flight film.csv bodies.toml --fit friction_coefficient,restitution
   contactlab fit impacts.csv bodies.toml --normal viscoelastic,tsuji --fit restitution
 """
@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any, Unpack
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.scene import add_allow_code
+from contactlab.cli.scene import add_allow_code, restituted
 from contactlab.numeric.checks import whole
 from contactlab.outcome.files import distinct
 from contactlab.registration.hooks import Execute, hookimpl
@@ -60,8 +60,9 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         "tangential laws, the first reported and all ranked; exact (default) is the exact elastic "
         "law, computed from a table"
     )
-    shared.add_names(parser, "--laws", words, default=[EXACT])
-    shared.add_names(parser, "--normal", "normal laws, as --laws; or file.py:Class")
+    shared.add_names(parser, "--tangential", words, default=[EXACT])
+    shared.add_names(parser, "--normal", "normal laws, as --tangential; or file.py:Class")
+    shared.add_restitution(parser)
     shared.add_laws(parser, kinds=("integrator",))
     add_allow_code(parser)
     shared.add_names(parser, "--quantity", "measured quantities to fit (default: all)")
@@ -83,7 +84,8 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     )
     add_columns(parser)
     shared.add_figure(parser, "draw measured values, laws and residuals")
-    shared.add_file(parser, "--csv", ".csv", words="write the residuals")
+    shared.add_file(parser, "--residuals", ".csv", words="also write the residuals")
+    shared.add_file(parser, "--out", ".json", words="also write all that --json prints")
     shared.add_json(parser, "tables")
     shared.add_progress(parser)
     return shared.check_outputs_first(execute)
@@ -94,7 +96,13 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.bootstrap is not None:
         whole("--bootstrap", arguments.bootstrap, least=0, most=100_000)
     for number, name in enumerate(arguments.files, start=1):
-        distinct({f"FILE {number}": name, "--csv": arguments.csv, "--figure": arguments.figure})
+        distinct(
+            {
+                f"FILE {number}": name,
+                "--residuals": arguments.residuals,
+                "--figure": arguments.figure,
+            }
+        )
     data, path = _files(arguments.files, arguments.flight)
     if arguments.flight is None:
         impacts = read_impacts(data, arguments)
@@ -137,7 +145,7 @@ def execute(arguments: argparse.Namespace) -> int:
     shown = [law for law in ranked if law.fit] or [Ranked(name=first, fit=fitted)]
     saved = shared.save(
         (arguments.figure, lambda file: _draw(file, shown, **shared.look(arguments))),
-        (arguments.csv, lambda file: write_residuals(file, shown)),
+        (arguments.residuals, lambda file: write_residuals(file, shown)),
         progress_wanted=arguments.progress,
         interrupted=interrupted,
     )
@@ -204,20 +212,26 @@ def _files(names: list[str], film: Path | None) -> tuple[Any, Path]:
 def _simulations(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation | None]:
     """Return a simulation for each pair of laws, None for the exact table.
 
-    The names are those of ``--laws``, of ``--normal`` if it is a list, or both.
+    The names are those of ``--tangential``, of ``--normal`` if it is a list, or both.
     """
     normals = arguments.normal or [None]
     own = file.laws.normal
     settings = dict(arguments.settings)
+    if arguments.restitution is not None:
+        if RESTITUTION in arguments.fit:
+            raise ValueError(f"--restitution: is fitted too, by --fit {RESTITUTION}; leave one out")
+        chosen = restituted(arguments, file.laws)
+        normals, own = [chosen.normal], None
+        settings |= {f"normal.{k}": v for k, v in chosen.options.get("normal", {}).items()}
     if normals == [None] and own is None:
-        restituted = f"normal.{RESTITUTION}" in settings
-        if default_laws(arguments.fit, restituted=restituted) is not None:
+        given = f"normal.{RESTITUTION}" in settings
+        if default_laws(arguments.fit, restituted=given) is not None:
             normals = [LOSSY]
     simulations: dict[str, Simulation | None] = {}
-    for normal, name in itertools.product(normals, arguments.laws):
+    for normal, name in itertools.product(normals, arguments.tangential):
         exact = name == EXACT
         told = [normal] if len(normals) > 1 else []
-        told += [name] if len(arguments.laws) > 1 or not told else []
+        told += [name] if len(arguments.tangential) > 1 or not told else []
         if exact and (normal or own) in (None, DEFAULT_NORMAL) and not settings:
             simulations[" ".join(told)] = None
             continue

@@ -25,6 +25,8 @@ SPRINGS, STEPS = 100, 500
 RANGES = {"angle": (0.0, 85.0), "speed": (0.1, 10.0), "spin": (-600.0, 600.0),
           "friction": (0.02, 1.0), "radius": (0.001, 0.1), "inertia": (0.25, 0.67),
           "restitution": (0.0, 1.0)}  # fmt: skip
+#: Arguments of ``explore_page`` by their sliders, where the names differ.
+ARGUMENTS = {"friction": "friction_coefficient", "inertia": "inertia_ratio"}
 #: Parts of the page and their files; the kernel is that for games, no module here.
 PARTS = {
     "STYLE": "contactlab_pages/explore.css", "KERNEL": "contactlab/kernels/contactlab_bounce.mjs",
@@ -59,9 +61,9 @@ def explore_page(
     angle: float = 35.0,
     speed: float = 2.0,
     spin: float = 200.0,
-    friction: float = 0.8,
+    friction_coefficient: float = 0.8,
     radius: float = 0.01,
-    inertia: float = 0.4,
+    inertia_ratio: float = 0.4,
     restitution: float = 1.0,
     material: str = "pmma",
     block: str | None = None,
@@ -77,11 +79,11 @@ def explore_page(
         First speed, in m/s.
     spin : float
         First spin, in rad/s, positive where it adds to the slip.
-    friction : float
+    friction_coefficient : float
         First friction coefficient.
     radius : float
         First radius of the ball, in m.
-    inertia : float
+    inertia_ratio : float
         First moment of inertia over m R², the square of the gyration ratio: 0.4 of a solid ball,
         2/3 of a thin shell. The mass is that of a solid ball.
     restitution : float
@@ -99,13 +101,17 @@ def explore_page(
         If a number is beyond its slider, or the material unknown.
     """
     first: dict[str, Any] = {
-        "angle": angle, "speed": speed, "spin": spin, "friction": friction,
-        "radius": radius, "inertia": inertia, "restitution": restitution,
+        "angle": angle, "speed": speed, "spin": spin, "friction": friction_coefficient,
+        "radius": radius, "inertia": inertia_ratio, "restitution": restitution,
     }  # fmt: skip
     for name, value in first.items():
         least, most = RANGES[name]
         if not least <= value <= most:
-            raise refuse(name, value, f"must lie in [{least:g}, {most:g}], the range of the slider")
+            raise refuse(
+                ARGUMENTS.get(name, name),
+                value,
+                f"must lie in [{least:g}, {most:g}], the range of the slider",
+            )
     first |= {"material": entry(material).name, "block": entry(block).name if block else ""}
     first |= {"predict": predict, "guess": 0}
     page = resources.files("contactlab_pages").joinpath("explore.html").read_text("utf-8")

@@ -15,8 +15,9 @@ from pathlib import Path
 from contactlab.cli import arguments as shared
 from contactlab.outcome.files import written
 from contactlab.registration.hooks import Execute, hookimpl
-from contactlab_pages.explore import RANGES, explore_page
+from contactlab_pages.explore import ARGUMENTS, RANGES, explore_page
 
+OPTIONS = {"inertia": "inertia-ratio"}
 UNITS = {
     "angle": "in degrees from the normal", "speed": "in m/s", "spin": "in rad/s",
     "radius": "in m", "inertia": "over m R²: 0.4 solid, 0.667 thin shell",
@@ -28,10 +29,15 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the first values of the sliders, and the file."""
     defaults = inspect.signature(explore_page).parameters
     for name in RANGES:
-        first = defaults[name].default
+        first = defaults[ARGUMENTS.get(name, name)].default
         words = " ".join(["first", name, UNITS.get(name, "")]).strip()
         parser.add_argument(
-            f"--{name}", type=shared.finite, default=first, help=f"{words} (default: {first:g})"
+            f"--{OPTIONS.get(name, name)}",
+            type=shared.finite,
+            metavar=name.upper(),
+            default=first,
+            dest=ARGUMENTS.get(name, name),
+            help=f"{words} (default: {first:g})",
         )
     parser.add_argument(
         "--material", default="pmma", metavar="NAME", help="of the ball (default: pmma)"
@@ -48,8 +54,8 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Write the page and print its path."""
-    values = {name: getattr(arguments, name) for name in (*RANGES, "material", "block", "predict")}
-    page = explore_page(**values)
+    names = inspect.signature(explore_page).parameters
+    page = explore_page(**{name: getattr(arguments, name) for name in names})
     with written(arguments.out) as stream:
         stream.write(page)
     print(arguments.out)

@@ -7,7 +7,7 @@ from html import escape
 
 from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult
-from contactlab.outcome.tables import answer, closing, number, sections
+from contactlab.outcome.tables import answer, closing, has_bodies, number, sections
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[object]], *, digits: int = 6) -> str:
@@ -51,8 +51,8 @@ def plan(of: Plan) -> str:
 
 def one_impact(result: ImpactResult) -> str:
     """Return answer, tables and status of one impact."""
-    parts = [pairs(answer(result))]
-    parts += [table(*section) for section in sections(result)]
+    parts = [table(*section) for section in sections(result)]
+    parts.insert(len(parts) if has_bodies(result.scene) else 0, pairs(answer(result)))
     return "".join([*parts, pairs(closing(result))])
 
 

@@ -12,8 +12,10 @@ import argparse
 from functools import partial
 from pathlib import Path
 
+import attrs
+
 from contactlab.cli import arguments as shared
-from contactlab.cli.scene import add_file
+from contactlab.cli.scene import add_file, restituted
 from contactlab.outcome.files import written
 from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.registration.names import full_name, short_name
@@ -38,6 +40,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     parser.add_argument(
         "--integrator", metavar="NAME", help="integrator in place of the file's own"
     )
+    shared.add_restitution(parser)
     shared.add_file(parser, "--out", ".html", required=True)
     shared.add_progress(parser)
     return shared.check_outputs_first(execute)
@@ -47,6 +50,7 @@ def execute(arguments: argparse.Namespace) -> int:
     """Run the scene under the laws, write the page and print its path."""
     code = arguments.allow_code
     file = shared.scene_file(arguments, partial(read_scene, arguments.scene, allow_code=code))
+    file = attrs.evolve(file, laws=restituted(arguments, file.laws))
     laws = file.laws.choose(normal=arguments.normal, integrator=arguments.integrator)
     own = laws.suited_to(file.scene).tangential
     simulations = {str(own): laws.simulation()}

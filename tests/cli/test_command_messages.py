@@ -80,7 +80,7 @@ MISSING = "must be given too (chi is 1.4412 for a solid sphere)"
         (["compare", "SWEEP", "--tangential", "annulus", "--set", "tangential.anuli=5"], "--set "
          "tangential.anuli: none of the laws chosen has this option; did you mean "
          "'tangential.annuli'? known: tangential.annuli, tangential.displacement"),
-        (["validate", "--figures", "no/such/dir"],
+        (["validate", "--out", "no/such/dir"],
          "--figures no/such/dir: there is no folder no/such"),
         (["guide", "qqq"], None),
         (["guide", "theory", "99"], "section = '99': is not a section of 'theory'; leave it out "

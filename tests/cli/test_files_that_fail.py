@@ -135,13 +135,13 @@ KHARAZ = EXAMPLES / "kharaz2001.toml"
         ("run", "--psi1", 1, "--chi", 1, "--history", "a.csv", "--figure", "a.png"),
         ("sweep", "--psi1", "0:1:3", "--chi", 1, "--csv", "--figure", "a.pdf"),
         ("compare", "--psi1", 1, "--chi", 1, "--figure", "a.svg"),
-        ("bench", "--quick", "--law", "tangential.coulomb", "--csv", "a.csv"),
+        ("bench", "--quick", "--tangential", "coulomb", "--out", "a.csv"),
         ("explore", "--out", "a.html"),
         ("kernel", "--out", "."),
         *longer(
             (("report", EXAMPLES / "steel_ball.toml", "--out", "a.html"),),
-            (("fit", KHARAZ, "--bootstrap", 0, "--csv", "a.csv"),),
-            (("stability", "--quick", "--law", "tangential.walton", "--csv", "a.csv"),),
+            (("fit", KHARAZ, "--bootstrap", 0, "--residuals", "a.csv"),),
+            (("stability", "--quick", "--tangential", "walton", "--out", "a.csv"),),
             (("figures", "--only", 2, "--tangential", "coulomb", "--out", "."),),
             (("animate", "--psi1", 1, "--chi", 1, "--out", "a.gif"),),
         ),
@@ -165,6 +165,6 @@ def test_a_folder_of_pictures_that_cannot_be_made_is_refused_before_the_checks(r
     """After minutes of checks it took their findings with it."""
     (tmp_path / "pictures").write_text("a file")
     for name, words in (("pictures", "is a file"), ("p" * 300, "cannot make the folder")):
-        ran = run("validate", "--figures", tmp_path / name)
+        ran = run("validate", "--out", tmp_path / name)
         assert (ran.status, ran.out) == (2, "")
         assert words in ran.err

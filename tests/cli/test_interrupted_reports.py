@@ -26,7 +26,7 @@ def test_bench(run, monkeypatch, tmp_path):
     monkeypatch.setattr(bench, "methods", lambda _: STEPPED)
     monkeypatch.setattr(work_precision, "_row", interrupting(work_precision._row, 2))
     table, picture = tmp_path / "b.csv", tmp_path / "b.png"
-    ran = run("bench", "--quick", "--csv", table, "--figure", picture)
+    ran = run("bench", "--quick", "--out", table, "--figure", picture)
     assert ran.status == 130
     assert ran.out.endswith("not complete: interrupted\n")
     assert [row["method"] for row in rows(partial(table))] == ["rebound()"] + [
@@ -52,7 +52,7 @@ def test_stability(run, monkeypatch, tmp_path, after):
     monkeypatch.setattr("contactlab.study.stability.time", clock)
     table, picture = tmp_path / "s.csv", tmp_path / "s.png"
     partial(picture).write_text("earlier")
-    ran = run("stability", "--quick", "--csv", table, "--figure", picture)
+    ran = run("stability", "--quick", "--out", table, "--figure", picture)
     assert ran.status == 130
     assert ran.out.endswith("not complete: interrupted\n")
     assert len(rows(partial(table))) == after

@@ -15,7 +15,7 @@ from tests.cli.conftest import EXAMPLES, interrupting, partial
 from tests.longer import longer
 
 KHARAZ = EXAMPLES / "kharaz2001.toml"
-E_T = ("--quantity", "tangential_restitution", "--laws", "exact,coulomb,stronge")
+E_T = ("--quantity", "tangential_restitution", "--tangential", "exact,coulomb,stronge")
 
 
 def test_compare_keeps_the_laws_that_are_done(run, monkeypatch, measured, tmp_path):

@@ -47,13 +47,13 @@ def test_run_tells_in_words_json_and_files(run, files, tmp_path):
     assert "; without spin about the normal" in words.out
     assert words.out.count(CAUTION) == 1
     for text in (
-        run("run", one, "--json", "--no-estimate").out,
+        run("run", one, "--json", "--no-estimate-error").out,
         (tmp_path / "one.json").read_text(),
     ):
         plan = json.loads(text)["plan"]
         assert "spin about the normal: its friction is left out" in plan["left_out"]
         assert any(CAUTION in each for each in plan["cautions"])
-    assert "spin about the normal (2 of 3 impacts)" in run("run", sweep, "--no-estimate").out
+    assert "spin about the normal (2 of 3 impacts)" in run("run", sweep, "--no-estimate-error").out
 
 
 @pytest.mark.parametrize(

@@ -17,9 +17,9 @@ NUMBERS = ("--psi1 1.2", "--chi 1.44")
 GRID = ("--psi1 0:4:3", "--chi 1")
 COMMANDS = {
     "run": (
-        "{ball}", "{foot}", *NUMBERS, *LAWS, *LOOKS, "--json", "--out {}/out.json",
-        "--history {}/history.csv", "--figure {}/figure.svg", "--stick-slip {}/map.svg",
-        "--no-estimate",
+        "{ball}", "{foot}", *NUMBERS, "--psi1 0:4:3", *LAWS, *LOOKS, "--json", "--csv",
+        "--out {}/out.json", "--history {}/history.csv", "--figure {}/figure.svg",
+        "--stick-slip {}/map.svg", "--no-estimate-error",
     ),
     "sweep": (
         "{short}", "{foot}", *GRID, *LAWS, *LOOKS, "--json", "--csv", "--out {}/out.csv",
@@ -27,30 +27,34 @@ COMMANDS = {
     ),
     "compare": (
         "{short}", *GRID, *LAWS, *LOOKS, "--quantity psi2", "--json", "--csv",
-        "--figure {}/figure.svg", "--loops {}/loops.svg", "--column psi1=psi1",
+        "--out {}/table.json", "--restitution 0.8", "--figure {}/figure.svg",
+        "--loops {}/loops.svg", "--column psi1=psi1",
     ),
     "explore": (
-        "--angle 20", "--speed 3", "--spin 0", "--friction 0.2", "--radius 0.02", "--inertia 0.4",
+        "--angle 20", "--speed 3", "--spin 0", "--friction 0.2", "--radius 0.02",
+        "--inertia-ratio 0.4",
         "--restitution 0.8", "--material steel", "--block brass", "--predict", "--out {}/page.html",
     ),
     "bench": (
-        "--law integrator.symplectic", "--budget 0.2", *LOOKS, "--figure {}/figure.svg",
-        "--csv {}/table.csv", "--json", "--markdown",
+        "--integrator symplectic", "--time-limit 0.2", *LOOKS, "--figure {}/figure.svg",
+        "--out {}/table.csv", "--csv", "--json", "--markdown",
     ),
     "stability": (
-        "--law integrator.symplectic", "--budget 0.2", *LOOKS, "--csv {}/table.csv", "--json",
+        "--integrator symplectic", "--time-limit 0.2", *LOOKS, "--out {}/table.json", "--csv",
+        "--json",
     ),
     "figures": (*LAWS, *LOOKS, "--only 4", "--format pdf"),
     "fit": (
-        "--fit friction_coefficient", "--laws coulomb,mindlin_cap", "--normal hertz",
+        "--fit friction_coefficient", "--tangential coulomb,mindlin_cap", "--normal hertz",
         "--integrator symplectic", "--set tangential.springs=12",
         "--quantity tangential_restitution", "--bootstrap 0", "--column angle=incidence_angle",
-        *LOOKS, "--figure {}/figure.svg", "--csv {}/table.csv", "--json",
+        *LOOKS, "--figure {}/figure.svg", "--residuals {}/table.csv", "--json",
+        "--restitution 0.8",
     ),
     "report": (
         "{ball}", "{short}", "{foot}", "--tangential coulomb,frictionless", "--normal hertz",
-        "--integrator symplectic", "--measured {impacts}", "--column angle=incidence_angle",
-        "--no-progress",
+        "--integrator symplectic", "--restitution 0.8", "--measured {impacts}",
+        "--column angle=incidence_angle", "--no-progress",
     ),
     "animate": (
         "{ball}", "{foot}", *NUMBERS, "--tangential springs", "--ghost coulomb", "--no-progress",
@@ -63,8 +67,8 @@ COMMANDS = {
 }  # fmt: skip
 #: Options that stand before each pair, so that a command is short, or has what it needs.
 ALWAYS = {
-    "bench": "--quick --law tangential.coulomb",
-    "stability": "--quick --law tangential.coulomb",
+    "bench": "--quick --tangential coulomb",
+    "stability": "--quick --tangential coulomb",
     "figures": "--out {} --only 2",
     "fit": "{impacts} {ball}",
     "report": "--out {}/page.html",

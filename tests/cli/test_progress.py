@@ -61,9 +61,9 @@ def test_short_work_says_nothing(begin, terminal):
     of_commands(
         ("sweep {short} --out o.csv", "impacts", 3),
         ("compare {short}", "runs", 2),
-        ("fit {impacts} {ball} --laws exact,coulomb,walton --bootstrap 0", "laws", 2),
-        ("bench --quick --law tangential.coulomb", "bench", 1),
-        ("stability --quick --law tangential.coulomb", "stability", None),
+        ("fit {impacts} {ball} --tangential exact,coulomb,walton --bootstrap 0", "laws", 2),
+        ("bench --quick --tangential coulomb", "bench", 1),
+        ("stability --quick --tangential coulomb", "stability", None),
         *longer(
             ("figures --out . --only 2", "figures", 1),
             ("validate", "checks", None),

@@ -60,7 +60,9 @@ def test_the_run_time_is_told_in_the_unit_that_suits(run, monkeypatch, tick, wor
     clock = itertools.count()
     monkeypatch.setattr(time, "perf_counter", lambda: next(clock) * tick)
     (line,) = (
-        line for line in run("run", *PSI, "--no-estimate").out.splitlines() if "run time" in line
+        line
+        for line in run("run", *PSI, "--no-estimate-error").out.splitlines()
+        if "run time" in line
     )
     assert line.split(maxsplit=2)[2] == words
 
@@ -75,7 +77,7 @@ def test_table_of_a_nondimensional_scene_claims_no_units(run):
 def test_nobody_is_told_to_estimate_what_was_estimated(run):
     """The plan said how to estimate the error, below the estimate."""
     scene = ("run", "--psi1", "2", "--chi", "1.44", "--tangential", "mindlin_cap")
-    for words, advised in ((scene, False), ((*scene, "--no-estimate"), True)):
+    for words, advised in ((scene, False), ((*scene, "--no-estimate-error"), True)):
         out = run(*words).out
         assert ("estimates it" in out) is advised
         assert (", estimated" in out) is not advised

@@ -17,7 +17,7 @@ from contactlab.study.stability_judge import RAISED, WRONG, Outcome
 
 pytestmark = pytest.mark.slow
 
-COMMAND = ("stability", "--quick", "--law", "springs")
+COMMAND = ("stability", "--quick", "--tangential", "springs")
 
 
 def failed(outcome):
@@ -25,7 +25,7 @@ def failed(outcome):
 
 
 def test_a_law_without_steps_has_a_model_error_and_no_picture(run, tmp_path):
-    ran = run("stability", "--quick", "--law", "coulomb", "--figure", tmp_path / "s.png")
+    ran = run("stability", "--quick", "--tangential", "coulomb", "--figure", tmp_path / "s.png")
     assert ran.status == 0
     assert float(re.search(r"^coulomb +(0\.\d+) +\S+$", ran.out, re.MULTILINE)[1]) > 0.3
     assert not (tmp_path / "s.png").exists()
@@ -34,7 +34,7 @@ def test_a_law_without_steps_has_a_model_error_and_no_picture(run, tmp_path):
 
 def test_table_csv_and_figure_of_a_law(run, tmp_path):
     files = tmp_path / "s.csv", tmp_path / "s.png"
-    ran = run(*COMMAND, "--csv", files[0], "--figure", files[1])
+    ran = run(*COMMAND, "--out", files[0], "--figure", files[1])
     assert ran.status == 0
     for integrator in ("paper", "symplectic", "adaptive"):
         assert len(re.findall(rf"^springs / {integrator} ", ran.out, re.MULTILINE)) == 2
@@ -71,7 +71,7 @@ def test_a_law_that_is_silently_wrong_fails_it_and_is_named(run, monkeypatch, tm
     monkeypatch.setattr(
         stability, "methods", lambda _: [Method(tangential="springs", integrator="symplectic")]
     )
-    ran = run(*COMMAND, "--csv", tmp_path / "s.csv")
+    ran = run(*COMMAND, "--out", tmp_path / "s.csv")
     assert ran.status == 1
     assert re.search(r"springs / symplectic +\S.* silently wrong +error \S+ of the range", ran.out)
     wrong = int(re.search(r"compared, (\d+) wrong;", ran.out)[1])
@@ -118,7 +118,7 @@ def test_answers_without_a_reference_are_not_counted_as_compared(run, monkeypatc
 def test_the_picture_has_a_curve_a_law_under_its_usual_integrator(run, tmp_path, monkeypatch):
     drawn = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
-    ran = run(*COMMAND, "--law", "linear_spring", "--figure", tmp_path / "m.png")
+    ran = run(*COMMAND, "--tangential", "linear_spring", "--figure", tmp_path / "m.png")
     assert ran.status == 0
     (axes,) = drawn[0].axes
     assert {"springs", "linear spring"} <= {text.get_text() for text in axes.texts}

@@ -149,7 +149,7 @@ def short(monkeypatch):
 
 
 def test_tables_pictures_and_json(run, short, tmp_path):
-    ran = run("validate", "--figures", tmp_path / "pictures")
+    ran = run("validate", "--out", tmp_path / "pictures")
     assert ran.status == 0
     assert "capped" not in ran.err
     assert "Simulations by other codes" in ran.out
@@ -163,7 +163,7 @@ def test_tables_pictures_and_json(run, short, tmp_path):
 
 
 def test_a_folder_that_cannot_be(run, tmp_path):
-    ran = run("validate", "--figures", tmp_path / "no" / "pictures")
+    ran = run("validate", "--out", tmp_path / "no" / "pictures")
     assert (ran.status, ran.out) == (2, "")
     assert "there is no folder" in ran.err
 

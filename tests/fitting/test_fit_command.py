@@ -32,8 +32,8 @@ def test_kharaz_gives_the_friction_that_was_found_by_hand(run):
 )  # fmt: skip
 def test_laws_are_ranked_on_kharaz(run, tmp_path, laws):
     table, picture = tmp_path / "residuals.csv", tmp_path / "fit.png"
-    ran = run("fit", KHARAZ, *E_T, "--laws", ",".join(laws), "--bootstrap", 0,
-              "--csv", table, "--figure", picture, "--json")  # fmt: skip
+    ran = run("fit", KHARAZ, *E_T, "--tangential", ",".join(laws), "--bootstrap", 0,
+              "--residuals", table, "--figure", picture, "--json")  # fmt: skip
     ranking = json.loads(ran.out)["ranking"]
     assert [one["law"] for one in ranking] == laws
     criteria = [one["fit"]["aic"] for one in ranking]
@@ -49,7 +49,7 @@ def test_laws_are_ranked_on_kharaz(run, tmp_path, laws):
 
 
 def test_tables(run, impacts):
-    ran = run("fit", impacts, KHARAZ, "--laws", "exact,coulomb", "--bootstrap", 5)
+    ran = run("fit", impacts, KHARAZ, "--tangential", "exact,coulomb", "--bootstrap", 5)
     assert ran.status == 0
     assert "friction_coefficient" in ran.out
     assert "bootstrap from" in ran.out
@@ -72,7 +72,7 @@ def test_a_column_is_named_on_the_command_line(run, impacts):
 
 
 def test_a_parameter_has_a_row_with_its_intervals(run, impacts):
-    options = ("--laws", "coulomb", "--bootstrap", 5)
+    options = ("--tangential", "coulomb", "--bootstrap", 5)
     ran = run("fit", impacts, KHARAZ, *options)
     found = json.loads(run("fit", impacts, KHARAZ, *options, "--json").out)
     one = found["parameters"]["friction_coefficient"]
@@ -91,11 +91,11 @@ def test_a_parameter_has_a_row_with_its_intervals(run, impacts):
         ('normal = "viscoelastic"', (), f"{VISCOELASTIC % 0.9}, partial slip (tabulated rebound)"),
         (f'normal = "viscoelastic"\n{HALF}', (), VISCOELASTIC % 0.5),
         pytest.param(f'normal = "tsuji"\n{HALF}',
-                     ("--normal", "hunt_crossley", "--laws", "coulomb"),
+                     ("--normal", "hunt_crossley", "--tangential", "coulomb"),
                      "hunt_crossley (restitution=0.9), coulomb, events",
                      marks=pytest.mark.slow),
         ("", ("--set", "normal.restitution=0.8", "--normal", "tsuji"), "tsuji (restitution=0.8)"),
-        ("", ("--laws", "springs", "--integrator", "paper"), "hertz, springs, paper"),
+        ("", ("--tangential", "springs", "--integrator", "paper"), "hertz, springs, paper"),
     ],
 )  # fmt: skip
 def test_laws_are_those_of_the_file_and_of_the_options(run, impacts, tmp_path, own, options, laws):
@@ -113,7 +113,7 @@ def test_laws_are_those_of_the_file_and_of_the_options(run, impacts, tmp_path, o
 
 @pytest.mark.slow
 def test_cautions_are_told_of_every_law(run):
-    options = ("fit", KHARAZ, *E_T, "--laws", "exact,coulomb", "--bootstrap", 0)
+    options = ("fit", KHARAZ, *E_T, "--tangential", "exact,coulomb", "--bootstrap", 0)
     content = json.loads(run(*options, "--json").out)
     exact, coulomb = (one["fit"]["cautions"] for one in content["ranking"])
     assert content["cautions"] == exact
@@ -147,7 +147,9 @@ def test_the_notes_lead_from_a_csv_of_soft_data_to_its_friction(run, tmp_path):
     both = run(*command, "--fit", "friction_coefficient,restitution").out
     assert "fit shear_loss too, or slip_restitution of walton" in both
     names = "friction_coefficient,restitution,slip_restitution"
-    ran = run(*command, "--fit", names, "--normal", "tsuji,hertz", "--laws", "walton", "--json")
+    ran = run(
+        *command, "--fit", names, "--normal", "tsuji,hertz", "--tangential", "walton", "--json"
+    )
     first, second = json.loads(ran.out)["ranking"]
     assert (first["law"], second["law"]) == ("tsuji", "hertz")
     assert first["fit"]["parameters"]["friction_coefficient"]["value"] == pytest.approx(0.35, 0.03)
@@ -175,7 +177,7 @@ def test_restitution_comes_out_of_kharaz(run):
     [
         (("--fit", "mu"), "did you mean 'friction_coefficient'"),
         (("--fit", "stiffness_ratio"), "measure tangential_restitution at angles"),
-        (("--laws", "exakt"), "tangential.exakt"),
+        (("--tangential", "exakt"), "tangential.exakt"),
         (("--normal", "herz"), "did you mean 'normal.hertz'"),
         (("--quantity", "spin"), "was not measured"),
         (("--bootstrap", "-1"), "--bootstrap"),
@@ -209,7 +211,7 @@ def test_files_that_are_not_there_or_too_many(run, files, words):
 
 def test_the_data_are_not_written_over(run, impacts):
     before = impacts.read_text(encoding="utf-8")
-    ran = run("fit", impacts, KHARAZ, "--csv", impacts)
+    ran = run("fit", impacts, KHARAZ, "--residuals", impacts)
     assert ran.status == 2
     assert "is the same file" in ran.err
     assert impacts.read_text(encoding="utf-8") == before
@@ -217,7 +219,7 @@ def test_the_data_are_not_written_over(run, impacts):
 
 @pytest.mark.slow
 def test_a_law_that_cannot_be_fitted_is_said_and_the_others_stay(run):
-    ran = run("fit", KHARAZ, *E_T, "--fit", "stiffness_ratio", "--laws", "exact,coulomb",
+    ran = run("fit", KHARAZ, *E_T, "--fit", "stiffness_ratio", "--tangential", "exact,coulomb",
               "--bootstrap", 0)  # fmt: skip
     assert ran.status == 1
     assert "exact" in ran.out
@@ -229,7 +231,7 @@ def test_an_interruption_keeps_what_is_done(run, impacts, monkeypatch, tmp_path)
         raise KeyboardInterrupt
 
     monkeypatch.setattr(estimation, "_solved_again", interrupted)
-    ran = run("fit", impacts, KHARAZ, "--csv", tmp_path / "r.csv")
+    ran = run("fit", impacts, KHARAZ, "--residuals", tmp_path / "r.csv")
     assert ran.status == 130
     assert "friction_coefficient" in ran.out
     assert ran.out.endswith("not complete: interrupted\n")

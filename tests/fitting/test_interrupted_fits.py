@@ -11,12 +11,12 @@ from tests.cli.conftest import EXAMPLES, interrupting
 from tests.longer import longer
 
 KHARAZ = EXAMPLES / "kharaz2001.toml"
-E_T = ("--quantity", "tangential_restitution", "--laws", "exact,coulomb,stronge")
+E_T = ("--quantity", "tangential_restitution", "--tangential", "exact,coulomb,stronge")
 
 
 def test_a_fit_keeps_the_laws_that_are_done(run, monkeypatch, tmp_path):
     monkeypatch.setattr(fit_command, "rank", interrupting(fit_command.rank, 1))
-    ran = run("fit", KHARAZ, *E_T, "--json", "--csv", tmp_path / "r.csv")
+    ran = run("fit", KHARAZ, *E_T, "--json", "--residuals", tmp_path / "r.csv")
     assert ran.status == 130
     assert {one["law"] for one in json.loads(ran.out)["ranking"]} == {"exact", "coulomb"}
     rows = csv.DictReader((tmp_path / "r.partial.csv").read_text(encoding="utf-8").splitlines())

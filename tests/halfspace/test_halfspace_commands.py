@@ -27,7 +27,7 @@ def test_compare(run):
 @pytest.mark.slow
 def test_bench(run, tmp_path):
     table = tmp_path / "bench.csv"
-    assert run("bench", "--quick", "--law", "tangential.halfspace", "--csv", table).status == 0
+    assert run("bench", "--quick", "--tangential", "halfspace", "--out", table).status == 0
     assert "halfspace,rings=8" in table.read_text("utf-8")
 
 
@@ -44,7 +44,14 @@ def test_report(run, tmp_path):
 def test_fit(run):
     """The axisymmetric problem: the friction of the exact law."""
     pytest.importorskip("contactlab_fit")
-    laws = ("--laws", "halfspace", "--set", "tangential.angles=1", "--set", "tangential.rings=8")
+    laws = (
+        "--tangential",
+        "halfspace",
+        "--set",
+        "tangential.angles=1",
+        "--set",
+        "tangential.rings=8",
+    )
     ran = run("fit", MEASURED, "--quantity", "tangential_restitution", "--bootstrap", 0, *laws)
     assert ran.status == 0
     friction = float(ran.out.partition("friction_coefficient")[2].split()[0])
@@ -53,7 +60,7 @@ def test_fit(run):
 
 @pytest.mark.slow
 def test_stability_judges_it_by_itself_at_twice_its_resolution():
-    """A fifth of the quick cases; ``contactlab stability --law tangential.halfspace`` has all."""
+    """A fifth of the quick cases; ``contactlab stability --tangential halfspace`` has all."""
     method = Method(tangential="halfspace", integrator="events")
     found = [judge(case) for case in [*cases(method, quick=True)][::5]]
     assert {each.outcome for each in found} == {ANSWERED}

@@ -160,6 +160,6 @@ class Mine(SteppedTangentialLaw):
 def test_a_law_that_exits_or_never_returns(start, at_once, words, tmp_path, capsys):
     path = tmp_path / "law.py"
     path.write_text(LAW.format(start=start, at_once=at_once), encoding="utf-8")
-    assert main(["plugins", "check", f"{path}:Mine", "--seconds", "0.2"]) == 1
+    assert main(["plugins", "check", f"{path}:Mine", "--time-limit", "0.2"]) == 1
     out, err = capsys.readouterr()
     assert words in " ".join((out + err).split())

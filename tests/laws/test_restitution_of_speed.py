@@ -58,7 +58,7 @@ def test_the_same_in_toml_and_on_the_command_line(written, words, e, tmp_path, c
     path.write_text(FILE.format(written), encoding="utf-8")
     plain.write_text(FILE.partition("[simulation]")[0], encoding="utf-8")
     for command in ([str(path)], [str(plain), "--restitution", words]):
-        assert main(["run", *command, "--json", "--no-estimate"]) == 0
+        assert main(["run", *command, "--json", "--no-estimate-error"]) == 0
         found = json.loads(capsys.readouterr().out)
         assert found["normal_restitution"] == pytest.approx(e, rel=1e-6)
 

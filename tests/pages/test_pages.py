@@ -180,7 +180,7 @@ def test_a_result_without_history_cannot_be_animated(tmp_path):
 def test_pictures_of_any_form_are_the_same_twice(run, ball, tmp_path, end, begins):
     one, other = (tmp_path / f"{name}.{end}" for name in ("one", "other"))
     for path in (one, other):
-        assert run("run", ball, "--no-estimate", "--figure", path).status == 0
+        assert run("run", ball, "--no-estimate-error", "--figure", path).status == 0
     assert one.read_bytes().startswith(begins)
     assert one.read_bytes() == other.read_bytes()
 
@@ -196,7 +196,7 @@ def test_a_sweep_is_drawn_for_slides(run, tmp_path):
 
 def test_where_the_contact_sticks_is_drawn(run, short_sweep, tmp_path):
     out = tmp_path / "map.png"
-    one = ("run", "--psi1", 1.2, "--chi", 1.4, "--no-estimate")
+    one = ("run", "--psi1", 1.2, "--chi", 1.4, "--no-estimate-error")
     assert run(*one, "--stick-slip", out).status == 0
     with Image.open(out) as picture:
         colours = {tuple(colour) for _, colour in picture.convert("RGB").getcolors(1 << 16)}

@@ -256,9 +256,9 @@ def test_every_command_takes_a_law_in_a_file(files, capsys):
     words = ("--psi1", "8:9:2", "--chi", "1", "--tangential", f"coulomb,{name}", "--json")
     compared = json.loads(run(capsys, "compare", *words)[1])["laws"]
     assert compared[name]["values"]["psi2"][1] == pytest.approx(7.0)
-    listed = json.loads(run(capsys, "bench", "--quick", "--json", "--law", name)[1])
+    listed = json.loads(run(capsys, "bench", "--quick", "--json", "--tangential", name)[1])
     assert {row["method"] for row in listed["rows"]} == {name}
-    listed = json.loads(run(capsys, "stability", "--quick", "--json", "--law", name)[1])
+    listed = json.loads(run(capsys, "stability", "--quick", "--json", "--tangential", name)[1])
     assert {each["method"] for each in listed["outcomes"]} == {name}
     shown = json.loads(run(capsys, "plugins", "show", name, "--json")[1])
     assert shown["known_as"] == f"{files / 'half.py'}:Half"
@@ -271,7 +271,7 @@ def test_every_command_takes_a_law_in_a_file(files, capsys):
     (files / "data.csv").write_text(table)
     (files / "scene.toml").write_text("[nondimensional]\npsi1 = 9\nchi = 1\n")
     fitted = run(
-        capsys, "fit", "data.csv", "scene.toml", "--laws", name, "--fit", "tangential.share",
+        capsys, "fit", "data.csv", "scene.toml", "--tangential", name, "--fit", "tangential.share",
         "--bootstrap", "0", "--json",
     )  # fmt: skip
     assert json.loads(fitted[1])["parameters"]["tangential.share"]["value"] == pytest.approx(0.25)

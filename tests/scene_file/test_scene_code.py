@@ -180,7 +180,7 @@ def test_fit_needs_the_users_word(tmp_path, ran, capsys, kind):
     pytest.importorskip("contactlab_fit")
     written(tmp_path / "scenes", "../beside/evil.py:Evil", kind=kind)
     (tmp_path / "scenes" / "data.csv").write_text("psi1,chi,psi2\n9,1,5\n8,1,4\n8.5,1,4.5\n")
-    words = ("fit", "data.csv", "scene.toml", "--laws", "coulomb", "--bootstrap", "0")
+    words = ("fit", "data.csv", "scene.toml", "--tangential", "coulomb", "--bootstrap", "0")
     status, told = command(capsys, *words, "--fit", "stiffness_ratio")
     if kind == "normal":
         assert status == 2

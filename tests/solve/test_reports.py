@@ -93,8 +93,14 @@ def test_methods_of_any_kind_of_law():
     ("laws", "words"),
     [
         (["normal.softest"], "did you mean 'normal.softer'"),
-        (["fronts", "normal.softer"], "--law fronts: fits no installed .* under normal.softer"),
-        (["fronts", "integrator.march"], "--law fronts: does not fit march under normal.hertz"),
+        (
+            ["fronts", "normal.softer"],
+            "fronts: fits no installed .* under normal.softer",
+        ),
+        (
+            ["fronts", "integrator.march"],
+            "fronts: does not fit march under normal.hertz",
+        ),
     ],
 )
 def test_laws_that_do_not_fit_are_refused(laws, words):
@@ -107,8 +113,8 @@ def test_laws_that_do_not_fit_are_refused(laws, words):
 def test_bench_of_them(capsys, monkeypatch):
     """The law scaled in stiffness is Hertz's at another speed: springs converge under it too."""
     monkeypatch.setattr(work_precision, "SLOW_QUICK", math.inf)  # no resolution is left out
-    words = ["bench", "--quick", "--json", "--law", "springs", "--law", "normal.softer"]
-    assert main([*words, "--law", "integrator.march"]) == 0
+    words = ["bench", "--quick", "--json", "--tangential", "springs", "--normal", "softer"]
+    assert main([*words, "--integrator", "march"]) == 0
     rows = json.loads(capsys.readouterr().out)["rows"]
     assert {row["method"] for row in rows} == {"springs / march, softer"}
     assert [row["status"] for row in rows] == ["SUCCESS"] * len(rows)
@@ -118,7 +124,7 @@ def test_bench_of_them(capsys, monkeypatch):
 
 @pytest.mark.usefixtures("theirs")
 def test_stability_of_them(capsys):
-    words = ["stability", "--quick", "--json", "--law", "coulomb", "--law", "normal.softer"]
+    words = ["stability", "--quick", "--json", "--tangential", "coulomb", "--normal", "softer"]
     assert main(words) == 0
     outcomes = json.loads(capsys.readouterr().out)["outcomes"]
     assert {item["method"] for item in outcomes} == {"coulomb, softer"}

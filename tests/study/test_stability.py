@@ -231,7 +231,7 @@ def test_progress_of_the_report_counts_every_case():
 
 
 def test_a_budget_ends_the_report_early():
-    found = stability(methods(), quick=True, budget=1e-9)
+    found = stability(methods(), quick=True, time_limit=1e-9)
     assert not found.complete
     assert not found.outcomes
 

@@ -121,20 +121,20 @@ def test_two_forms_of_one_table_are_refused(capsys):
 
 
 def test_budget_ends_it_and_says_so(capsys):
-    assert main(["bench", "--quick", "--law", "coulomb", "--budget", "1e-6"]) == 0
+    assert main(["bench", "--quick", "--tangential", "coulomb", "--time-limit", "1e-6"]) == 0
     assert "not complete" in capsys.readouterr().out
 
 
 @pytest.mark.slow
 def test_command_writes_table_csv_and_picture(tmp_path, capsys):
     files = [str(tmp_path / name) for name in ("b.png", "b.csv")]
-    words = ["bench", "--quick", "--law", "coulomb", "--json", "--figure"]
-    assert main([*words, files[0], "--csv", files[1]]) == 0
+    words = ["bench", "--quick", "--tangential", "coulomb", "--json", "--figure"]
+    assert main([*words, files[0], "--out", files[1]]) == 0
     content = json.loads(capsys.readouterr().out)
     assert content["complete"] is True
     assert len((tmp_path / "b.csv").read_text().splitlines()) == len(content["rows"]) + 1
     assert (tmp_path / "b.png").stat().st_size > 10_000
-    assert main(["bench", "--budget", "-1"]) == 2
+    assert main(["bench", "--time-limit", "-1"]) == 2
 
 
 @pytest.mark.parametrize("width", [6.0, *longer(9.0)])
