@@ -341,17 +341,17 @@ def _number_or_words(text: str) -> Any:
     return text if re.search("[v:]", text) else finite(text)
 
 
-def add_progress(parser: argparse.ArgumentParser) -> None:
-    """Add ``--progress``."""
+def add_progress(parser: argparse.ArgumentParser, default: str = "only on a terminal") -> None:
+    """Add ``--progress``, with what is its ``default``."""
     parser.add_argument(
         "--progress",
         action=argparse.BooleanOptionalAction,
         default=None,
-        help="show progress on stderr (default: only on a terminal)",
+        help=f"show progress on stderr (default: {default})",
     )
 
 
-def add_report(parser: argparse.ArgumentParser) -> None:
+def add_report(parser: argparse.ArgumentParser, progress: str = "only on a terminal") -> None:
     """Add laws, size and outputs of a report over all laws."""
     for kind, default in (("normal", "hertz"), ("tangential", "all"), ("integrator", "all")):
         words = f"names of laws, or file.py:Class (default: {default})"
@@ -361,7 +361,7 @@ def add_report(parser: argparse.ArgumentParser) -> None:
     add_figure(parser, "also draw it")
     add_file(parser, "--out", ".csv", ".json", words="also write .csv or .json")
     add_forms(parser)
-    add_progress(parser)
+    add_progress(parser, progress)
 
 
 def add_time_limit(parser: argparse.ArgumentParser, words: str) -> None:

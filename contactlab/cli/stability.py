@@ -17,13 +17,14 @@ from pathlib import Path
 import numpy as np
 
 from contactlab.cli import arguments as shared
+from contactlab.cli.progress import in_words
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.text_table import table
 from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.study.bench_methods import Method, methods
 from contactlab.study.error_map import error_maps
 from contactlab.study.model_error import ModelError
-from contactlab.study.stability import Stability, stability
+from contactlab.study.stability import Stability, expected_time, stability
 from contactlab.study.stability_judge import NO_REFERENCE, RAISED, SKIPPED, WRONG, Outcome
 
 #: Most failures listed under the table; CSV and JSON hold every case.
@@ -35,7 +36,7 @@ WORDS = ("answered", "coarse", NO_REFERENCE, "refused", SKIPPED, RAISED, WRONG)
 @hookimpl
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the laws, the size, and the outputs."""
-    shared.add_report(parser)
+    shared.add_report(parser, progress="yes")
     return shared.check_outputs_first(execute)
 
 
@@ -44,7 +45,12 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.width == "one":
         raise ValueError("--width one: the map is too wide for one column; use --width two")
     chosen = methods(shared.chosen_laws(arguments))
-    with shared.progress(arguments.progress, "stability") as progress:
+    told = arguments.progress is not False
+    if told:
+        cases, seconds = expected_time(chosen, quick=arguments.quick)
+        about = f"{cases} cases, about {in_words(seconds)} of processor time"
+        print(f"contactlab stability: {about}", file=sys.stderr, flush=True)
+    with shared.progress(told, "stability") as progress:
         result = stability(
             chosen, quick=arguments.quick, time_limit=arguments.time_limit, progress=progress
         )

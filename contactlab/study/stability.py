@@ -34,6 +34,10 @@ from contactlab.study.time_limit import time_limited
 LARGEST, QUICK_LARGEST = 300_000.0, 12_000.0
 #: Steps and tolerance assumed in ``work`` where the case sets none.
 DEFAULT_STEPS, DEFAULT_TOLERANCE = 200, 1e-4
+#: Steps under a tolerance where slip turns, over those where it keeps its line.
+SPACE_STEPS = 5.0
+#: Processor time of a case on the machine of the project, in s.
+SECONDS, QUICK_SECONDS = 0.2, 0.05
 
 
 @attrs.frozen(kw_only=True)
@@ -128,7 +132,7 @@ def stability(
     Stability
         Ctrl-C keeps the outcomes that there are.
     """
-    listed = [case for method in methods for case in all_cases(method, quick=quick)]
+    listed = list_cases(methods, quick=quick)
     elastic = [method for method in methods if method.normal == DEFAULT_NORMAL]
     largest = QUICK_LARGEST if quick else LARGEST
     # A time limit cuts all methods alike: family by family, and within a family by work. Model
@@ -162,11 +166,24 @@ def stability(
     )
 
 
+def list_cases(methods: Sequence[Method], *, quick: bool = False) -> list[Cell]:
+    """Return every case of every method."""
+    return [case for method in methods for case in all_cases(method, quick=quick)]
+
+
+def expected_time(methods: Sequence[Method], *, quick: bool = False) -> tuple[int, float]:
+    """Return the number of cases, and about the processor time that they take, in s."""
+    listed = list_cases(methods, quick=quick)
+    largest = QUICK_LARGEST if quick else LARGEST
+    cases = sum(work(case) <= largest for case in listed)
+    return cases, cases * (QUICK_SECONDS if quick else SECONDS)
+
+
 def work(case: Cell) -> float:
     """Return an estimate of the work of a case, in steps of one part.
 
-    Under a tolerance the number of steps grows with the root of chi, and falls with the root of
-    the tolerance.
+    Under a tolerance the number of steps grows with the root of chi, faster where slip turns, and
+    falls with the root of the tolerance.
     """
     options, parts = case.options["integrator"], dict(case.options["tangential"])
     parts.pop("tolerance", None)
@@ -176,6 +193,7 @@ def work(case: Cell) -> float:
         with contextlib.suppress(ValueError):  # a refused scene is an outcome
             steps *= math.sqrt(1.0 + min(float(np.max(case.scene.make().chi)), 1e12))
         steps *= math.sqrt(DEFAULT_TOLERANCE / tolerance)
+        steps *= SPACE_STEPS if case.family == "space" else 1.0
     return steps * (1.0 + float(max(parts.values(), default=0.0)) ** 2 / 1e4)
 
 

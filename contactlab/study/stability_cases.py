@@ -21,7 +21,12 @@ from contactlab.registration.names import full_name, short_name
 from contactlab.registry.composition import DEFAULT_NORMAL, misfit
 from contactlab.registry.registry import REGISTRY, PluginError
 from contactlab.study.bench_methods import Method, Options
-from contactlab.study.stability_coupled import coupled_scenes, tries_bodies
+from contactlab.study.stability_coupled import (
+    answers_space,
+    coupled_scenes,
+    space_scenes,
+    tries_bodies,
+)
 
 #: A solid sphere of Poisson's ratio 0.3: the paper's own case.
 CHI = 49 / 34
@@ -118,6 +123,8 @@ def cases(method: Method, *, quick: bool = False) -> Iterator[Cell]:
     if tries_bodies(method):
         for label, make in coupled_scenes(quick=quick):
             yield _case(method, Case("eccentric", label, make), {})
+        for label, make in space_scenes(quick=quick) if answers_space(method) else ():
+            yield _case(method, Case("space", label, make), {})
     if method.whole:
         return
     for psi1, chi in QUICK_LADDER if quick else LADDER:

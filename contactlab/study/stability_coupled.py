@@ -4,17 +4,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
 
 from contactlab.contracts.integrator import CoupledIntegrator
 from contactlab.contracts.law import claims
-from contactlab.contracts.tangential import CausalTangentialLaw, CoupledTangentialLaw
+from contactlab.contracts.status import Status
+from contactlab.contracts.tangential import (
+    CausalTangentialLaw,
+    CoupledTangentialLaw,
+    TangentialLaw,
+)
 from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
 from contactlab.outcome.result import ImpactResult
+from contactlab.registry.composition import fixed_steps
+from contactlab.registry.registry import PluginError
+from contactlab.runs.simulation import Simulation
+from contactlab.solve.solve import accept_scene
 from contactlab.study.bench_methods import Method
 
 #: 1 over 1 - lam eta/(2 chi): the condition of the inverse mass, scaled to ones on the diagonal.
@@ -24,6 +33,57 @@ PSI1 = (1e-12, 1.5, 1e6)
 KAPPAS, RODS = (1e2, 1e4, 1e6), ((15.0, 0.3, 0.0), (-30.0, 0.3, 0.5), (75.0, 0.01, 1e-9))
 #: Stiff contacts end as rigid bodies do, to this over the root of kappa (5e-3 at 1e4).
 STIFF, RIGID_DISTANCE = 1e4, 0.6
+#: chi of the impacts in space, whose slip turns, and their psi1.
+SPACE_CHIS, QUICK_SPACE_CHIS = (0.05, 0.5, 3.0, 30.0, 1e3), (0.05, 3.0, 1e3)
+SPACE_PSI1 = ((0.9, 0.5), (0.3, -0.1))
+#: chi, over its first entry, and lam and rho of the impacts in space.
+SPACE_CHI, SPACE_LAM, SPACE_RHO = np.array([[1.0, 0.2], [0.2, 1.6]]), (0.1, -0.05), 1.0
+#: Steps of the reference in space, over the root of chi, and the fewest: see ``refined``.
+SPACE_FINE, SPACE_FEWEST = 150.0, 1600
+
+
+def space_scenes(*, quick: bool) -> Iterator[tuple[str, Callable[[], Scene]]]:
+    """Iterate over labels and makers of impacts in space, whose slip turns."""
+    for chi in QUICK_SPACE_CHIS if quick else SPACE_CHIS:
+        for psi1 in SPACE_PSI1[: 1 if quick else None]:
+            numbers: dict[str, Any] = {
+                "psi1": psi1,
+                "chi": chi * SPACE_CHI,
+                "lam": SPACE_LAM,
+                "rho": SPACE_RHO,
+            }
+            yield f"psi1={psi1} chi={chi:g}", partial(Scene.nondimensional, **numbers)
+
+
+def answers_space(method: Method) -> bool:
+    """Return whether a method that answers coupled impacts answers those whose slip turns too."""
+    _, make = next(space_scenes(quick=True))
+    laws = method.simulation({"tangential": {}, "integrator": {}}).laws
+    try:
+        accept_scene(laws, make())
+    except ValueError:
+        return False
+    return True
+
+
+def in_space(scene: Scene) -> bool:
+    """Return whether the slip of one impact is a vector."""
+    return np.ndim(scene.slip_velocity) == 1
+
+
+@lru_cache(maxsize=64)
+def refined(law: TangentialLaw, scene: Scene) -> Any:
+    """Return psi2 in space by the same law in many steps; None if it cannot be marched so.
+
+    Springs are then within 0.001 of psi1 of twice as many steps.
+    """
+    chi = float(np.max(scene.chi))
+    try:
+        march = fixed_steps(max(SPACE_FEWEST, round(SPACE_FINE * math.sqrt(chi))))
+        result = Simulation(tangential=law, integrator=march).run(scene)
+    except (ValueError, PluginError):
+        return None
+    return np.asarray(result.psi2) if result.status is Status.SUCCESS else None
 
 
 def coupled_scenes(*, quick: bool) -> Iterator[tuple[str, Callable[[], Scene]]]:

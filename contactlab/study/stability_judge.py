@@ -22,7 +22,7 @@ from contactlab.solve.error_estimate import estimate_errors
 from contactlab.solve.solved_motion import ACCURACY
 from contactlab.study.posed import pose
 from contactlab.study.stability_cases import Cell
-from contactlab.study.stability_coupled import RIGID_DISTANCE, STIFF, distance
+from contactlab.study.stability_coupled import RIGID_DISTANCE, STIFF, distance, in_space, refined
 from contactlab.study.stability_references import (
     SETTLED,
     Reference,
@@ -203,7 +203,7 @@ def _of_bodies(simulation: Simulation, result: ImpactResult) -> tuple[float, flo
     """Return the distance from rigid bodies, NaN of a soft contact, its bound, and what breaks."""
     law, books, wrong = simulation.tangential, result.energy, []
     numbers = (result.normal_velocity, result.psi2, books.end, books.imbalance)
-    if not np.all(np.isfinite(np.array(numbers, dtype=float))):
+    if not all(np.isfinite(number).all() for number in numbers):
         return np.nan, UNDECLARED, ["a number that is not finite"]
     if "books" not in law.expected_failures:
         start: Any = books.start
@@ -213,13 +213,33 @@ def _of_bodies(simulation: Simulation, result: ImpactResult) -> tuple[float, flo
             wrong.append(f"{float(books.end / start - 1.0):.2g} of the energy from nothing")
         if abs(books.imbalance) > bound * start:
             wrong.append("energy books do not close")
-    if result.scene.pair.stiffness_ratio < STIFF or "partial_slip" not in claims(law):
+    if "partial_slip" not in claims(law):
+        return np.nan, UNDECLARED, wrong
+    if in_space(result.scene):
+        return _of_space(simulation, result, wrong)
+    if result.scene.pair.stiffness_ratio < STIFF:
         return np.nan, UNDECLARED, wrong
     rigid = Simulation(**composition.RIGID).run(result.scene).check()
     error = float(distance(result, rigid))
     if error > RIGID_DISTANCE * float(result.scene.pair.stiffness_ratio) ** -0.5 + UNDECLARED:
         wrong.append(f"{error:.2g} of v1 from rigid bodies")
     return error, UNDECLARED, wrong
+
+
+def _of_space(
+    simulation: Simulation, result: ImpactResult, wrong: list[str]
+) -> tuple[float, float, list[str]]:
+    """Return error and bound over 2 |psi1| of a slip that turns, and what breaks."""
+    expected = refined(simulation.tangential, result.scene)
+    if expected is None:
+        return np.nan, UNDECLARED, wrong
+    width = 2.0 * float(np.linalg.norm(result.scene.psi1))
+    declared = float(np.nan_to_num(np.max(result.plan.psi2_error))) / width
+    error = float(np.linalg.norm(np.asarray(result.psi2) - expected)) / width
+    bound = min(declared + UNDECLARED, LARGEST_SHARE)
+    if error > bound:
+        wrong.append(f"error {error:.2g} of the range, at most {bound:.2g} is declared")
+    return error, bound, wrong
 
 
 def _wrong(simulation: Simulation, result: ImpactResult, error: float, bound: float) -> list[str]:
