@@ -40,11 +40,14 @@ def by_rebound(plan: Plan, chi: Real, restitution: Real) -> Plan:
     told = f"{low:g}" if low == high else f"{low:.4g}..{high:.4g}"
     said: dict[str, tuple[str, tuple[Any, ...] | None]] = {
         TANGENTIAL_MOTION: (
-            f"tangential motion: contactlab.rebound with restitution={told}, one loss for pressure "
-            f"and shear, by springs beyond its table",
+            f"friction: contactlab.rebound with restitution={told}, equal damping in compression "
+            f"and shear; springs beyond its table",
             None,
         ),
-        PSI2_ERROR: ("numerical error of psi2: at most {:.2g}, of contactlab.rebound", (error,)),
+        PSI2_ERROR: (
+            "numerical error of psi2: below {:.2g} (bound stated by contactlab.rebound)",
+            (error,),
+        ),
     }
     computed = []
     for clause in plan.computed:

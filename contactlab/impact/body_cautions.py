@@ -53,26 +53,24 @@ def shells(scene: Scene, bodies: Mapping[str, Sphere | HalfSpace | RigidBody]) -
         if isinstance(body, RigidBody):
             if (least := float(np.fmin.reduce(share, initial=math.inf))) < SHELL:
                 said.append(
-                    f"{name}.mass is {least:.2g} of a solid ellipsoid's of its inertia and "
-                    "density: if it is of one material it is a shell, whose wall bends, and "
-                    "Hertz's contact is that of a solid (model, of a size that is not known)"
+                    f"model: {name}.mass is {least:.2g} of that of a solid body, so that the body "
+                    "may be a shell. A thin wall bends, but Hertz's contact is that of a solid."
                 )
             continue
         if (most := float(np.fmax.reduce(share, initial=0.0))) > HEAVY:
             said.append(
-                f"unit: {name}.mass = {_most(body.mass):.4g} kg is {most:.3g} "
-                "times that of a solid sphere of its density: is it in g?"
+                f"unit: {name}.mass = {_most(body.mass):.4g} kg: is the mass in g? A solid sphere "
+                f"of this density has 1/{most:.3g} of that."
             )
         if (least := float(np.fmin.reduce(share, initial=math.inf))) < SHELL:
             said.append(
-                f"{name}.mass is {least:.2g} of a solid sphere's of its density: a shell, whose "
-                f"wall bends, and Hertz's contact is that of a solid; {_spring(scene, body)}"
+                f"model: {name}.mass is {least:.2g} of that of a solid sphere, so that the {name} "
+                f"is a shell. {_spring(scene, body)}"
             )
         elif _most(body.gyration_ratio) > HOLLOW:
             said.append(
-                f"{name}.gyration_ratio = {_most(body.gyration_ratio):.3g} is that of a shell "
-                "(0.632 if solid, 0.816 if thin), whose wall bends, and Hertz's contact is that of "
-                "a solid (model, of a size that is not known)"
+                f"model: {name}.gyration_ratio = {_most(body.gyration_ratio):.3g} is that of a "
+                "shell (0.632 if solid). A thin wall bends, but Hertz's contact is that of a solid."
             )
     return said
 
@@ -111,11 +109,9 @@ def _spring(scene: Scene, body: Sphere) -> str:
     lasting = math.pi * np.sqrt(scene.pair.normal_mass / stiffness)
     hertz = float(np.max(hertz_scales(scene).duration))
     return (
-        f"a thin wall of {_most(wall) * 1e3:.2g} mm is pressed as a spring of "
-        f"{_most(stiffness) / 1e3:.2g} kN/m up to about its thickness (Reissner 1946), for "
-        f"{_most(lasting) * 1e3:.2g} ms in place of {hertz * 1e3:.2g} ms: forces, times and psi "
-        "are not those of the shell (model, of a size that is not known; of a tennis ball e_T = "
-        "-psi2/psi1 was 0.1, of an elastic shell it is 0.6, theory §15)"
+        f"Its wall of {_most(wall) * 1e3:.2g} mm is a spring of {_most(stiffness) / 1e3:.2g} kN/m "
+        f"(Reissner 1946). The contact lasts about {_most(lasting) * 1e3:.2g} ms, not the "
+        f"{hertz * 1e3:.2g} ms computed; forces and psi are wrong too."
     )
 
 
@@ -133,27 +129,28 @@ def units_of_bodies(encounter: Encounter) -> list[str]:
         size = None if density is None else np.cbrt(mass / density)
         length = np.linalg.norm(arm, axis=-1)
         if _most(length) > LONG:
-            told = f"the contact of the {name} is {_most(length):.4g} m from its centre of mass"
+            told = f"the contact of the {name} is {_most(length):.4g} m from the centre of mass"
             said.append(f"unit: {told}: are lengths in mm?")
         radius = _curvature(body)
         if radius >= CURVED and (size is None or radius > OVER_SIZE * _most(size)):
-            said.append(f"unit: {name}.curvature_radius = {radius:.4g} m: is it in mm?")
+            said.append(f"unit: {name}.curvature_radius = {radius:.4g} m: is the radius in mm?")
         gyration = np.sqrt(np.trace(body.inertia, axis1=-2, axis2=-1) / (3.0 * mass))
         over = gyration / np.maximum(length, 1e-300)
         if (size is not None and _most(gyration / size) > SPREAD) or _most(over) > OVER_ARM:
             told = f"{name}.inertia has a radius of gyration of {_most(gyration):.4g} m"
-            said.append(f"unit: {told}: is it in kg mm² or g cm²?")
+            said.append(f"unit: {told}: is the inertia in kg mm² or g cm²?")
         least = np.sqrt(np.linalg.eigvalsh(body.inertia)[..., 0] / mass)
         if float(np.min(least / np.maximum(length, 1e-300))) < UNDER_ARM:
             told = f"{name}.inertia has a least radius of gyration of {float(np.min(least)):.2g} m"
-            told += f", beside a contact {_most(length):.2g} m from the centre"
-            said.append(f"unit: {told}: is it in kg m²? Where such a body turns, steps are many")
+            said.append(
+                f"unit: {told}: is the inertia in kg m²? So small an inertia needs many steps."
+            )
         turning = np.linalg.norm(spin, axis=-1)
         rim = _most(turning * length)
         if _most(turning) >= LEAST_SPIN and rim > MOST_RIM * _most(speed) > 0.0:
-            told = f"the {name} spins at {_most(turning):.4g} rad/s: its contact moves "
-            told += f"{rim / _most(speed):.3g} times as fast as its centre"
-            said.append(f"unit: {told}; is it in turns a minute?")
+            told = f"the {name} spins at {_most(turning):.4g} rad/s: is the spin in turns a minute?"
+            told += f" The contact moves {rim / _most(speed):.3g} times as fast as the centre."
+            said.append(f"unit: {told}")
     return said
 
 
@@ -169,8 +166,8 @@ def contact_vectors(encounter: Encounter) -> tuple[str, ...]:
         behind = np.asarray(sense * np.sum(arm * normal, axis=-1) < 0.0)
         if behind.any():
             said.append(
-                f"{name} lies behind the centre of mass{for_share(behind)}: a convex body touches "
-                "on the other side; it leads from the centre of mass to the contact"
+                f"{name} lies behind the centre of mass{for_share(behind)}, where a convex body "
+                f"does not touch. {name} is the vector from the centre of mass to the contact."
             )
         gyration = np.sqrt(
             np.trace(body.inertia, axis1=-2, axis2=-1) / (3.0 * np.asarray(body.mass))

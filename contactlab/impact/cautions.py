@@ -24,7 +24,7 @@ DOUBTFUL_SIZE_RATIO = 0.1
 #: from which it is (theory §15; ``study/measured/superball.toml``).
 DEEPER, DEEPEST = (0.8, 2.0), 0.175
 #: What a caution says in place of a size beyond its measurements.
-OUTSIDE = "outside what was measured"
+OUTSIDE = "outside the measured range"
 #: Range of attraction of surfaces in m, about the distance between atoms.
 RANGE = 3e-10
 #: Sphere radius in m from which the unit was probably mm.
@@ -52,14 +52,12 @@ def large_contact(ratio: float) -> tuple[str, ...]:
     if not ratio > DOUBTFUL_SIZE_RATIO:
         return ()
     low, high = (rate * ratio * ratio for rate in DEEPER)
-    here = f"by {low:.2g} to {high:.2g}"
+    here = f"For balls e_T is then {low:.2g} to {high:.2g} higher."
     if ratio * ratio > DEEPEST:
-        here = f"{OUTSIDE}, C² up to {DEEPEST:g}"
+        here = f"Its effect on e_T is {OUTSIDE}."
     return (
-        f"C = {ratio:.3g}, contact radius over R: the contact is not small against the "
-        f"radius, the theory of half-spaces is doubtful above {DOUBTFUL_SIZE_RATIO}; of balls "
-        f"e_T = -psi2/psi1 grows by {DEEPER[0]:g} to {DEEPER[1]:g} times C², here "
-        f"{here} (model; theory §15)",
+        f"model: large contact, a/R = {ratio:.3g}. The theory holds below about "
+        f"{DOUBTFUL_SIZE_RATIO}. {here}",
     )
 
 
@@ -127,8 +125,8 @@ def of_ellipse(scene: Scene, name: str) -> tuple[str, ...]:
         return ()
     share = "" if np.all(elongation > 1.0) else for_share(elongation > 1.0)
     return (
-        f"elliptic contact{share}: its semi-axes are {ratio:.3g} : 1, and {name} was made for a "
-        "circle: it is given that of the same stiffness (model)",
+        f"model{share}: the contact is an ellipse of {ratio:.3g} : 1, but {name} was made for a "
+        "circle. A circle as stiff stands in.",
     )
 
 
@@ -159,10 +157,9 @@ def yielding(scene: Scene, peak: Real | None = None) -> tuple[str, ...]:
     worst = np.unravel_index(np.nanargmax(pressure / limit), scene.shape) if scene.shape else ()
     softest = list(stresses)[int(np.nanargmin([each[worst] for each in limits]))]
     return (
-        f"yield{for_share(yields)}: the peak pressure of Hertz's contact is "
-        f"{pressure[worst] / GPA:.2g} GPa, above 1.6 Y = {limit[worst] / GPA:.2g} GPa of the "
-        f"{softest}, which would deform plastically; the normal law leaves that out "
-        "(model, not numerical error)",
+        f"model{for_share(yields)}: the {softest} would yield, which the normal law ignores. "
+        f"Peak pressure: {pressure[worst] / GPA:.2g} GPa; yield begins at "
+        f"{limit[worst] / GPA:.2g} GPa.",
     )
 
 
@@ -181,8 +178,7 @@ def yield_unknown(scene: Scene) -> tuple[str, Any, Real]:
         return "", False, 0.0
     have = "has" if len(where) == 1 else "have"
     words = (
-        f"yield: not checked, {' and '.join(where)} {have} no yield_stress; the peak pressure of "
-        "Hertz's contact is {:.2g} GPa"
+        f"yield check: {' and '.join(where)} {have} no yield_stress. Peak pressure: {{:.2g}} GPa."
     )
     return words, np.logical_or.reduce([*where.values()]), peak_pressure(scene) / GPA
 
@@ -209,10 +205,7 @@ def tabor_caution(
     if least <= low and high <= most:
         return ()
     bound, value = (f"above {least:g}", low) if low < least else (f"below {most:g}", high)
-    return (
-        f"Tabor's parameter is {value:.2g}, with a range of attraction of {RANGE:g} m: the theory "
-        f"holds {bound}; see {other} (model, not numerical error)",
-    )
+    return (f"model: Tabor's parameter is {value:.2g}, but the theory holds {bound}. Use {other}.",)
 
 
 def name_bodies(scene: Scene) -> dict[str, Any]:
@@ -235,15 +228,15 @@ def unit_slips(scene: Scene) -> list[str]:
         density, modulus = body.material.density, _least(body.material.shear_modulus)
         radius = _most(body.radius) if isinstance(body, Sphere) else 0.0
         if radius >= LARGE_RADIUS:
-            slips.append(f"unit: {name}.radius = {radius:.4g} m: is it in mm?")
+            slips.append(f"unit: {name}.radius = {radius:.4g} m: is the length in mm?")
         if density is not None and _least(density) < LEAST_DENSITY:
             number = f"{name}.material.density = {_least(density):.4g} kg/m³"
-            slips.append(f"unit: {number}: is it in g/cm³?")
+            slips.append(f"unit: {number}: is the density in g/cm³?")
         if modulus < LEAST_MODULUS:
             unit = "GPa" if modulus < MEGA else "MPa"
-            slips.append(f"unit: {_modulus(name, body)}: is it in {unit}?")
+            slips.append(f"unit: {_modulus(name, body)}: is the modulus in {unit}?")
         elif density is not None and _least(density) > HEAVY and modulus < LEAST_HARD:
-            slips.append(f"unit: {_modulus(name, body)}: is it in MPa?")
+            slips.append(f"unit: {_modulus(name, body)}: is the modulus in MPa?")
     if scene.sphere is None:
         met = scene.encounter
         if met is None or met.of_spheres:
@@ -255,19 +248,21 @@ def unit_slips(scene: Scene) -> list[str]:
     spin = _most(abs(scene.spin))
     rim = _most(scene.sphere.radius) * spin
     if spin >= LEAST_SPIN and rim > MOST_RIM * speed:
-        number = f"spin = {spin:.4g} rad/s: the surface moves {rim / speed:.3g} times as fast"
-        slips.append(f"unit: {number} as the centre; is it in turns a minute?")
+        number = f"spin = {spin:.4g} rad/s: is the spin in turns a minute?"
+        slips.append(
+            f"unit: {number} The surface moves {rim / speed:.3g} times as fast as the centre."
+        )
     with np.errstate(all="ignore"):
         slope = _most(abs(scene.tangential_velocity / scene.normal_speed))
     angle_deg = math.degrees(math.atan(slope))
     intended = math.degrees(angle_deg)
     nearest = STEP_DEG * round(intended / STEP_DEG)
     if angle_deg <= 0.5 * math.pi and nearest > 0.0 and abs(intended - nearest) <= NEAR_DEG:
-        number = f"angle of incidence {angle_deg:.6g}°: {nearest:g}° are as many radians"
-        slips.append(f"unit: {number}; angle_deg is in degrees")
+        number = f"angle of incidence {angle_deg:.6g}°: was this {nearest:g}° in radians?"
+        slips.append(f"unit: {number} angle_deg is in degrees.")
     elif _like_radians(scene):
-        number = f"all {scene.shape[0]} angles of incidence lie below {angle_deg:.4g}°"
-        slips.append(f"unit: {number}, as radians do; angle_deg is in degrees")
+        number = f"all angles of incidence lie below {angle_deg:.4g}°: are they in radians?"
+        slips.append(f"unit: {number} angle_deg is in degrees.")
     return slips
 
 
@@ -298,8 +293,8 @@ def unlikely(scene: Scene) -> list[str]:
     slips, speed = shells(scene, bodies), _most(scene.normal_speed)
     if (friction := _most(scene.friction_coefficient)) > MOST_FRICTION:
         slips.append(
-            f"friction_coefficient = {friction:.4g}: above {MOST_FRICTION:g} surfaces stick like "
-            "soft rubber; is it in per cent, or an angle?"
+            f"unit: friction_coefficient = {friction:.4g} is very high: is the number in per cent, "
+            "or an angle?"
         )
     for name, body in bodies.items():
         if (density := body.material.density) is not None:
@@ -307,9 +302,8 @@ def unlikely(scene: Scene) -> list[str]:
             sound = _least(np.sqrt(np.asarray(young) / density))
             if speed > SOUND_PART * sound:
                 slips.append(
-                    f"normal speed {speed:.4g} m/s is {speed / sound:.2g} of the speed of sound in "
-                    f"the {name}, {sound:.4g} m/s: above {SOUND_PART:g} the contact is not "
-                    "quasi-static"
+                    f"model: the normal speed is {speed / sound:.2g} of the speed of sound in the "
+                    f"{name}. Above {SOUND_PART:g} the contact is not quasi-static."
                 )
     return slips
 
@@ -322,8 +316,8 @@ def three_numbers(scene: Scene) -> tuple[str, ...]:
     if len(arrays) != 1:
         return ()
     return (
-        f"{arrays[0]} has three numbers, taken for three impacts: vectors in space belong in an "
-        "Encounter",
+        f"{arrays[0]}: three numbers were read as three impacts. For a vector in space use an "
+        "Encounter.",
     )
 
 

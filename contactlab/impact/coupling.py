@@ -17,7 +17,7 @@ from contactlab.numeric.types import Array
 #: ``python -m table_builders coupling build``. The nodes are psi1, chi, nu, and Lambda.
 FILE = Path(__file__).with_name("coupling.csv")
 #: Beginning of the caution of coupling.
-LEFT_OUT = "unlike bodies: the elastic coupling of pressure and slip is left out"
+LEFT_OUT = "model: unlike bodies, so pressure causes some slip, which is ignored"
 #: Smallest shift of psi2 with a caution.
 LEAST_SHIFT = 1e-3
 #: Excess over an axis of the table that counts as rounding, over its end.
@@ -112,15 +112,9 @@ def coupling(scene: Scene) -> tuple[str, ...]:
         return ()
     sized = np.where(told & known, shift, 0.0)
     worst = int(np.argmax(sized if sized.any() else shift))
-    size = f"by {'up to ' if scene.shape else ''}about {shift[worst]:.1g}"
+    size = f"{'up to ' if scene.shape else ''}about {shift[worst]:.1g}"
     if not sized.any():
-        size = f"by an amount {OUTSIDE}"
+        size = OUTSIDE
     elif np.any(told & ~known):
-        size += f", and in other impacts by an amount {OUTSIDE}"
-    _, (low, high), _, (_, most) = ((axis[0], axis[-1]) for axis in nodes().axes)
-    ends = f", Lambda to {most:g}" if OUTSIDE in size else ""
-    return (
-        f"{LEFT_OUT}, Lambda = kappa beta/mu = {number[worst]:.2g}; it moves psi2 {size} (model, "
-        f"not numerical error; by a table of half-space solutions, chi from {low:g} to {high:g}"
-        f"{ends})",
-    )
+        size += f", in some impacts {OUTSIDE}"
+    return (f"{LEFT_OUT}. Effect on psi2: {size} (Lambda = {number[worst]:.2g}).",)

@@ -328,8 +328,9 @@ class RigidBody:
             ratio = float(np.nanmax(self.bending_period)) / duration
             if ratio > RINGING:
                 cautions.append(
-                    f"first bending period over duration of contact = {ratio:.3g}: above "
-                    f"{RINGING} the body rings, and bending waves carry off energy (model)"
+                    f"model: the body rings, and bending waves carry off energy. Its bending "
+                    f"period is {ratio:.3g} of the contact's duration; waves matter above "
+                    f"{RINGING}."
                 )
         return cautions
 

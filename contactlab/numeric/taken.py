@@ -32,12 +32,3 @@ def _options(law_class: type) -> tuple[str, ...]:
     """Return the names of the options of a law."""
     fields = attrs.fields(law_class) if attrs.has(law_class) else ()
     return tuple(field.name for field in fields)
-
-
-def of_taken(*laws: Any) -> list[str]:
-    """Return a caution of each number that laws took as nobody gave it."""
-    return [
-        f"{name} = {value:g} was taken by default: give {type(law).__name__} one of your own"
-        for law in laws
-        for name, value in taken(law).items()
-    ]

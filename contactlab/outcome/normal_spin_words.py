@@ -13,15 +13,10 @@ from contactlab.numeric.arrays import some
 from contactlab.numeric.types import Mask
 from contactlab.outcome.plan import NORMAL_SPIN, PSI2_ERROR, WITHOUT_SPIN, Clause, Clauses, Words
 
-ANSWERED = "spin about the normal: friction of slip and of spin is one"
+ANSWERED = "spin about the normal: slip and spin share the friction"
 TURNS = "spin about the normal: its friction is left out"
 #: Smallest shift of psi2, and smallest loss of spin, with a caution.
 LEAST_SHIFT, LEAST_LOSS = 1e-3, 1e-2
-#: What the sizes of a caution are measured for.
-MEASURED = (
-    "model, not numerical error; by a table of elastic impacts, chi from 1 to 1.75, and its "
-    f"continuation, w to {LARGEST_W:g}"
-)
 
 
 def with_normal_spin(words: Words, scene: Scene, *, answered: Mask = False) -> Words:
@@ -57,29 +52,29 @@ def _sizes(spin: NormalSpin, *, batch: bool) -> Clauses:
     """Return the cautions of the shift of psi2, and of a loss of spin where psi2 hardly moves."""
     about = "up to about" if batch else "about"
     size, percent, w = (np.asarray(each) for each in (abs(spin.shift), 100.0 * spin.loss, spin.w))
-    number = "w = kappa omega a/(mu v1) = {:.2g}"
+    number = "w = {:.2g}"
     shifts = size >= LEAST_SHIFT
     slows = ~shifts & (percent >= 100.0 * LEAST_LOSS)
     known = np.asarray(spin.known)
     beyond = (shifts | slows) & ~known
     clauses = (
         Clause(
-            f"spin about the normal: its friction, left out, shifts psi2 by {about} {{:.2g}} "
-            f"({number}), and the spin would lose {about} {{:.2g}} % ({MEASURED})",
+            f"model: friction of the spin about the normal is ignored. Effect on psi2: {about} "
+            f"{{:.2g}} ({number}); the spin would lose {about} {{:.2g}} %.",
             shifts & known,
             (size, w, percent),
             NORMAL_SPIN,
         ),
         Clause(
-            f"spin about the normal: its friction, left out, shifts psi2, and takes spin, by "
-            f"amounts {OUTSIDE} ({number}; {MEASURED})",
+            "model: friction of the spin about the normal is ignored. Effect on psi2 and on the "
+            f"spin: {OUTSIDE} ({number}, measured to {LARGEST_W:g}).",
             beyond,
             (w,),
             NORMAL_SPIN,
         ),
         Clause(
-            f"spin about the normal: the spin would lose {about} {{:.2g}} % by its friction, left "
-            f"out ({number}), which shifts psi2 by less than {LEAST_SHIFT:g} ({MEASURED})",
+            f"model: friction of the spin about the normal is ignored. The spin would lose {about} "
+            f"{{:.2g}} % ({number}); psi2 hardly changes.",
             slows & known,
             (percent, w),
             NORMAL_SPIN,

@@ -61,14 +61,14 @@ def error_cautions(result: WithPlan) -> list[str]:
     if contradicted.any():
         worst = int(np.argmax(np.where(contradicted, estimate, 0.0)))
         cautions.append(
-            f"the declared numerical error of psi2 is false{for_share(contradicted)}: at most "
-            f"{declared.flat[worst]:.1g} is declared, about {estimate.flat[worst]:.1g} is estimated"
+            f"the stated bound of the error of psi2 is wrong{for_share(contradicted)}: stated "
+            f"{declared.flat[worst]:.1g}, estimated {estimate.flat[worst]:.1g}. Trust the estimate."
         )
     coarse = np.asarray(share > COARSE)
     if coarse.any():
         cautions.append(
-            f"coarse{for_share(coarse)}: the numerical error is {np.nanmax(share):.2g} of the "
-            "range of psi2, so that no digit is sure; finer resolutions would help"
+            f"coarse{for_share(coarse)}: no digit of psi2 is sure, as its error is "
+            f"{np.nanmax(share):.2g} of the range. Use a finer resolution."
         )
     return cautions
 

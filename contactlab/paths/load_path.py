@@ -20,14 +20,13 @@ from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import lock_arrays
 from contactlab.numeric.checks import Rule, of_kind, real, refuse
-from contactlab.numeric.taken import of_taken
 from contactlab.numeric.types import Array, Numbers
 from contactlab.outcome.answer import Answer
 from contactlab.paths.path_steps import Followed, Points, follow_path
 from contactlab.registry import composition
 from contactlab.registry.acceptance import accept
 from contactlab.registry.bound import bound_laws
-from contactlab.registry.law_words import name_of
+from contactlab.registry.law_words import name_of, of_taken
 from contactlab.solve.unfollowed import refusal
 
 #: Columns of a path that the laws return.

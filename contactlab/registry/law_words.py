@@ -8,8 +8,9 @@ from functools import lru_cache
 import attrs
 import numpy as np
 
-from contactlab.contracts.law import Law
+from contactlab.contracts.law import Law, law_kind
 from contactlab.numeric.checks import shown
+from contactlab.numeric.taken import taken
 from contactlab.registry.registry import REGISTRY
 
 #: The address of an object without words of its own, which differs from run to run.
@@ -38,6 +39,16 @@ def own_options(law: Law) -> str:
         if (value := getattr(law, name)) is not default and _differs(value, default)
     ]
     return ", ".join(words)
+
+
+def of_taken(*laws: Law) -> list[str]:
+    """Return a caution of each number that laws took as nobody gave it."""
+    return [
+        f"{name_of(law)}: no {name} given, using {value:g}. Set your own: --set "
+        f"{law_kind(law)}.{name}=..."
+        for law in laws
+        for name, value in taken(law).items()
+    ]
 
 
 @lru_cache(maxsize=128)

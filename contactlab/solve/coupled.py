@@ -43,15 +43,9 @@ GIVEN_UP = (Status.LAW_RAISED, Status.MALFORMED, Status.NON_FINITE)
 #: Statuses of impacts that were not followed to an end, by no fault of a law's answer.
 WITHOUT_END = (Status.NOT_SEPARATED, Status.TOO_FEW_STEPS, Status.UNRESOLVED)
 #: What a plan says of such impacts.
-BOTH_MOTIONS = "normal and tangential motion together: friction changes the approach, or slip turns"
-OF_CONTACT = (
-    "restitution: of a frictionless impact on the mass 1/W_nn; that of the bodies follows from it"
-)
-ONE_PLANE = "second tangent: the motion stays in a plane"
-OF_SPHERES = (
-    "cautions of laws: their sizes were measured for spheres, where friction does not change the "
-    "approach"
-)
+BOTH_MOTIONS = "normal and tangential motion together: {}"
+OF_CONTACT = "restitution: set for a frictionless impact; that of the bodies follows from it"
+OF_SPHERES = "sizes in cautions of laws: measured on spheres. For this body they are a rough guide."
 
 
 class Coupled(Way):
@@ -197,7 +191,9 @@ class Coupled(Way):
 
     def remarks(self, masks: Masks) -> list[Clause]:
         """Return that both motions are found together, and of what a restitution is."""
-        said = [BOTH_MOTIONS]
+        affected = bool(np.any(self.scene.lam))
+        why = "friction affects the approach" if affected else "the slip changes its direction"
+        said = [BOTH_MOTIONS.format(why)]
         if getattr(self.laws.normal, "restitution", None) not in (None, 1.0):
             said.append(OF_CONTACT)
         return [Clause(text, masks.known) for text in said]
@@ -205,10 +201,6 @@ class Coupled(Way):
     def errors(self, columns: PlanColumns) -> Mapping[str, Real]:
         """Return both errors; of spheres that of the restitution is far smaller."""
         return {"psi2": columns.psi2_error, "the normal restitution": columns.restitution_error}
-
-    def left_out(self, masks: Masks) -> list[Clause]:
-        """Return what impacts in a plane leave out."""
-        return [Clause(ONE_PLANE, masks.known)] if self.scene.planar else []
 
     def motion_of_cautions(self, motion: Motion | None) -> None:
         """Return None: friction changed the normal motion of the run."""
@@ -232,9 +224,8 @@ class Coupled(Way):
         said = [OF_SPHERES] if of_laws else []
         if not scene.planar and "partial_slip" in able.tangential_claims:
             said.append(
-                "springs in space: abs(q) <= mu p holds for each spring, not at every point; psi2 "
-                "moves by less than 0.01 in four of five random impacts, by up to 0.1 where the "
-                "slip turns most (model)"
+                "model: where the slip turns, each spring is limited separately, and not the "
+                "traction at every point. psi2 is off by up to 0.1, mostly by less than 0.01."
             )
         return said + _near_singular(scene) if able.coupled is None else said
 
@@ -248,7 +239,6 @@ def _near_singular(scene: Scene) -> list[str]:
     sizes = [f"by up to {error:g}" for share, error in NEAR_SINGULAR if least > share / 10.0]
     known = sizes[0] if sizes else f"by an amount {OUTSIDE}"
     return [
-        "friction can jam and W is nearly singular, "
-        f"1 - W_nt²/(W_nn W_tt) = {least:.2g}: 50 springs in 200 steps were off {known} there "
-        "(numerical error; in the plane fronts is exact)"
+        f"numerical error: friction can jam, and W is nearly singular ({least:.2g}). Here 50 "
+        f"springs in 200 steps were off {known}; in the plane fronts is exact."
     ]

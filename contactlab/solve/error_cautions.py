@@ -37,7 +37,7 @@ def of_errors(laws: Laws, scene: Scene, error: Real, marched: Mask, advice: str)
     clauses = []
     if some(large := np.asarray(marched & (error > LARGE))):
         part = scene if every(large) else scene.take(large)
-        text = f"numerical error of psi2: up to {{:.2g}}, declared; {_remedy(laws, part)}"
+        text = f"numerical error of psi2: up to {{:.2g}} (stated); {_remedy(laws, part)}"
         clauses.append(Clause(text, large, (spread(error, scene.shape),)))
     if advice and "partial_slip" in laws.capability.tangential_claims and np.isnan(error).any():
         size = spread(
@@ -45,7 +45,7 @@ def of_errors(laws: Laws, scene: Scene, error: Real, marched: Mask, advice: str)
             scene.shape,
         )
         if some(unknown := np.asarray(marched & np.isnan(error) & (size >= LARGE_CHI))):
-            text = f"numerical error of psi2: not declared, chi + abs(eta) up to {{:.3g}}{advice}"
+            text = f"numerical error of psi2: not stated at chi + abs(eta) = {{:.3g}}{advice}"
             clauses.append(Clause(text, unknown, (size,)))
     return clauses
 
@@ -59,13 +59,13 @@ def _remedy(laws: Laws, scene: Scene) -> str:
         errors, own = _errors(laws, normal, scene)
         if np.nanmax(errors) <= LEFT:
             pair = " and ".join(map(_resolution, (law, integrator)))
-            return f"{pair} leave {LEFT:g}"
+            return f"{pair} reduce the error to {LEFT:g}"
         try:
             law, integrator = _finer(law, own), _finer(integrator, errors - own)
         except ValueError:  # beyond what the law allows
             break
         laws = laws.changed(tangential=law, integrator=integrator)
-    return "finer resolutions reduce it"
+    return "finer resolutions reduce the error"
 
 
 def _errors(laws: Laws, normal: NormalMotion, scene: Scene) -> tuple[Array, Array]:

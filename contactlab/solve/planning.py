@@ -15,6 +15,7 @@ from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import SteppedTangentialLaw
 from contactlab.impact import kinetics
 from contactlab.impact.cautions import (
+    name_bodies,
     of_ellipse,
     rigid_bodies,
     three_numbers,
@@ -22,10 +23,10 @@ from contactlab.impact.cautions import (
     unlikely,
     yield_unknown,
 )
+from contactlab.impact.coupling import coupling_number
 from contactlab.impact.hertz import elongation_of
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, some, spread, taken
-from contactlab.numeric.taken import of_taken
 from contactlab.numeric.types import Real
 from contactlab.outcome.energy import ledger
 from contactlab.outcome.motion import ENDS, Motion
@@ -40,18 +41,17 @@ from contactlab.outcome.plan import (
 )
 from contactlab.registration.bring import sound
 from contactlab.registry.composition import Laws
-from contactlab.registry.law_words import in_words, name_of
+from contactlab.registry.law_words import in_words, name_of, of_taken
 from contactlab.solve.answers import Mask
 from contactlab.solve.normal_motion import normal_motion, normal_or_failed
 from contactlab.solve.solve import ways
 from contactlab.solve.way import WHOLE, Masks, Way, ask
 
 #: Advice of a plan if the error is not declared.
-ADVICE = "; run(scene, estimate_error=True) estimates it"
+ADVICE = "; run(scene, estimate_error=True) estimates the error"
 #: Entry of a plan whose friction work is a difference of energies.
 UNCHECKED = (
-    "check of the energy books: closed by construction, not checked; the friction work is the "
-    "energy that the velocities lose"
+    "energy check: the friction work is computed from the velocities, so the energy always balances"
 )
 #: Undeclared imbalances over the energy at the start are cautioned of from here on.
 BOOKS_OFF = 0.01
@@ -119,12 +119,12 @@ def _words(
     computed = [Clause(f"normal motion: {law}", masks.known)]
     elongation = elongation_of(way.scene.pair)
     if some(elliptic := masks.known & (elongation > 1.0)):
-        text = "contact: an ellipse of semi-axes {:.3g} : 1, by the circle that is as stiff"
+        text = "contact: an ellipse of semi-axes {:.3g} : 1, replaced by a circle as stiff"
         computed.append(Clause(text, elliptic, (spread(elongation, scene.shape),)))
     if any(type(new) is not type(old) for old, new in zip(laws, used, strict=True)):
         computed.append(Clause(_in_place(laws, used), masks.known))
     if some(masks.marched):
-        text = f"tangential motion: {in_words(used.integrator)} over {in_words(used.tangential)}"
+        text = f"friction: {in_words(used.tangential)}, followed by {in_words(used.integrator)}"
         computed.append(Clause(text, masks.marched, code=TANGENTIAL_MOTION))
         computed += resolution
     alone = way.one_by_one(masks)
@@ -139,13 +139,13 @@ def _words(
     left_out = _say_why_whole(columns, masks)
     if _loses_in_pressure_alone(way):
         name = name_of(used.tangential)
-        left_out.append(Clause(f"loss in shear: {name} has none beside this law", masks.known))
-    left_out += way.left_out(masks)
+        left_out.append(Clause(f"loss in shear: {name} has none", masks.known))
     words, unknown, pressure = yield_unknown(scene)
     if words and "plastic" not in used.capability.normal_claims:
         left_out.append(Clause(words, masks.known & unknown, (pressure,)))
-    if reason := _no_history(asked_for.history, columns, masks.marched):
-        left_out.append(Clause(reason, masks.known))
+    absent = [*_absent(way), *_no_history(asked_for.history, columns, masks.marched)]
+    if absent:
+        left_out.append(Clause(", ".join(absent), masks.known))
     with np.errstate(under="ignore"):
         cautions = _cautions(way, scene, motion, masks, asked_for.history)
         if some(masks.marched):
@@ -171,7 +171,7 @@ def _in_place(laws: Laws, used: Laws) -> str:
         for old, new in zip(laws, used, strict=True)
         if type(new) is not type(old)
     ]
-    return f"laws: {', '.join(pairs)}, as friction changes the approach, or slip turns"
+    return f"laws: {', '.join(pairs)}, which cannot follow this impact"
 
 
 class _Asked(NamedTuple):
@@ -243,9 +243,8 @@ def _books(laws: Laws, scene: Scene, motion: Motion) -> list[Clause]:
     if not where.any():
         return []
     text = (
-        f"energy books: off by {{:.2g}} of the energy at the start, and "
-        f"{name_of(laws.tangential)} declares no bound (books_bound); with more steps a "
-        "numerical error falls, what the law makes by its nature stays"
+        "energy balance: off by {:.2g} of the energy at the start. If more steps do not reduce "
+        f"this, {name_of(laws.tangential)} is the cause."
     )
     return [Clause(text, where, (np.asarray(share),))]
 
@@ -271,7 +270,7 @@ class _AfterRun:
 
 def _say_why_whole(columns: PlanColumns, masks: Masks) -> list[Clause]:
     """Return why impacts are not marched, and whose books check nothing."""
-    march = "march of the tangential motion"
+    march = "stepping through the contact"
     clauses = [
         Clause(f"{march}: {reason.text}", np.asarray(columns.code == place))
         for place, reason in enumerate(columns.reasons)
@@ -279,21 +278,40 @@ def _say_why_whole(columns: PlanColumns, masks: Masks) -> list[Clause]:
     if any(reason.unchecked for reason in columns.reasons):
         clauses.append(Clause(UNCHECKED, np.asarray(columns.unchecked)))
     if some(masks.endless):
-        clauses.append(Clause(f"{march}: the normal motion came to no end", masks.endless))
+        clauses.append(Clause(f"{march}: the bodies did not separate", masks.endless))
     return clauses
 
 
-def _no_history(history: bool | str, columns: PlanColumns, marched: Mask) -> str | None:
+def _absent(way: Way) -> list[str]:
+    """Return what contactlab can do and these impacts do not need, each with why."""
+    scene, pair = way.scene, way.scene.pair
+    absent = []
+    if not np.any(coupling_number(scene.central)):
+        why = "equal" if name_bodies(scene) else "none given"
+        absent.append(f"coupling of unlike materials ({why})")
+    if "elastic_hertz" in way.laws.capability.normal_claims:
+        absent.append("loss (none given)")
+    if not np.any(scene.normal_spin):
+        absent.append("spin about the normal (none)")
+    if np.all(elongation_of(pair) == 1.0):
+        absent.append("elliptic contact (round)")
+    if way.both and scene.planar:
+        absent.append("out-of-plane motion (planar)")
+    return absent
+
+
+def _no_history(history: bool | str, columns: PlanColumns, marched: Mask) -> list[str]:
     """Return what a history leaves out, and why."""
+    fields = "traction and stick/slip fields"
     if not history:
-        return "history: not asked for"
+        return ["history (not requested)"]
     if history != "fields":
-        return "traction and stick/slip fields: not asked for (history='fields')"
+        return [f"{fields} (not requested, history='fields')"]
     if not some(marched) and WHOLE in columns.reasons:
-        return "traction and stick/slip fields: a law that answers both motions together has none"
+        return [f"{fields} (the law solves both motions together)"]
     if not (some(marched) or any(reason.fields for reason in columns.reasons)):
-        return "traction and stick/slip fields: there is no march to take them from"
-    return None
+        return [f"{fields} (no steps to take them from)"]
+    return []
 
 
 def _error_clauses(what: str, error: Real, ended: Mask, advice: str) -> list[Clause]:
@@ -303,9 +321,9 @@ def _error_clauses(what: str, error: Real, ended: Mask, advice: str) -> list[Cla
     code = PSI2_ERROR if what == "psi2" else ""
     clauses = []
     if some(declared):
-        text = f"numerical error of {what}: at most {{:.2g}}, declared"
+        text = f"numerical error of {what}: below {{:.2g}} (bound stated by the laws)"
         clauses.append(Clause(text, declared, (error,), code))
     if some(undeclared):
-        text = f"numerical error of {what}: not declared{advice}"
+        text = f"numerical error of {what}: the laws state no bound{advice}"
         clauses.append(Clause(text, undeclared, code=code))
     return clauses

@@ -36,7 +36,7 @@ WORK_ACCURACY = 10.0
 #: A failed batch of at most so many impacts is solved one by one; a larger batch is halved first.
 ONE_BY_ONE = 8
 #: Why impacts are not marched in which friction changes the approach.
-WHOLE = Reason("the law answers normal and tangential motion together")
+WHOLE = Reason("the law solves both motions together")
 
 
 class Prepared(NamedTuple):
@@ -118,10 +118,6 @@ class Way(Entries, ABC):
     def errors(self, columns: PlanColumns) -> Mapping[str, Real]:
         """Return the numerical errors that the plan tells, by what they are errors of."""
         return {"psi2": columns.psi2_error}
-
-    def left_out(self, masks: Masks) -> list[Clause]:
-        """Return what else is left out."""
-        return []
 
     def motion_of_cautions(self, motion: Motion | None) -> Motion | None:
         """Return the motion of a run where its normal motion is that about which cautions ask."""

@@ -27,7 +27,7 @@ from contactlab.study.stability_judge import (
     Outcome,
     judge,
 )
-from contactlab.study.time_limit import time_limited
+from contactlab.study.time_limit import TimeLimitError, end_of, in_time
 
 #: A case of more work than this, in steps of one part, is skipped. Work is not time: which cases
 #: are tried does not depend on the machine.
@@ -132,6 +132,7 @@ def stability(
     Stability
         Ctrl-C keeps the outcomes that there are.
     """
+    until = end_of(time_limit)
     listed = list_cases(methods, quick=quick)
     elastic = [method for method in methods if method.normal == DEFAULT_NORMAL]
     largest = QUICK_LARGEST if quick else LARGEST
@@ -148,14 +149,12 @@ def stability(
     items: list[Any] = []
     interrupted = False
     try:
-        with time_limited(time_limit) as over:
-            for done, job in enumerate(jobs, start=1):
-                item = job()
-                if over():  # the item may have been stopped half-way
-                    break
-                items.append(item)
-                if progress is not None:
-                    progress(done, len(jobs))
+        for done, job in enumerate(jobs, start=1):
+            items.append(in_time(job, until))
+            if progress is not None:
+                progress(done, len(jobs))
+    except TimeLimitError:
+        pass
     except KeyboardInterrupt:
         interrupted = True
     return Stability(

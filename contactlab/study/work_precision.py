@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
 import attrs
@@ -25,7 +25,7 @@ from contactlab.study.bench_methods import Method, Options, scenes
 from contactlab.study.benchmark import ALIKE, ROUNDING, Benchmark, Row
 from contactlab.study.posed import need_units, pose
 from contactlab.study.stability_references import converges, reference_for
-from contactlab.study.time_limit import time_limited
+from contactlab.study.time_limit import TimeLimitError, end_of, in_time
 
 #: Tolerance of the exact answers: finer than the default, which is measured too.
 EXACT_TOLERANCE = 1e-12
@@ -71,6 +71,7 @@ def bench(
     Benchmark
         Ctrl-C keeps the resolutions that are done.
     """
+    until = end_of(time_limit)
     resolutions = [
         (method, resolution) for method in methods for resolution in method.resolutions(quick=quick)
     ]
@@ -79,24 +80,22 @@ def bench(
     limit = SLOW_QUICK if quick else SLOW
     interrupted = False
     try:
-        with time_limited(time_limit) as over:
-            keys = {_limit(method) for method in methods}
-            truths = {key: _truths(*key, quick=quick) for key in keys}
-            if with_rebound:
-                rows.append(_rebound_row(quick=quick))
-            for done, (method, resolution) in enumerate(resolutions, start=1):
-                row = (
-                    _left_out(method, resolution)
-                    if method.name in slow
-                    else _row(method, resolution, truths[_limit(method)], quick=quick)
-                )
-                if over():  # the row may have been stopped half-way
-                    break
-                rows.append(row)
-                if row.time_s > limit:
-                    slow.add(method.name)
-                if progress is not None:
-                    progress(done, len(resolutions))
+        keys = {_limit(method) for method in methods}
+        truths = in_time(lambda: {key: _truths(*key, quick=quick) for key in keys}, until)
+        if with_rebound:
+            rows.append(in_time(partial(_rebound_row, quick=quick), until))
+        for done, (method, resolution) in enumerate(resolutions, start=1):
+            if method.name in slow:
+                rows.append(_left_out(method, resolution))
+            else:
+                row = partial(_row, method, resolution, truths[_limit(method)], quick=quick)
+                rows.append(in_time(row, until))
+            if rows[-1].time_s > limit:
+                slow.add(method.name)
+            if progress is not None:
+                progress(done, len(resolutions))
+    except TimeLimitError:
+        pass
     except KeyboardInterrupt:
         interrupted = True
     orders = {

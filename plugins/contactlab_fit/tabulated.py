@@ -13,12 +13,12 @@ from contactlab.contracts.status import Status
 from contactlab.impact.cautions import unit_slips
 from contactlab.impact.coupling import coupling
 from contactlab.impact.scene import Scene
-from contactlab.numeric.taken import of_taken
 from contactlab.numeric.types import Real
 from contactlab.outcome.motion import ENDS, Motion
 from contactlab.outcome.plan import Clause, Plan, PlanColumns, Words
 from contactlab.outcome.result import ImpactResult
 from contactlab.registry import composition
+from contactlab.registry.law_words import of_taken
 from contactlab.runs.simulation import Simulation
 
 #: The normal law behind ``rebound(restitution=)``.

@@ -68,10 +68,7 @@ class Coulomb(WholeImpactTangentialLaw, CoupledTangentialLaw):
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the caution that the elasticity of the surfaces is left out."""
-        return (
-            "rigid bodies: tangential elasticity is left out, which moves psi2 of solid spheres by "
-            "up to about 1.5 where the contact sticks (model, not numerical error)",
-        )
+        return ("model: rigid contact. Where a solid sphere sticks, psi2 is off by up to 1.5.",)
 
     def solve_coupled(
         self,

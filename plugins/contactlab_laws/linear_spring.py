@@ -37,8 +37,8 @@ from contactlab_laws.mindlin import (
 COARSEST_BOOKS = 0.05
 
 PATH = (
-    "one spring of one stiffness: along random paths the force is off by up to 2 mu N (0.95 rms), "
-    "as its stiffness is that of an impact at the scene's speed (model, not numerical error)"
+    "model: one spring, as stiff as an impact at the scene's speed. Along random paths the force "
+    "is off by up to 2 mu N."
 )
 
 

@@ -64,29 +64,29 @@ DAMPED = {
     "stiffness": "the force of a dashpot does not depend on the displacement",
 }
 PARTIAL_SLIP = (
-    "one spring: the whole contact slips at once, which moves psi2 of solid spheres by "
-    "up to about 0.7 (model, not numerical error)"
+    "model: one spring, so the whole contact slips at once. psi2 of solid spheres is off by up to "
+    "0.7."
 )
 PATH = (
-    "one spring: along random paths the force is off by up to 0.5 mu N (0.13 rms), and thirty load "
-    "cycles of 10 % at a held displacement make 23 % more of it, or lose 94 % if rescaled (model, "
-    "not numerical error); springs hold both"
+    "model: one spring. Along random paths the force is off by up to 0.5 mu N, and load cycles at "
+    "a held displacement change the force. springs do neither."
 )
-_MADE = (
-    "energy from nothing: as the contact grows and shrinks, this form of the spring may return "
-    "more than it took, {} (model, not numerical error)"
-)
+_MADE = "model: this spring can create energy. {}"
 #: Cautions of the forms that make energy, with its size at any stiffness factor: between elastic
 #: spheres, and under damped normal laws. Measured over 12,000 impacts a form, chi up to 300, and
 #: 60,000 damped ones, chi up to 30, under the five normal laws that take a restitution.
 ELASTIC = {
-    "displacement": _MADE.format("and bodies slip up to 6.4 % faster than they met"),
-    "displacement_rescaled": _MADE.format("by up to 7.5 % of the energy of slip"),
-    "increment": _MADE.format("and bodies slip up to 5.2 % faster than they met"),
+    "displacement": _MADE.format(
+        "Bodies may leave with 6.4 % more slip velocity than they arrived with."
+    ),
+    "displacement_rescaled": _MADE.format("The gain is up to 7.5 % of the energy of slip."),
+    "increment": _MADE.format(
+        "Bodies may leave with 5.2 % more slip velocity than they arrived with."
+    ),
 }
 #: Largest chi of these, elastic and damped, and the least restitution of the damped ones.
 ELASTIC_CHI, DAMPED_CHI, LEAST_E = 300.0, 30.0, 0.5
-_DAMPED = "and bodies slip faster than they met: by up to {} under damped normal laws of e = 0.5"
+_DAMPED = "Under damped normal laws of e = 0.5 the slip velocity may grow by up to {}."
 DAMPED_GAIN = {
     "displacement": _MADE.format(_DAMPED.format("14 % (26 % for chi near 30)")),
     "displacement_rescaled": _MADE.format(_DAMPED.format("11 %")),

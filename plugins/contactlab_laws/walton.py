@@ -74,6 +74,6 @@ class Walton(WholeImpactTangentialLaw):
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the caution that one slip restitution stands for all tangential elasticity."""
         return (
-            "hard spheres: one slip restitution stands for the tangential elasticity, at every "
-            "angle; it moves psi2 of solid spheres by up to about 0.8 (model, not numerical error)",
+            "model: one slip restitution at every angle, in place of tangential elasticity. psi2 "
+            "of solid spheres is off by up to 0.8.",
         )

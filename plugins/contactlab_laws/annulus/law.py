@@ -86,8 +86,8 @@ class Annulus(PartialSlip, AllStepsTangentialLaw):
         """Return the caution that the force at gross slip is that of the annuli, not mu N."""
         most = 0.1 / self.annuli
         return (
-            f"the force of {self.annuli} annuli may exceed mu N by up to {most:.1g} of it "
-            "(numerical error; it falls with their number)",
+            f"numerical error: the force of {self.annuli} annuli may exceed mu N by up to "
+            f"{most:.1g} of mu N; more annuli reduce this.",
         )
 
     def field_cautions(self) -> tuple[str, ...]:

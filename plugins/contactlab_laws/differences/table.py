@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from decimal import ROUND_CEILING, Decimal
 from functools import cache
 from pathlib import Path
@@ -32,7 +33,6 @@ BETWEEN = 1.1
 AROUND = 1.6
 #: The impacts that were measured, for the choice of a law.
 CHI = (0.8, 1.8)
-MEASURED = f"measured for chi {CHI[0]:g} to {CHI[1]:g}"
 #: chi at which the error of springs was measured, each over all psi1.
 NODES = (0.05, 0.1, 0.2, 0.4, 0.8, 1.2, 1.8, 2.5, 3.5, 5.0, 7.0, 10.0)
 
@@ -62,6 +62,16 @@ def key(law: Law) -> str:
     return f"{type(law).__module__}.{type(law).__qualname__}".replace(".law.", ".")
 
 
+def _called(law: Law) -> str:
+    """Return the name of a normal law of this shelf."""
+    return _named(type(law).__name__)
+
+
+def _named(law: str) -> str:
+    """Return the name of a law by that of its class: ``kuwabara_kono`` for ``KuwabaraKono``."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", law).lower()
+
+
 @cache
 def rows() -> dict[str, tuple[Row, ...]]:
     """Return the rows of each normal law, in ascending restitution."""
@@ -87,8 +97,8 @@ def springs(scene: Scene, normal: NormalMotion, *, part: str = "spring") -> tupl
             return ()
         told = f"psi2 is off by up to {_above(size, AROUND)}"
     return (
-        f"each {part} is limited separately, which is not Coulomb's law at every point under this "
-        f"normal law: {told} (model, not numerical error); tangential.annulus has the right limit",
+        f"model: under {_called(normal.law)} each {part} is limited separately, which violates "
+        f"Coulomb's law locally; {told}. annulus has the right limit.",
     )
 
 
@@ -130,14 +140,12 @@ def choice(scene: Scene, normal: NormalMotion, *, shared: bool = False) -> tuple
     if np.all(e == 1.0) and own.endswith(".Tsuji"):
         return ()  # no damping: Hertz's motion
     known = _within(e, measured[own]) & (chi >= CHI[0]) & (chi <= CHI[1])
-    shear = "where shear shares the loss" if shared else "with elastic shear"
-    head = (
-        f"the restitution alone does not decide psi2: {shear} other normal laws of the same "
-        "restitution move psi2 by "
-    )
+    shear = "With damped shear" if shared else "With elastic shear"
+    head = f"model: psi2 depends on the damping law, not only on e. {shear} other laws of this e "
     e = np.where(known, e, math.nan)
     if not np.any(known):
-        return (f"{head}an amount {OUTSIDE}, chi from {CHI[0]:g} to {CHI[1]:g} (model)",)
+        ends = f"chi from {CHI[0]:g} to {CHI[1]:g}"
+        return (f"{head}change psi2 by an amount {OUTSIDE} ({ends}).",)
     if own.endswith(".Tsuji"):
         sizes = {
             law.rpartition(".")[2]: _largest(e, each, shared)
@@ -145,14 +153,16 @@ def choice(scene: Scene, normal: NormalMotion, *, shared: bool = False) -> tuple
             if law != own and each[0].restitution <= SPANNED
         }
         least, most = (pick(sizes, key=sizes.__getitem__) for pick in (min, max))
-        size_text = f"{_above(sizes[least])} ({least}) to {_above(sizes[most])} ({most})"
+        size_text = (
+            f"{_above(sizes[least])} ({_named(least)}) to {_above(sizes[most])} ({_named(most)})"
+        )
     else:
         size = _largest(e, measured[own], shared)
         if not size >= LEAST:
             return ()
-        size_text = f"{_above(size)} (Tsuji)"
-    others = "" if np.all(known) else f"; of other impacts {OUTSIDE}"
-    return (f"{head}up to {size_text} ({MEASURED}{others}; model, not numerical error)",)
+        size_text = f"{_above(size)} (tsuji)"
+    others = "" if np.all(known) else f"; some impacts are {OUTSIDE}"
+    return (f"{head}change psi2 by up to {size_text}{others}.",)
 
 
 def _above(size: float, factor: float = BETWEEN) -> str:

@@ -39,7 +39,7 @@ from contactlab_laws.tables.regions import LARGEST_CHI
 #: interruption loses little if none has an answer from the table.
 WHOLE_IMPACTS, FOLLOWED_AT_A_TIME, FEW = 1 << 14, 1000, 20
 #: Why an impact is not followed.
-REASON = "psi2 is tabulated; a history, or a tolerance below 1e-9, follows the impact"
+REASON = "psi2 comes from a table; ask for a history to step"
 #: Error of impacts that are followed where none is asked for.
 FOLLOWED = 1e-9
 #: Error over max(1, psi1) of whole impacts by the compiled solver, from so large a chi on times chi

@@ -89,14 +89,15 @@ def hemisphere(normal: NormalMotion) -> tuple[str, ...]:
     # the normal law makes it, unless the friction load is Hertz's at the contact radius.
     if "hertzian_pressure" not in normal.claims:
         return (
-            "the friction law assumes a hemispherical pressure over the contact radius, with the "
-            "friction load as its sum; the normal law does not declare one (model error)",
+            "model: the friction law assumes Hertz's pressure profile; the normal law does not "
+            "state "
+            "its own.",
         )
     if "elastic_hertz" in normal.claims or _hertzian(normal):
         return ()
     return (
-        "the normal law assumes a hemispherical pressure for its damped force; no theory gives "
-        "the pressure of the damping (model error)",
+        "model: the normal law assumes Hertz's pressure profile for its damping force too; no "
+        "theory gives that profile.",
     )
 
 

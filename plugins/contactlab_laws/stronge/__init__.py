@@ -87,8 +87,8 @@ class Stronge(WholeImpactTangentialLaw):
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of a lumped contact and of a normal spring that does not pull."""
         lumped = (
-            "lumped contact: springs independent of the contact's area, without partial slip, "
-            "which moves psi2 of solid spheres by up to about 0.4 (model, not numerical error)"
+            "model: lumped contact, two springs without partial slip. psi2 of solid spheres is off "
+            "by up to 0.4."
         )
         return (lumped, *_pull(scene, normal))
 
@@ -100,9 +100,9 @@ def _pull(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
     if not largest > 1.0 + PULL:
         return ()
     return (
-        f"lumped contact: its normal spring does not pull; the friction load of the normal law has "
-        f"up to {largest:.3g} times the impulse (1 + e) M_n v1 of that spring (model, not "
-        "numerical error)",
+        "model: stronge's normal spring does not pull, but this normal law does. The impulse of "
+        "the "
+        f"friction load is up to {largest:.3g} times that of the spring.",
     )
 
 

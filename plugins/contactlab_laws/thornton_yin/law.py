@@ -26,8 +26,8 @@ from contactlab_laws.thornton_yin.branches import ContactState, Step, follow_ste
 #: Bound of the imbalance of the energy books, over the energy at the start: from the short memory.
 LARGEST_IMBALANCE = 0.1
 SHORT_MEMORY = (
-    "the contact remembers its force and two turning points, not its traction, which moves psi2 "
-    "of solid spheres by up to about 0.15 (model, not numerical error)"
+    "model: this law keeps the force and two turning points, not the whole history. psi2 is off "
+    "by up to 0.15."
 )
 
 
@@ -78,9 +78,8 @@ class ThorntonYin(CausalTangentialLaw):
     def path_cautions(self) -> tuple[str, ...]:
         """Return the caution of a memory that holds few turning points."""
         return (
-            "short memory along a path: thirty load cycles of 10 % at a held displacement lose "
-            "45 % of the force, random paths are off by up to 0.42 mu N (0.10 rms); springs and "
-            "annuli hold both (model, not numerical error)",
+            "model: short memory. Along random paths the force is off by up to 0.42 mu N, and load "
+            "cycles at a held displacement lose force. springs and annulus do neither.",
         )
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:

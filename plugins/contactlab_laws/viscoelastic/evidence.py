@@ -48,13 +48,13 @@ def _trusted(chi: Array, e: Array, grips: Mask) -> tuple[str, ...]:
     if np.any(within := grips & known):
         least = float(np.min(e, where=within, initial=1.0))
         size = float(np.interp(least, RESTITUTIONS, SIZES))
-        said.append(f"is trusted to {size:.2g} at e = {least:.2g}, by eight measured balls")
+        said.append(f"e_T is right within {size:.2g}, by eight measured balls.")
     if np.any(beyond := grips & ~known):
         least = float(np.min(e, where=beyond, initial=1.0))
         ends = f"e from {RESTITUTIONS[0]:g}, chi from {CHI[0]:g} to {CHI[1]:g}"
-        said.append(f"at e = {least:.2g} is {OUTSIDE}, {ends}")
-    head = "one loss for pressure and shear: e_T = -psi2/psi1"
-    return tuple(f"{head} {each} (model; shear_loss fits it)" for each in said)
+        said.append(f"the error of e_T is {OUTSIDE} ({ends}).")
+    head = "model: assumes equal damping in compression and shear. At e ="
+    return tuple(f"{head} {least:.2g} {each} If you have data, fit shear_loss." for each in said)
 
 
 def _deep(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
@@ -64,10 +64,10 @@ def _deep(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
     if not depth > DEEP:
         return ()
     low, high = LEAST_GAIN * depth, MOST_GAIN * depth
-    size = f"about {low:.2g} to {high:.2g}"
+    size = f"{low:.2g} to {high:.2g} higher"
     if depth > DEEPEST:
-        size = f"an amount {OUTSIDE}, z/R up to {DEEPEST:g}"
-    return (f"deep contact, z/R = {depth:.2g}: measured e_T are higher by {size} (model)",)
+        size = OUTSIDE
+    return (f"model: deep contact, z/R = {depth:.2g}. Measured e_T is {size}.",)
 
 
 def _metal(scene: Scene) -> tuple[str, ...]:
@@ -76,6 +76,6 @@ def _metal(scene: Scene) -> tuple[str, ...]:
     if not stiff:
         return ()
     return (
-        "metals lose by yield, which is no loss in shear: no measurement of their e_T below "
-        "e = 1 was found (model)",
+        "model: metals lose energy by yield, not in shear. No measurement of e_T of metals below "
+        "e = 1 was found.",
     )
