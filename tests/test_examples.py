@@ -304,7 +304,7 @@ def test_a_command_of_another_distribution_installs_with_pip(tmp_path):
 
 def test_without_the_plugin_its_law_is_unknown(capsys):
     assert main(["run", "--psi1", "1.2", "--chi", "1.4412", "--tangential", "cundall"]) == 2
-    assert "no such law" in capsys.readouterr().err
+    assert "no friction law" in capsys.readouterr().err
 
 
 @pytest.mark.slow

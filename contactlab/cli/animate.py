@@ -29,7 +29,7 @@ GHOST_NAMES = {"coulomb": "rigid", "mindlin_cap": "capped spring"}
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the scene, the laws and the file."""
     add_scene(parser)
-    words = "tangential laws whose bodies part from this one after the contact, as outlines"
+    words = "further tangential laws, drawn as outlines after the contact"
     shared.add_names(parser, "--ghost", words, default=[])
     shared.add_file(parser, "--out", ".gif", required=True)
     shared.add_progress(parser)

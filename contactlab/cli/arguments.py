@@ -161,7 +161,7 @@ def add_look(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--width",
         choices=("one", "two"),
-        help="columns of a page that the figure fills, with its text in the sizes of print",
+        help="columns of a printed page that the figure fills",
     )
 
 
@@ -230,9 +230,9 @@ def save(
                     print(f"contactlab: interrupted: {left} is not written", file=sys.stderr)
                 return INTERRUPTED
             if interrupted:
-                print(f"contactlab: interrupted: {partial} has what is done", file=sys.stderr)
+                print(f"contactlab: interrupted: what is done is in {partial}", file=sys.stderr)
             elif partial.exists():
-                note = f"{partial} is of an interrupted run, and {path} is whole"
+                note = f"{path} is complete; {partial} is left from an interrupted run"
                 print(f"contactlab: note: {note}", file=sys.stderr)
             if counted is not None:
                 counted(done, len(wanted))
@@ -331,8 +331,8 @@ def add_restitution(parser: argparse.ArgumentParser) -> None:
         "--restitution",
         type=_number_or_words,
         metavar="E",
-        help="in place of a normal law: one loss for pressure and shear that gives this e; or "
-        "e of the speed, '1 - 0.02 v^(1/5)', or a table in m/s, 0.5:0.95,2:0.9",
+        help="coefficient of restitution, in place of a normal law. A function of the speed: "
+        "'1 - 0.02 v^(1/5)'. A table, speed in m/s to e: 0.5:0.95,2:0.9",
     )
 
 

@@ -177,7 +177,7 @@ def _file(arguments: argparse.Namespace, defaults: Mapping[str, float] | None) -
     if missing:
         raise ValueError(f"{missing[0]}: must be given too (chi is 1.4412 for a solid sphere)")
     if len(varied) > 1:
-        raise ValueError("--psi1, --chi: one of them may be a range; give the other one number")
+        raise ValueError("--psi1, --chi: only one may be a range; give one number for the other")
     scene = Scene.nondimensional(**parameters)
     return SceneFile(path=Path("--psi1, --chi"), scene=scene, varied=varied)
 
@@ -218,8 +218,8 @@ def _all(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Simulation
     """Return the simulations of all laws that fit; report the others on stderr."""
     if arguments.tangential or arguments.integrator or (arguments.normal and arguments.normal[1:]):
         raise ValueError(
-            "--all takes every tangential law, each under its integrator; leave out --tangential "
-            "and --integrator, and name one normal law at most"
+            "--all runs every tangential law with its own integrator; leave out --tangential and "
+            "--integrator, and name at most one normal law"
         )
     for path, _ in arguments.settings:
         if path.count(".") < 2 and kind_of(path) != "normal":
@@ -275,7 +275,7 @@ def simulations(
     for path, _ in arguments.settings:
         if path not in used:
             raise ValueError(
-                f"--set {path}: none of the laws chosen has this option; "
+                f"--set {path}: no chosen law has this option; "
                 f"{nearest(path, offered)}known: {', '.join(sorted(offered)) or 'none'}"
             )
     return combinations

@@ -44,9 +44,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add ``list``, ``show NAME`` and ``check NAME``."""
     actions = parser.add_subparsers(dest="action", metavar="list|show|check", required=True)
     listing = actions.add_parser("list", help="name, kind, distribution and version of all")
-    show = actions.add_parser(
-        "show", help="description and options of a law, or what another brings"
-    )
+    show = actions.add_parser("show", help="describe a law and its options, or another plug-in")
     check = actions.add_parser("check", help="check one against its contract; exit 1 if it fails")
     listing.add_argument(
         "--kind", choices=tuple(RANK), metavar="KIND", help=f"one of {', '.join(RANK)}"
@@ -57,8 +55,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         )
     add_time_limit(
         check,
-        "of each check, and of the import (default 60); after three checks out of time the others "
-        "are not tried",
+        "of each check (default 60); after three checks that exceed the limit, checking stops",
     )
     add_progress(check)
     for action in (listing, show, check):

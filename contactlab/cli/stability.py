@@ -43,7 +43,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
 def execute(arguments: argparse.Namespace) -> int:
     """Run the report; the status is 1 if any answer is silently wrong or a law raised."""
     if arguments.width == "one":
-        raise ValueError("--width one: the map is too wide for one column; use --width two")
+        raise ValueError("--width one: the map needs two columns; use --width two")
     chosen = methods(shared.chosen_laws(arguments))
     told = arguments.progress is not False
     if told:
@@ -109,11 +109,9 @@ def report(result: Stability) -> str:
         parts.append(table(["method", "case", "", ""], rows))
     parts.append(
         f"{describe_totals(result)}\n"
-        "Errors are numerical: distances from the law's own exact answer, over the range of psi2.\n"
-        "Answers whose declared or estimated error is a quarter of the range or more are counted "
-        "as coarse\nand have no error in the table.\n"
-        "A law whose exact answer differs from the elastic continuum is listed with its model "
-        "error."
+        "Error: distance from the law's own exact answer, over the range of psi2.\n"
+        "Coarse: answers that state or estimate an error above a quarter of the range.\n"
+        "Model error: distance of a law's exact answer from the elastic continuum."
     )
     if not result.complete:
         parts.append(f"not complete: {shared.say_why_incomplete(result)}")
@@ -126,9 +124,9 @@ def describe_totals(result: Stability) -> str:
     raised = f"{totals['raised']} raised an error; " if totals["raised"] else ""
     return (
         f"{totals['compared']} compared, {totals['silently_wrong']} wrong; "
-        f"{totals['no_reference']} had no reference, their signs and energy books were judged; "
+        f"{totals['no_reference']} had no reference (signs and energy were checked); "
         f"{totals['refused']} refused with a reason; {raised}"
-        f"{totals['not_run']} not run, as too much work."
+        f"{totals['not_run']} not run (too long)."
     )
 
 

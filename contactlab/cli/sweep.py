@@ -69,11 +69,11 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     shared.add_laws(parser)
     shared.add_forms(parser)
     words = (
-        f"{', '.join(WRITERS)}; or a folder/ for more impacts than memory holds, which goes on "
-        "from a stopped sweep: files of NumPy, or in a folder.parquet/ of Parquet"
+        f"{', '.join(WRITERS)}; or a folder/, for more impacts than memory holds (folder.parquet/ "
+        "writes Parquet). A stopped sweep continues in its folder"
     )
     parser.add_argument("--out", type=_output, metavar="FILE or FOLDER/", help=words)
-    words = "keep finished impacts in a folder beside --out, and continue a stopped sweep"
+    words = "keep finished impacts beside --out, and continue a stopped sweep"
     parser.add_argument("--resume", action="store_true", help=words)
     parser.add_argument("--workers", type=int, metavar="N", help="share the work among N processes")
     shared.add_figure(parser, "also draw psi2 over psi1")
@@ -132,7 +132,7 @@ def execute(arguments: argparse.Namespace) -> int:
             print(f"all {len(result)} impacts; {arguments.out} is not written")
     failed = report(result, as_json=arguments.json, varied=varied)
     if keep is not None:
-        words = f"{_done(keep)} impacts are kept in {keep}; the same command goes on from them"
+        words = f"{_done(keep)} impacts are kept in {keep}; repeat the command to continue"
         print(f"contactlab sweep: {words}", file=sys.stderr)
     return max(saved, failed)
 

@@ -32,9 +32,8 @@ def draw_stick_slip(axes: Axes, result: ImpactResult) -> Axes:
             "result",
             result,
             "must have the fields radius, stuck and slipping of a single impact",
-            "run(scene, history='fields') with a law that follows partial slip, as the default "
-            "does between spheres, and springs do step by step between any bodies; an impact "
-            "without slip velocity may have none",
+            "run(scene, history='fields') with a law of partial slip, such as the default for "
+            "spheres or springs for any body; an impact without slip velocity may have no fields",
         )
     fields = history.fields
     time = history.time / result.motion.duration

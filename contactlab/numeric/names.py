@@ -181,7 +181,7 @@ def _unfit(
         return ""  # the error came from within
     names = [each.name for each in parameters]
     free = [each.name for each in parameters if each.kind is each.POSITIONAL_OR_KEYWORD]
-    listed = f"it has {', '.join(names)}"
+    listed = f"arguments: {', '.join(names)}"
     for name in named:
         if name not in names:
             told = remedy(name, named[name]) if remedy else ""
@@ -189,7 +189,7 @@ def _unfit(
             return f"{name} is not an argument; {told}{listed}"
     if len(values) - 1 > len(free):
         rest = f"but for {' and '.join(free)}, " if free else ""
-        return f"{rest}arguments are written with their names, name=value; {listed}"
+        return f"{rest}write arguments as name=value; {listed}"
     given = {*free[: len(values) - 1], *named}
     for each in parameters:
         if each.default is each.empty and each.name not in given:

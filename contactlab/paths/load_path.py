@@ -164,7 +164,7 @@ def load_path(
     Returns
     -------
     LoadPath
-        Its arrays have the shape (K, ...), the axes behind the first those of the paths and of
+        Its arrays have the shape (K, ...), the axes after the first those of the paths and of
         ``scene`` together.
 
     Raises
@@ -241,7 +241,7 @@ def _path(
         shape = np.broadcast_shapes(scene.shape, *(each.shape[1:] for each in entries.values()))
     except ValueError:
         raise ValueError(
-            f"{told}, scene {scene.shape}: the axes behind the first must broadcast with the "
+            f"{told}, scene {scene.shape}: the axes after the first must broadcast with the "
             "scene's; a batch of N paths has arrays of shape (K, N)"
         ) from None
     if scene.shape != shape:

@@ -19,7 +19,7 @@ from contactlab.contracts.tangential import (
     WholeImpactTangentialLaw,
 )
 from contactlab.numeric.checks import refuse
-from contactlab.registration.names import KINDS, full_name
+from contactlab.registration.names import KINDS, full_name, short_name
 from contactlab.registry.capability import Capability
 from contactlab.registry.law_classes import unfit
 from contactlab.registry.registry import REGISTRY, PluginError
@@ -93,19 +93,32 @@ class Laws:
         return attrs.evolve(self, **laws)
 
 
+#: Words for what a law needs of a normal law, and for the laws that an integrator runs.
+NEEDS = {
+    "elastic_hertz": "elastic Hertz contact",
+    "radius": "a contact radius",
+    "hertzian_pressure": "Hertz's pressure profile",
+}
+RUNS = {
+    "PathTangentialLaw": "laws of events",
+    "SteppedTangentialLaw": "laws of steps",
+    "ClosedFormNormalLaw": "normal laws in closed form",
+}
+
+
 def law(kind: str, value: object, **options: object) -> Any:
     """Return the law of ``kind`` that ``value`` names, made with ``options``; or a law as it is."""
     if isinstance(value, str):
         name = full_name(kind, value)
         law_class = REGISTRY.law_class(name)
         if (own := law_kind(law_class)) != kind:
-            raise refuse(kind, value, f"is a law of kind {own!r}", f"pass it as {own}")
+            raise refuse(kind, value, f"is a law of kind {own!r}", f"pass the law as {own}")
         return REGISTRY.create(name, **options) if options else _with_defaults(name, law_class)
     if isinstance(value, Law) and law_kind(value) == kind:
         if (complaint := unfit(type(value))) is not None:
             raise ValueError(f"{kind} = {complaint}")
         return value
-    remedy = f"installed: {', '.join(REGISTRY.names(kind))}"
+    remedy = "names: contactlab plugins list"
     if isinstance(value, type) and issubclass(value, Law):
         remedy = f"this is the class; make one: {value.__name__}()"
     raise refuse(kind, value, f"must be a name or a {kind} law", remedy)
@@ -187,9 +200,8 @@ def _prefer(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> tuple[str, 
             return name, candidate
         installed.append((name, candidate))
     if not installed:
-        names = ", ".join(REGISTRY.names(kind))
         why = "must be given: none of the defaults is installed"
-        raise refuse(kind, None, why, f"installed: {names}")
+        raise refuse(kind, None, why, "names: contactlab plugins list")
     return installed[0]
 
 
@@ -200,8 +212,8 @@ def _refuse_rigid(
     for name, tangential in elastic:
         if _fits(normal, tangential):
             runs, _ = _prefer("integrator", normal, tangential)
-            rule = f"beside {_name(normal)} it runs rigid friction only, which is not taken unnamed"
-            remedy = f"take integrator={runs!r} (with {name}), or name tangential={rigid!r}"
+            rule = f"with {_named(normal)} this integrator runs only rigid friction"
+            remedy = f"use integrator={runs!r} (with {name}), or name tangential={rigid!r}"
             raise refuse("integrator", _named(integrator), rule, remedy)
 
 
@@ -218,8 +230,8 @@ def misfit(normal: Law, tangential: Any, integrator: Any = None) -> str | None:
     """Return why laws do not fit, with the names of both; None if they fit."""
     if "elastic_hertz" in claims(normal) and not isinstance(normal, ClosedFormNormalLaw):
         return (
-            f"normal = {_name(normal)}: offers 'elastic_hertz', and is no ClosedFormNormalLaw; "
-            "derive it from that class, or do not offer the word"
+            f"normal = {_name(normal)}: offers 'elastic_hertz', but is no ClosedFormNormalLaw; "
+            "derive the law from that class, or do not offer the word"
         )
     if not isinstance(tangential, WAYS):
         ways = ", ".join(way.__name__ for way in WAYS)
@@ -237,20 +249,16 @@ def _lacking(law: Law, other: Law) -> str | None:
     for need in sorted(requirements(law), key=str):
         if isinstance(need, str):
             if others == "normal" and need not in claims(other):
-                return (
-                    f"{kind} = {_name(law)}: needs {need!r} of the normal law, which "
-                    f"{_name(other)} does not offer"
-                )
+                what = NEEDS.get(need, f"{need!r} of the normal law")
+                return f"{kind} = {_named(law)}: needs {what}, which {_named(other)} does not offer"
         elif law_kind(need) == others and not isinstance(other, need):
-            return (
-                f"{kind} = {_name(law)}: runs a {need.__name__}, and {others} = "
-                f"{_name(other)} is not one"
-            )
+            what = RUNS.get(need.__name__, f"a {need.__name__}")
+            return f"{kind} = {_named(law)}: runs {what}, and {_named(other)} is not one"
     return None
 
 
 def _would_fit(laws: Laws) -> str:
-    """Return a phrase that names the laws that would fit in place of one of those that are named.
+    """Return a phrase that names, for each kind that is named, the law that would fit best.
 
     Laws that nobody named are chosen anew beside each; the preferred law of a kind comes first.
     """
@@ -261,8 +269,8 @@ def _would_fit(laws: Laws) -> str:
         with contextlib.suppress(ValueError):  # nothing that is preferred is installed
             usual = REGISTRY.info(full_name(kind, _usual(kind, others))).known_as
             found.sort(key=usual.__ne__)
-        names += found
-    return f"; these would fit: {', '.join(names)}" if names else "; no law at hand fits"
+        names += [f"{kind} = {short_name(name)}" for name in found[:1]]
+    return f"; use {', or '.join(names)}" if names else "; no law at hand fits"
 
 
 def _completes(named: Mapping[str, Law]) -> bool:

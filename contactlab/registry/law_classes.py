@@ -21,14 +21,14 @@ def unfit(law: type[Law]) -> str | None:
     if version != API_VERSION:
         return (
             f"{law.__name__}.api_version is {version!r}, contactlab has {API_VERSION}; if the law "
-            "keeps to these contracts, write "
-            f"api_version: ClassVar[int] = {API_VERSION} in its class"
+            f"keeps this contract, write api_version: ClassVar[int] = {API_VERSION} in the class"
         )
     for name, words in (("offers", law.offers), ("needs", law.needs)):
         if not isinstance(words, frozenset):
             return (
-                f"{law.__name__}.{name} must be a frozenset, a constant of the class; waives() "
-                "returns the words that parameters take away"
+                f"{law.__name__}.{name} must be a frozenset, a constant of the class; for words "
+                "that "
+                "depend on options define waives()"
             )
         if not all(map(_word if name == "offers" else _word_or_law, words)):
             entries = "words" if name == "offers" else "words, or classes of laws"
@@ -52,7 +52,7 @@ def _exchanged(law: type[Integrator]) -> str | None:
         names = [*inspect.signature(getattr(law, name)).parameters][1:]  # without self
         if tuple(names[: len(ARGUMENTS)]) != ARGUMENTS:
             return (
-                f"{law.__name__}.{name} has the arguments ({', '.join(names)}); an integrator is "
-                f"called with ({', '.join(ARGUMENTS)}), in this order and by these names"
+                f"{law.__name__}.{name} has the arguments ({', '.join(names)}); they must be "
+                f"({', '.join(ARGUMENTS)}), in this order"
             )
     return None

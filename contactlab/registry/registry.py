@@ -169,9 +169,9 @@ class Registry:
         law = self.law_class(name)
         for option, value in options.items():
             if option not in (parameters := _parameters(law)):
-                names = ", ".join(parameters) or "no options"
-                remedy = f"{nearest(option, parameters)}it has {names}"
-                raise refuse(option, value, f"{name} does not know it", remedy)
+                names = ", ".join(parameters) or "none"
+                remedy = f"{nearest(option, parameters)}its options: {names}"
+                raise refuse(option, value, f"{short_name(name)} has no such option", remedy)
         for option, required in _parameters(law).items():
             if required and option not in options:
                 raise ValueError(

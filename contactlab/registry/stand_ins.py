@@ -8,6 +8,7 @@ from contactlab.contracts.law import Law
 from contactlab.impact.scene import Scene
 from contactlab.registration.names import KINDS
 from contactlab.registry.composition import FOR_COUPLED, RIGID, Laws, misfit
+from contactlab.registry.registry import REGISTRY
 
 
 def stand_in(laws: Laws, part: Scene) -> Laws:
@@ -29,8 +30,8 @@ def stand_in(laws: Laws, part: Scene) -> Laws:
     remedy = _remedy(laws, part)
     if refused is None:
         name = RIGID["tangential"]
-        refused = f"{_name(laws.tangential)}: rigid theory is not taken unless it is named"
-        remedy += f"; or name it: tangential={name!r}"
+        refused = f"{_name(laws.tangential)}: rigid theory must be named"
+        remedy += f"; for rigid bodies write tangential={name!r}"
     raise ValueError(f"{refused}; {remedy}")
 
 
@@ -39,17 +40,18 @@ def _no_answer(laws: Laws, part: Scene) -> str | None:
     able, turns = laws.capability, not part.planar
     name, reason = _name(laws.tangential), None
     if turns and "vectors" not in able.tangential_claims:
-        reason = "it follows slip along one line"
+        reason = f"{name} follows slip along one line"
     elif able.coupled is not None:
         return None
     elif able.causal is None:
-        reason = "it needs the normal motion before the march"
+        reason = f"{name} needs the normal motion first"
     elif able.marcher is None:
-        name, reason = _name(laws.integrator), "it follows a normal motion that is known before"
+        name = _name(laws.integrator)
+        reason = f"{name} needs the normal motion first"
     if reason is None:
         return None
-    where = "and slip turns" if turns else "and slip keeps to a line"
-    return f"{name}: has no answer where friction changes the approach {where}: {reason}"
+    where = "the slip turns" if turns else "friction affects the approach"
+    return f"{name} has no answer: {where}, and {reason}"
 
 
 def _fitting(laws: Laws, kinds: Iterable[str]) -> Iterator[tuple[dict[str, str], Laws]]:
@@ -77,9 +79,11 @@ def _remedy(laws: Laws, part: Scene) -> str:
     for names, other in _fitting(laws, KINDS):
         if _no_answer(other, part) is None:
             words = ", ".join(f"{kind}={name!r}" for kind, name in names.items())
-            return f"take {words}, or leave both out"
-    return f"no law at hand has one beside normal = {_name(laws.normal)}; take another normal law"
+            return f"use {words}, or leave both out"
+    return (
+        f"no law at hand has an answer with normal = {_name(laws.normal)}; use another normal law"
+    )
 
 
 def _name(law: Law) -> str:
-    return type(law).__name__
+    return REGISTRY.short_name(law)

@@ -59,15 +59,16 @@ def remedy_of(name: str, value: object) -> str:
     known = options(at_hand=True)
     if name in known:
         law = known[name][0]
-        return f"it goes to its law: {kind_of(law)}=create({law!r}, {name}={shown(value)}); "
+        made = f"create({law!r}, {name}={shown(value)})"
+        return f"{name} belongs to {law}: write {kind_of(law)}={made}; "
     if not isinstance(value, str):  # a name is that of a law
         for entry in (name, *SYMBOLS.get(name, ())):
             for made, call in OF_SCENES.items():
                 if entry in signature(call).parameters:
                     given = "..." if name in REMARKS else shown(value)
-                    return f"it goes to the scene: {made}(..., {entry}={given}); "
+                    return f"{name} belongs to the scene: write {made}(..., {entry}={given}); "
     near = nearest(name, known, alike=0.75)
-    return f"{near}that is an option of a law; " if near else ""
+    return f"{near}It is an option of a law; " if near else ""
 
 
 def with_restitution(law: Law, restitution: object) -> str:

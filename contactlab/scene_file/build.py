@@ -46,15 +46,13 @@ def build_scene(
     if "nondimensional" in document:
         if sections:
             raise ValueError(
-                f"nondimensional: cannot stand beside [{sections[0]}]; psi1 and chi define "
-                "the scene, leave out one or the other"
+                f"nondimensional: psi1 and chi define the whole scene; leave out [{sections[0]}], "
+                "or [nondimensional]"
             )
         known = (*NONDIMENSIONAL_KEYS, *GROUP_KEYS, *COUPLING_KEYS, *SPIN_KEYS)
         table = Table(document["nondimensional"], "nondimensional", known=known)
         if table.has(*COUPLING_KEYS):
-            table.require(
-                "lam", "eta and rho belong to lam, by which friction changes the approach"
-            )
+            table.require("lam", "eta and rho need lam, the effect of friction on the approach")
         groups = _present(table, (*GROUP_KEYS, *SPIN_KEYS, "eta", "rho"))
         for key in (*NONDIMENSIONAL_KEYS, "lam"):
             if table.has("rho") and isinstance(table.content.get(key), list):
@@ -67,8 +65,8 @@ def build_scene(
         given = document.get("impact")
         if isinstance(given, Mapping) and ALONG in given:
             if "velocity" in given:
-                rule = "has velocity, a vector, and along, beside which speeds are numbers"
-                raise ValueError(f"impact: {rule}; leave out one of them")
+                rule = "velocity is a vector, but along goes with speeds as numbers"
+                raise ValueError(f"impact: {rule}; leave out one of the two")
             impact = root.table("impact", known=PLANE_KEYS)
             bodies, contacts = _bodies(root, impact)
             contacts |= {key: impact.content[key] for key in CONTACTS if impact.has(key)}
@@ -93,8 +91,8 @@ def _refuse_speeds(impact: object) -> None:
     for key in IMPACT_KEYS[1:]:
         if key not in VECTOR_KEYS and isinstance(impact, Mapping) and key in impact:
             raise ValueError(
-                f"impact.{key}: is for spheres; a body takes velocity = [x, y, z] in m/s, or "
-                f"beside {key} the direction of the tangential velocity, along = [x, y, z]"
+                f"impact.{key}: is for spheres; for a body write velocity = [x, y, z] in m/s, or "
+                f"keep {key} and add along = [x, y, z], the direction of the tangential velocity"
             )
 
 
@@ -114,8 +112,8 @@ def _material(table: Table) -> Material:
     material.require("poisson_ratio", "for example 0.3")
     if material.has("shear_modulus") == material.has("young_modulus"):
         raise ValueError(
-            f"{material.path}: exactly one of shear_modulus and young_modulus must be given, "
-            "in Pa; the other follows from E = 2 G (1 + nu)"
+            f"{material.path}: give exactly one of shear_modulus and young_modulus, in Pa; the "
+            "other follows from E = 2 G (1 + nu)"
         )
     numbers = _present(material, MATERIAL_KEYS)
     if material.has(PROPERTIES):
@@ -164,7 +162,7 @@ def _is_rigid(target: object) -> bool:
 def _bodies(root: Table, impact: Table) -> tuple[list[Any], dict[str, Any]]:
     """Return two bodies, at least one of which is no sphere, and their contacts by name."""
     if root.has("body", "sphere") and root.has("body") == root.has("sphere"):
-        raise ValueError("sphere: cannot stand beside [body]; leave out one or the other")
+        raise ValueError("sphere: [body] takes the place of [sphere]; leave out one of the two")
     normal = impact.require("normal", "an impact of bodies needs normal = [x, y, z]")
     contacts: dict[str, Any] = {}
     bodies: list[Any] = []
@@ -196,8 +194,7 @@ def _encounter(
     rivals = [key for key in (*in_plane, *STRUCK_KEYS[:2]) if table.has(key)]
     if rivals:
         raise ValueError(
-            f"{table.path}: has vectors, and {rivals[0]} too; velocity and normal define "
-            "the impact, leave out one or the other"
+            f"{table.path}: velocity and normal define the impact; leave them out, or {rivals[0]}"
         )
     for key in ("velocity", "normal"):
         table.require(key, f"an impact in space needs {key} = [x, y, z]")

@@ -213,7 +213,9 @@ def _owner(kind: str, name: str, given: Mapping[str, object]) -> str:
     for option in given:
         having = [law for law in known.get(option, ()) if kind_of(law) == kind]
         if having and name not in having:
-            return f"take {kind} = {short_name(having[0])}, which has it"
+            return (
+                f"{short_name(having[0])} has this option: choose {kind} = {short_name(having[0])}"
+            )
     return ""
 
 
@@ -235,7 +237,7 @@ def beside(
         if not is_place(name) and takes_restitution(REGISTRY.law_class(name)):
             remedy += f", or {given.rstrip(' =')}, and give {option}{restitution}"
     chosen = composition.RESTITUTION["normal"]
-    return f"{given}{restitution}: chooses the normal law {chosen}; {remedy}"
+    return f"{given}{restitution}: chooses the normal law ({chosen}); {remedy}"
 
 
 def _laws_with(option: str) -> str:
@@ -245,7 +247,7 @@ def _laws_with(option: str) -> str:
         return ""
     kind, name = kind_of(having[0]), short_name(having[0])
     others = f" (and of {', '.join(having[1:])})" if having[1:] else ""
-    return f"is an option of {having[0]}{others}: write --{kind} {name} --set {kind}.{option}=..."
+    return f"belongs to {having[0]}{others}: write --{kind} {name} --set {kind}.{option}=..."
 
 
 def same_law(one: str, other: str) -> bool:
@@ -273,7 +275,7 @@ def read_laws(content: object, folder: Path, *, allow_code: bool) -> LawChoice:
         if key not in known and (having := options_of_laws(at_hand=True).get(key)):
             kind, name = kind_of(having[0]), short_name(having[0])
             remedy = f"write {kind} = '{name}' and options.{kind}.{key} = {value!r}"
-            raise ValueError(f"simulation.{key}: is an option of {having[0]}; {remedy}")
+            raise ValueError(f"simulation.{key}: belongs to {having[0]}; {remedy}")
     table = Table(content, "simulation", known=known)
     names = {
         kind: seen_from(folder, table.text(kind), trusted=allow_code)

@@ -29,7 +29,7 @@ PLANE = 'write [target] with kind = "half-space"'
 ELSEWHERE = {
     "restitution": "write it under [simulation]",
     "mu": "write friction_coefficient under [impact]",
-    "gravity": "leave it out: in an impact it is nothing beside the forces of contact",
+    "gravity": "leave gravity out: contact forces are far larger",
     **dict.fromkeys(("halfspace", "half-space", "half_space", "plane", "wall", "floor"), PLANE),
 }
 
@@ -128,7 +128,8 @@ class Table:
             remedy += f"; a number that a law reads goes under [{self.at(PROPERTIES)}]"
         if "material" in self.known and key in MATERIAL_KEYS:
             remedy = f"a number of the material: write it under [{self.at('material')}]"
-        return ValueError(f"{self.at(key)}: is not a known key; {remedy}")
+        what = "table" if isinstance(self.content.get(key), Mapping) else "key"
+        return ValueError(f"{self.at(key)}: unknown {what}; {remedy}")
 
 
 def nearest_of(name: str, known: Iterable[str]) -> str:

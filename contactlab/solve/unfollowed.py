@@ -50,12 +50,12 @@ def refuse_march(way: Way, *, history: bool) -> None:
         return
     remedy = f"take at least {LEAST_RESTITUTION}"
     if way.both:
-        why = "where friction changes the approach, or slip turns: only a march could answer"
+        why = "for this body, whose impact must be followed in steps"
     elif history:
         why = "with a history"
         remedy += ", or no history"
     elif some(np.isfinite(rate) & _find_gaps(way)):
-        why = f"under {type(laws.tangential).__name__}, which follows the impact"
+        why = f"under {REGISTRY.short_name(laws.tangential)}, which follows the impact in steps"
         springs = RESTITUTION["tangential"]
         if short_name(REGISTRY.short_name(laws.tangential)) != springs:
             remedy += f", or {springs}"

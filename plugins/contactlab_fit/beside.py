@@ -144,14 +144,14 @@ def with_measurements(file: SceneFile, table: Measurements) -> SceneFile:
     own = [name for name in STRUCK_KEYS if name in impact]
     if own and file.varied:
         raise ValueError(
-            f"{file.path}: its struck body moves, and its sweep is of the laboratory, where the "
-            "measured impacts are relative; leave out [sweep]"
+            f"{file.path}: the struck body moves, but measured impacts are relative; leave out "
+            "[sweep]"
         )
     table = _by_angle(as_met(table, file))
     if not table.given:
         raise ValueError(
-            f"{table.source}: no column is of the impact itself, over which to set the measured "
-            "values; give one, such as angle_deg"
+            f"{table.source}: no column describes the impact before contact; give one, such as "
+            "angle_deg"
         )
     moving = _moving(table)
     spread = {name: np.ptp(x) / (np.max(np.abs(x)) or 1.0) for name, x in table.given.items()}
@@ -160,9 +160,8 @@ def with_measurements(file: SceneFile, table: Measurements) -> SceneFile:
     )
     if file.varied and len(moving) > 1:
         raise ValueError(
-            f"{table.source}: {', '.join(moving)} vary together, by more than {SAME:.0%}, and "
-            f"[sweep] of {file.path} varies {', '.join(file.varied)}; leave it out, and each "
-            "impact runs as it was measured"
+            f"{table.source}: {', '.join(moving)} vary, but [sweep] of {file.path} varies "
+            f"{', '.join(file.varied)}; leave out [sweep] to run each impact as measured"
         )
     if file.varied:
         _check_speed(file, table)

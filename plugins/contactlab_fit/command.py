@@ -52,13 +52,13 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         help="DATA.csv and SCENE.toml, or a SCENE.toml that holds measured values",
     )
     words = (
-        "friction_coefficient (default), stiffness_ratio, restitution (one loss for pressure and "
-        "shear), shear_loss, or options of the laws chosen; each law fits those that it has"
+        "friction_coefficient (default), stiffness_ratio, restitution, shear_loss, or options of "
+        "the laws chosen; each law fits those it has"
     )
     shared.add_names(parser, "--fit", words, default=["friction_coefficient"])
     words = (
-        "tangential laws, the first reported and all ranked; exact (default) is the exact elastic "
-        "law, computed from a table"
+        "tangential laws; the first is reported, all are ranked. exact (default): the exact "
+        "elastic law, from a table"
     )
     shared.add_names(parser, "--tangential", words, default=[EXACT])
     shared.add_names(parser, "--normal", "normal laws, as --tangential; or file.py:Class")
@@ -70,8 +70,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         "--bootstrap",
         type=int,
         metavar="SAMPLES",
-        help=f"samples of the bootstrap of the first law (default {SAMPLES}, of more than {MANY} "
-        "impacts none; 0 for none)",
+        help=f"bootstrap samples for the first law (default {SAMPLES}; none above {MANY} impacts)",
     )
     parser.add_argument(
         "--flight",
@@ -160,8 +159,8 @@ def _samples(wanted: int | None, impacts: int) -> int:
     if impacts <= MANY:
         return SAMPLES
     print(
-        f"contactlab fit: no bootstrap of more than {MANY} impacts by default, as each sample is "
-        f"a fit; --bootstrap {SAMPLES} makes it",
+        f"contactlab fit: no bootstrap above {MANY} impacts by default; ask for one with "
+        f"--bootstrap {SAMPLES}",
         file=sys.stderr,
     )
     return 0
@@ -198,13 +197,16 @@ def _files(names: list[str], film: Path | None) -> tuple[Any, Path]:
     tables = [name for name in names if name not in scenes]
     if len(scenes) != 1 or len(tables) > 1:
         raise ValueError(
-            f"FILE = {' '.join(names)}: give the measured impacts as DATA.csv and the bodies as "
-            "SCENE.toml; or a SCENE.toml that holds measured values"
+            f"FILE = {' '.join(names)}: give DATA.csv with the measured impacts and SCENE.toml "
+            "with "
+            "the bodies, or a SCENE.toml with measured values"
         )
     path = Path(scenes[0])
     if film is not None:
         if tables:
-            raise ValueError(f"FILE = {tables[0]}: --flight has the impacts; leave one of them out")
+            raise ValueError(
+                f"FILE = {tables[0]}: --flight gives the impacts already; leave out one"
+            )
         return film, path
     return (Path(tables[0]) if tables else read_scene(path)), path
 

@@ -102,9 +102,9 @@ def read_heading(text: str, columns: Mapping[str, str]) -> Heading:
     if name in QUANTITIES or name == "status":
         return Heading("unused", text)
     raise UnknownHeadingError(
-        f"heading {text!r}: is neither an entry of a scene nor a quantity of a rebound; "
-        f"{nearest(name, [*ENTRIES, *measurable()])}{known_names()}name the column by --column "
-        f"'{text.strip()}=...' (columns= in Python), or begin its heading with # to leave it unread"
+        f"heading {text!r}: is no known name; {nearest(name, [*ENTRIES, *measurable()])}"
+        f"{known_names()}name the column: --column '{text.strip()}=...' (columns= in Python), or "
+        "put # before the heading to skip the column"
     )
 
 
@@ -341,8 +341,8 @@ def _check_comment(line: int, heading: str) -> None:
         return
     if role != "unused":
         raise ValueError(
-            f"line {line}: begins with #, so that {name!r} would not be read; leave out "
-            "the # (or, if that column is not to be read, give it another name)"
+            f"line {line}: begins with #, which would skip the column {name!r}; leave out the #, "
+            "or rename the column to skip it"
         )
 
 

@@ -70,8 +70,8 @@ def check_defined(problem: Problem) -> None:
             raise ValueError(f"{name}: its column has no number for impact {lost[0] + 1}{table}")
         if lost.size:
             raise ValueError(
-                f"{name}: impact {lost[0] + 1} has none to be measured: it is a quotient, by zero "
-                "there, as of an impact without tangential velocity; leave this cell empty"
+                f"{name}: is not defined for impact {lost[0] + 1}, which divides by zero (no "
+                "tangential velocity?); leave this cell empty"
             )
 
 
@@ -88,9 +88,8 @@ def check_scatter(problem: Problem) -> None:
     for name, count in problem.counts.items():
         if name not in problem.errors and count <= len(problem.model.parameters):
             raise ValueError(
-                f"{name}: {count} measured, too few to find their scatter beside that of the other "
-                f"quantities; give a column {name}_error, measure more, or leave it out of those "
-                "that are fitted"
+                f"{name}: {count} numbers are too few to estimate their scatter; give a column "
+                f"{name}_error, measure more, or do not fit {name} (--quantity)"
             )
 
 
@@ -122,7 +121,7 @@ def check_determined(problem: Problem, values: Array) -> None:
     if singular[-1] < ALIKE:
         places = np.flatnonzero(np.abs(turned[-1]) > 0.1).tolist()
         names = " and ".join(parameters[place].name for place in places)
-        reason = f"a change of {names} together leaves every measured number as it is"
+        reason = f"a change of {names} together changes no measured number"
         raise _refuse_free(problem.model, values, places, reason)
 
 
@@ -169,7 +168,8 @@ def check_single(problem: Problem, minima: list[Array], ends: Spread) -> None:
     names = " and ".join(parameter.name for parameter in parameters)
     remedy = _telling_apart(problem.model, np.array([best, alike[0]]))
     raise ValueError(
-        f"the data do not determine {names}: they are met as well by {' and '.join(told)}; {remedy}"
+        f"the data do not determine {names}: the data fit as well with {' and '.join(told)}; "
+        f"{remedy}"
     )
 
 

@@ -130,12 +130,12 @@ def cautions(problem: Problem, values: Array, *, of_any_friction: bool = False) 
     if not (any(text.startswith(LEFT_OUT) for text in said) and result.scene.planar):
         return said
     if theirs := [name for name in problem.measured if name in foreign()]:
-        by = f"by amounts that no table has for {', '.join(theirs)}"
-        return [*said, f"left out, the coupling of unlike bodies moves the values {by}"]
+        names = ", ".join(theirs)
+        return [*said, f"effect of the unlike materials on the values: not known for {names}"]
     if not np.all(coupling_measured(result.scene)):
         return [
             *said,
-            f"left out, the coupling of unlike bodies moves the values by amounts {OUTSIDE}",
+            f"effect of the unlike materials on the values: {OUTSIDE}",
         ]
     change = coupling_shift(result.scene) / np.asarray(result.scene.psi_scale)
     velocity = result.motion.slip_velocity_change + change
@@ -150,7 +150,7 @@ def cautions(problem: Problem, values: Array, *, of_any_friction: bool = False) 
         moves[rows] += part * off[rows, None]
     sizes = zip(problem.model.parameters, np.abs(moves).sum(axis=0), strict=True)
     moves_by = ", ".join(f"{parameter.name} by up to about {size:.1g}" for parameter, size in sizes)
-    return [*said, f"left out, the coupling of unlike bodies moves {moves_by}"]
+    return [*said, f"effect of the unlike materials, which is ignored: {moves_by}"]
 
 
 def _caution_of_shear(problem: Problem) -> list[str]:
@@ -158,18 +158,18 @@ def _caution_of_shear(problem: Problem) -> list[str]:
     fitted = {parameter.name.rpartition(".")[2] for parameter in problem.model.parameters}
     if SHEAR_LOSS not in fitted:
         return []
-    assumed = "" if "stiffness_ratio" in fitted else " holds for these Poisson's ratios, and"
+    assumed = "" if "stiffness_ratio" in fitted else " holds for these Poisson's ratios, and it"
     return [
-        f"{SHEAR_LOSS}{assumed} stands for all that moves the tangential restitution: one such "
-        "number does not tell it without Poisson's ratios and friction (model, not scatter)"
+        f"model: {SHEAR_LOSS}{assumed} absorbs everything that changes the tangential "
+        "restitution. Poisson's ratios and friction must be known."
     ]
 
 
 def describe_outlying(estimates: Mapping[str, Estimate]) -> list[str]:
     """Return a sentence for each parameter whose robust value lies outside its interval."""
     return [
-        f"a robust fit, which a few far numbers hardly move, gives {name} = {estimate.robust:.4g}, "
-        "outside of the interval: look at the impacts that are farthest off"
+        f"outliers: a robust fit gives {name} = {estimate.robust:.4g}, outside the interval. Look "
+        "at the impacts with the largest residuals."
         for name, estimate in estimates.items()
         if estimate.robust is not None
         and not estimate.interval[0] <= estimate.robust <= estimate.interval[1]
@@ -190,14 +190,14 @@ def error_notes(problem: Problem, values: Array) -> list[str]:
         ratio = math.sqrt(square / freedom)
         if ratio**2 > LARGE_CHI_SQUARE and chdtrc(freedom, square) < CHANCE:
             notes.append(
-                f"{name}: residuals are {ratio:.2g} times the errors given: these are too small, "
-                "or the law is not that of the data; intervals are widened by as much"
+                f"{name}: residuals are {ratio:.2g} times the errors given. The errors are too "
+                "small, or the law is wrong; intervals were widened to match."
             )
         alike = np.nanmin(problem.measured[name]) == np.nanmax(problem.measured[name])
         if ratio < SMALL_RATIO and not alike and chdtr(freedom, square) < CHANCE:
             notes.append(
-                f"{name}: residuals are {ratio:.2g} times the errors given: these are too large; "
-                f"look at the unit of {name}_error, and whether they are standard errors"
+                f"{name}: residuals are {ratio:.2g} times the errors given. The errors are too "
+                f"large: check the unit of {name}_error, and that they are standard errors."
             )
     return notes
 
@@ -205,14 +205,16 @@ def error_notes(problem: Problem, values: Array) -> list[str]:
 def table_notes(table: Measurements, parameters: Collection[str]) -> list[str]:
     """Return sentences on columns that are fitted, and on a table that is there several times."""
     notes = [
-        f"the column {name} is not used: it is fitted" for name in table.given if name in parameters
+        f"the column {name} is not used, as {name} is fitted"
+        for name in table.given
+        if name in parameters
     ]
     columns = [*table.given.values(), *table.measured.values(), *table.errors.values()]
     counts = [*Counter(row.tobytes() for row in np.stack(columns, axis=1)).values()]
     if len(counts) >= FEWEST_ROWS and 1 < min(counts) == max(counts):
         notes.append(
-            f"each impact is there {counts[0]} times, to the last digit: copies tell nothing "
-            "new, and make the intervals too narrow"
+            f"every impact occurs {counts[0]} times. Copies make the intervals too narrow; "
+            "remove them."
         )
     return notes
 
@@ -225,7 +227,7 @@ def followed_notes(problem: Problem) -> list[str]:
     names = [name for name in problem.measured if FOLLOWED & {*QUANTITIES[name].needs}]
     needs = sorted(FOLLOWED & model.needs)
     told = f"{', '.join(names)}: read from the {' and '.join(needs)} of an impact"
-    return [f"{told}; impacts are followed, their rebound is not tabulated"] if names else []
+    return [f"{told}, so the fit follows each impact and takes longer"] if names else []
 
 
 def end_notes(problem: Problem, values: Array, freedom: int) -> list[str]:
@@ -239,5 +241,5 @@ def end_notes(problem: Problem, values: Array, freedom: int) -> list[str]:
                 f"{parameter.most:.4g}: the law may not be that of the data"
             )
     if freedom == 0:
-        notes.append("as many numbers as parameters: nothing is left to tell the scatter by")
+        notes.append("as many numbers as parameters: the scatter cannot be estimated")
     return notes

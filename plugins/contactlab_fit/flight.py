@@ -185,9 +185,8 @@ def _film(
     for name in ("t", "x", "y"):
         if name not in film:
             raise ValueError(
-                f"{name}: is missing; a film has the columns t (s), x (m) and y (m), and may have "
-                f"z (m) and angle (deg); name one by --column 'HEADING={name}'; "
-                f"had: {', '.join(table)}"
+                f"{name}: is missing; a film needs the columns t (s), x (m), y (m); name one by "
+                f"--column 'HEADING={name}'. Columns found: {', '.join(table)}"
             )
     if len(in_pixels) > 1:
         raise ValueError("x, y, z: some are in pixels and some are not; give all in one unit")
@@ -229,8 +228,8 @@ def _bounces(film: dict[str, Array], *, in_pixels: bool) -> Measurements:
                 )
     if not pairs:
         raise ValueError(
-            f"no bounce has {FRAMES} frames before and after it; give more frames, or check that "
-            "y is the height of the centre and grows upwards (--column 'y=-y' turns it)"
+            f"no bounce has {FRAMES} frames before and after; give more frames, or check that y "
+            "is the height of the centre and grows upwards (else --column 'y=-y')"
         )
     fall = _fall(throws, step)
     scatter = {
@@ -239,9 +238,9 @@ def _bounces(film: dict[str, Array], *, in_pixels: bool) -> Measurements:
     noise = max(_noise(throw["t"], throw["y"]) for throw in throws if len(throw["t"]) > 2)
     if scatter["y"] > ROUGH * noise + FLAT * max(float(np.ptp(throw["y"])) for throw in throws):
         raise ValueError(
-            f"y: lies off the parabolas between touches by {scatter['y']:.2g} m (rms), the scatter "
-            f"of frames in turn is {noise:.2g} m; check that y is the height of the centre and "
-            "grows upwards (--column 'y=-y' turns it), and that the ball touches a level floor only"
+            f"y: the flights are no parabolas, off by {scatter['y']:.2g} m (rms); check that y is "
+            "the height of the centre and grows upwards (else --column 'y=-y'), and that the floor "
+            "is level"
         )
     rows = [_row(*pair, scatter) for pair in pairs]
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
@@ -249,7 +248,7 @@ def _bounces(film: dict[str, Array], *, in_pixels: bool) -> Measurements:
     told = [name for name in columns if f"{name}_error" in columns]
     measured = [name for name in told if columns[f"{name}_error"].all()]
     notes += [
-        f"{name} is left out: its positions have no scatter, as a column of zeros has none"
+        f"{name} is left out: its positions have no scatter"
         for name in told
         if name not in measured
     ]

@@ -194,9 +194,8 @@ def _from_columns(
     _leave_out_duplicates(given, measured, unused)
     if "psi2" in unused and not measured:
         raise ValueError(
-            "nothing was measured: psi2 beside a speed is formed with friction, which was not "
-            "measured; give tangential_restitution, or what was seen, such as "
-            "rebound_tangential_velocity; or psi1 in place of the speed"
+            "nothing was measured: psi2 depends on friction, which was not measured; give "
+            "tangential_restitution or rebound_tangential_velocity, or psi1 in place of the speed"
         )
     _check_columns(given, measured, errors, notes)
     struck = tuple(given.keys() & set(VELOCITY))
@@ -277,7 +276,7 @@ def _check_columns(
     """Refuse columns that do not belong together."""
     if not measured:
         remedy = "; ".join([*notes, f"{known_names()}name one by --column 'heading=...'"])
-        raise ValueError(f"nothing was measured: no column is a quantity of a rebound; {remedy}")
+        raise ValueError(f"nothing was measured: no column describes a rebound; {remedy}")
     lengths = {name: len(values) for name, values in (given | measured).items()}
     lengths |= {f"{name}{ERROR}": len(values) for name, values in errors.items()}
     if len(set(lengths.values())) > 1:

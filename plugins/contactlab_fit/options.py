@@ -24,15 +24,15 @@ def add_columns(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="HEADING=NAME",
-        help="name a column of the CSV: 'impact angle [deg]=incidence_angle'; a name with - before "
-        "turns the sign, 'remark=#' leaves the column unread; may be repeated",
+        help="name a column of the CSV: 'impact angle [deg]=incidence_angle'. A - before the name "
+        "changes the sign; 'remark=#' skips the column. May be repeated",
     )
     parser.add_argument(
         "--columns",
         type=_columns,
         metavar="A,B,...",
-        help="names of all columns of the CSV in their order, with headings or without: "
-        "'angle_deg,speed (mph),#'; # for a column that is not read",
+        help="names of all columns of the CSV, in order: 'angle_deg,speed (mph),#'; # skips a "
+        "column",
     )
 
 
@@ -46,11 +46,11 @@ def read_impacts(data: str | Path | SceneFile, arguments: argparse.Namespace) ->
     from contactlab_fit.foreign_headings import ForeignHeadingsError
 
     if arguments.columns and arguments.column:
-        raise ValueError("--column: cannot stand beside --columns, which names all columns")
+        raise ValueError("--column: --columns names all columns already; leave out --column")
     names = arguments.columns or dict(arguments.column)
     headings = [heading for heading, _ in arguments.column]
     if twice := sorted(name for name in set(headings) if headings.count(name) > 1):
-        raise ValueError(f"--column: {twice[0]!r} is named twice; leave one of them out")
+        raise ValueError(f"--column: {twice[0]!r} is named twice; leave out one")
     try:
         return measurements.read_measurements(data, columns=names)
     except ForeignHeadingsError as error:

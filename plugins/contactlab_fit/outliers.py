@@ -148,7 +148,9 @@ def describe_outliers(problem: Problem, far: Outliers) -> list[str]:
         are = "are" if len(places) > 1 else "is"
         sentences.append(
             f"{name}: {impacts_in_words(places)} {are} off by up to {largest:.3g}, the others by "
-            f"{rms:.2g} (rms); without what is off {without}; # before a line leaves it out"
+            f"{rms:.2g} (rms). Without {'them' if len(places) > 1 else 'this one'}: {without}. "
+            "Put # "
+            "before a line to skip the line"
         )
     return sentences
 

@@ -142,11 +142,12 @@ def _changes(
     problem: Problem, weighted: Array, jacobian: Array, least: float, same: list[str]
 ) -> tuple[list[Pattern], int]:
     """Return a pattern for each parameter, at the likeliest row of a change, and the tests made."""
-    why = f"{ORDER}: what has changed meanwhile?"
+    why = f"{ORDER}: has the set-up changed?"
     if same:
         why = (
-            f"{ORDER}, which is that of {same[0]}: has something changed meanwhile, or do the laws "
-            "not hold throughout?"
+            f"{ORDER} (also that of {same[0]}): has the set-up changed, or do the laws fail in "
+            "part "
+            "of the range?"
         )
     rows = np.concatenate([np.flatnonzero(np.isfinite(v)) for v in problem.measured.values()])
     lasts = np.arange(SPARE, int(rows.max()) + 2 - SPARE)
@@ -158,10 +159,8 @@ def _changes(
     for parameter, slope in zip(problem.model.parameters, jacobian.T, strict=True):
         chances = _chances(weighted[order], jacobian[order], slope[order], ends, least)
         best = int(np.argmin(chances))
-        words = (
-            f"{parameter.name} is another up to impact {lasts[best]} than from impact "
-            f"{lasts[best] + 1} on, in {why}"
-        )
+        first = lasts[best]
+        words = f"{parameter.name} changes between impacts {first} and {first + 1}, in {why}"
         changes.append(Pattern(float(chances[best]), words))
     return changes, len(lasts) * len(changes)
 
@@ -173,8 +172,8 @@ def leverage(problem: Problem, values: Array, scales: Mapping[str, Real]) -> lis
     if len(jacobian) <= jacobian.shape[1]:
         return []
     return [
-        f"{name}: the fit runs through impact {row + 1} whatever was measured there (leverage "
-        f"{share:.2f}), so that an error in it would not show; measure more like it"
+        f"{name}: impact {row + 1} alone decides the fit (leverage {share:.2f}), so an error in "
+        "this impact would not show. Measure more such impacts"
         for name, numbers in problem.measured.items()
         for row, share in zip(np.flatnonzero(np.isfinite(numbers)), shares[name], strict=True)
         if share > ALONE

@@ -47,7 +47,7 @@ def unlikely_numbers(problem: Problem, table: Measurements) -> list[str]:
             continue
         of_what = "" if off.size == np.sum(moving) else f" in {impacts_in_words(off)}"
         sentences.append(
-            f"{name} of about {_middle(size[off]):.3g}{of_what} is unlikely: look at its unit"
+            f"{name} of about {_middle(size[off]):.3g}{of_what} is unlikely: check the unit"
         )
     angle = table.given.get("angle_deg")
     if angle is not None and len(angle) > 2 and 0.3 < np.max(np.abs(angle)) < RADIANS:
@@ -59,7 +59,7 @@ def unlikely_numbers(problem: Problem, table: Measurements) -> list[str]:
         radius = _middle(np.ravel(scene.sphere.radius))
         if not RADIUS[0] < radius < RADIUS[1]:
             sentences.append(
-                f"the radius of the sphere, {radius:.3g} m, is unlikely: look at its unit"
+                f"the radius of the sphere, {radius:.3g} m, is unlikely: check the unit"
             )
     bounds = BOUNDS | ({} if np.any(scene.spin) else WITHOUT_SPIN)
     for name, values in table.measured.items():
@@ -69,8 +69,9 @@ def unlikely_numbers(problem: Problem, table: Measurements) -> list[str]:
         outside = np.sum((values < least) | (values > most))
         if outside > SHARE * np.isfinite(values).sum():
             sentences.append(
-                f"{name}: {outside} numbers lie beyond {least:g} and {most:g}, which no rebound "
-                "does: look at its unit, its sign and whether columns have moved"
+                f"{name}: {outside} numbers lie outside {least:g} to {most:g}, which is "
+                "impossible: "
+                "check unit, sign and order of the columns"
             )
     return sentences
 
@@ -99,13 +100,13 @@ def restitutions(problem: Problem, table: Measurements) -> list[str]:
     mean, off = _mean(e, error)
     if off > 0.0:
         return [
-            f"{name}: a restitution of {mean:.3g}, above 1: no law here gains energy; look at the "
+            f"{name}: the restitution is {mean:.3g}, above 1, but no law gains energy. Check the "
             "speeds, the angle and the spin"
         ]
     lossless = laws is None or "elastic_hertz" in claims(laws.normal)
     if off < 0.0 and mean > 0.0 and lossless:
         return [
-            f"{name}: a restitution of {mean:.3g}, under laws that lose nothing: {tabulated.TOO}"
+            f"{name}: the restitution is {mean:.3g}, but these laws lose nothing: {tabulated.TOO}"
         ]
     return []
 
@@ -133,8 +134,8 @@ def unlikely_parameters(
     """Return a sentence for each parameter whose interval lies outside its plausible range."""
     columns = ", ".join([*problem.measured, "speed", "the radius"])
     return [
-        f"{name} from {low:.3g} to {high:.3g} is unlikely, as if a pair of materials that "
-        f"{LIKELY[name][2]}: look at the units of {columns}"
+        f"{name} from {low:.3g} to {high:.3g} is unlikely, as of a pair that "
+        f"{LIKELY[name][2]}: check the units of {columns}"
         for name, (low, high) in intervals.items()
         if name in LIKELY and (high < LIKELY[name][0] or low > LIKELY[name][1])
     ]

@@ -292,10 +292,8 @@ def _free_shear_loss(problem: Problem, values: Array) -> Wider:
         others = ", ".join(map(_of_law, laws_with(SLIP_RESTITUTION)))
         return (
             f"the contact point looks as if it rebounded {'less' if shear_loss > own else 'more'} "
-            f"than these laws give: as with a loss in shear of {shear_loss:.3g} times that in "
-            f"pressure, in place of {own:.3g} (fit {SHEAR_LOSS} too, or {others}; where Poisson's "
-            f"ratios or friction are not known, one tangential restitution does not tell "
-            f"{SHEAR_LOSS})"
+            f"than these laws give: as with {SHEAR_LOSS} = {shear_loss:.3g} (now {own:.3g}). Fit "
+            f"{SHEAR_LOSS} too, or {others}; Poisson's ratios and friction must be known"
         )
 
     fitted = [parameter.name.rpartition(".")[2] for parameter in parameters]

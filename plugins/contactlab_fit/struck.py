@@ -80,7 +80,7 @@ def _velocity(given: dict[str, Array]) -> tuple[Array, Array]:
         speed, angle = given.pop("speed"), np.radians(given.pop("angle_deg"))
         return speed * np.cos(angle), speed * np.sin(angle)
     raise ValueError(
-        f"{VELOCITY[0]}: needs the velocity of the sphere as columns too: speed and angle_deg, or "
+        f"{VELOCITY[0]}: needs columns for the velocity of the sphere: speed and angle_deg, or "
         "normal_speed and tangential_velocity; 0 for a ball at rest"
     )
 

@@ -24,7 +24,7 @@ from contactlab.runs.simulation import Simulation
 #: The normal law behind ``rebound(restitution=)``.
 LOSSY = composition.RESTITUTION["normal"]
 #: What leads to it.
-TOO = f"fit restitution too: that of normal={LOSSY}, one loss for pressure and shear"
+TOO = f"fit restitution too: that of normal={LOSSY}, equal damping in compression and shear"
 
 
 def holds(simulation: Simulation | None) -> bool:

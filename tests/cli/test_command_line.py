@@ -64,7 +64,7 @@ def test_an_error_is_one_line(run, monkeypatch, error, status, words):
 def test_a_command_that_is_not_there(run):
     ran = run("rnu")
     assert (ran.status, ran.out) == (2, "")
-    assert ran.err.startswith("contactlab: error: argument COMMAND: invalid choice: 'rnu' (choose ")
+    assert ran.err.startswith("contactlab: error: no command 'rnu'; ")
     assert ran.err.endswith("; did you mean 'run'? (see contactlab --help)\n")
     assert "did you mean" not in run("zzzzz").err
     assert run().status == 2

@@ -36,7 +36,7 @@ def test_every_file_is_written_though_one_fails(tmp_path, capsys):
     assert shared.save((None, full), progress_wanted=False) == shared.OK
 
 
-BOTH = "--psi1, --chi: cannot stand beside a scene file; leave out the file, or both of them"
+BOTH = "is a scene already; leave out the file, or both"
 SPHERE = "must be given (chi is 1.4412 for a solid sphere, nu = 0.3)"
 MISSING = "must be given too (chi is 1.4412 for a solid sphere)"
 

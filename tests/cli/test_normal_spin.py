@@ -26,7 +26,7 @@ spin = [0, 0, 100]
 """
 CONTACT = "contact = [0.002, 0, -0.01]\n"
 SWEEP = "[sweep]\nfriction_coefficient = [0.1, 0.2, 10]\n"
-CAUTION = "its friction, left out, shifts psi2 by"
+CAUTION = "friction of the spin about the normal is ignored"
 
 
 @pytest.fixture(params=BODIES)

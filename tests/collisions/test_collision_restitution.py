@@ -112,11 +112,11 @@ def test_the_plan_of_many_restitutions_is_as_short_as_that_of_one():
     plan = collide(meeting(velocity=velocity), restitution=e).plan
     lines = str(plan).splitlines()
     assert len(lines) < 12
-    assert "left out: march of the tangential motion: the answer is in the table" in str(plan)
+    assert "left out: stepping through the contact: " in str(plan)
     assert plan.psi2_error.max() == pytest.approx(RESTITUTED_ERROR, rel=0.05)
     assert "by default" not in str(plan)
     few = collide(meeting(velocity=velocity[:3]), restitution=[0.62, 0.7, 0.9]).plan
-    assert all(f"at e = {each:g}" in str(few) for each in (0.62, 0.7, 0.9))
+    assert all(f"At e = {each:g}" in str(few) for each in (0.62, 0.7, 0.9))
 
 
 def test_the_plan_of_a_restitution_says_who_answered():
@@ -124,7 +124,7 @@ def test_the_plan_of_a_restitution_says_who_answered():
     plan = collide(meeting(), restitution=0.9).plan
     assert "the answer is in the table of restitutions" in str(plan)
     assert "springs" not in str(plan).partition("caution")[0]
-    assert "one loss for pressure and shear: e_T" in str(plan)
+    assert "equal damping" in str(plan)
     assert plan.psi2_error == pytest.approx(RESTITUTED_ERROR, rel=0.05)
     batch = collide(meeting(velocity=[(0.5, 0, -1), (0, 0, -1)], spin=(0, 0, 0)), restitution=0.9)
     assert batch.plan.psi2_error.max() == pytest.approx(RESTITUTED_ERROR, rel=0.05)
@@ -171,9 +171,9 @@ def test_the_plan_of_bodies_says_once_whose_restitution_it_is():
         said = map(str, collide(each, restitution=e).plan.computed)
         told = [text for text in said if text.startswith("restitution")]
         assert len(told) == 1
-        assert "of a frictionless impact on the mass 1/W_nn" in told[0]
+        assert "frictionless" in told[0]
     for none in (collide(met), collide(meeting(), restitution=0.8)):
-        assert "1/W_nn" not in str(none.plan)
+        assert "frictionless" not in str(none.plan)
 
 
 @pytest.mark.parametrize("e", [0.0, 0.005, 0.3])

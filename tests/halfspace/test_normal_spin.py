@@ -256,7 +256,7 @@ def test_options_that_do_not_answer_spin_say_so(options):
     assert "normal_spin" not in law.laws.capability.tangential_claims
     result = law.run(spun(1.0, 0.5)).check()
     assert (result.psi2, result.w2) == (law.run(still).psi2, 0.5)
-    assert "its friction, left out, shifts psi2 by about 0.33" in " ".join(result.cautions)
+    assert "Effect on psi2: about 0.33" in " ".join(result.cautions)
     with pytest.raises(contactlab.ImpactError, match="about the normal"):
         result.check(cautions=True)
 

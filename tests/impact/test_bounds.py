@@ -80,8 +80,8 @@ def soft(radius):
 
 def test_tabors_parameter_by_hand():
     """(R Gamma²/E*²)^(1/3)/h: 1e-3 m, 0.1 J/m² and 1 GPa give (1e-23)^(1/3)/3e-10 = 71.8."""
-    start = "Tabor's parameter is {}, with a range of attraction of 3e-10 m: the theory holds "
-    end = "; see jkr (model, not numerical error)"
+    start = "model: Tabor's parameter is {}, but the theory holds "
+    end = ". Use jkr."
     scene = soft(1e-3)
 
     def said(given, **bounds):

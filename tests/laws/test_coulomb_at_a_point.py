@@ -43,8 +43,8 @@ def caution(normal, tangential, scene=OBLIQUE):
     law = ELASTIC if tangential == "springs" else tangential
     plan = Simulation(normal=normal, tangential=law).plan(scene)
     for sentence in map(str, plan.cautions):
-        if found := re.search(r"not Coulomb's law .* off by up to ([\d.e-]+) \(", sentence):
-            assert "model, not numerical error" in sentence
+        if found := re.search(r"Coulomb's law locally; .* off by up to ([\d.e-]*\d)", sentence):
+            assert sentence.startswith("model: ")
             return float(found[1])
     return None
 
@@ -108,7 +108,7 @@ def test_no_springs_are_cautioned_of_where_nothing_slips():
     assert caution(law, "springs", Scene.nondimensional(psi1=[0.0, 2.0], chi=1.44)) == 0.05
 
 
-SAME = "the restitution alone does not decide psi2"
+SAME = "psi2 depends on the damping law"
 
 
 @pytest.mark.parametrize(
@@ -127,7 +127,7 @@ def test_the_choice_of_normal_law_has_a_size(name, e, size):
 def chosen(plan):
     """The size in the caution of the choice of normal law."""
     (sentence,) = (text for text in map(str, plan.cautions) if SAME in text)
-    return float(re.search(r"up to ([\d.e-]+) \(Tsuji\)", sentence)[1])
+    return float(re.search(r"up to ([\d.e-]+) \(tsuji\)", sentence)[1])
 
 
 @pytest.mark.slow
@@ -158,8 +158,8 @@ def test_tsujis_law_names_the_law_that_is_furthest():
     law = contactlab.create("normal.tsuji", restitution=0.9)
     plan = str(Simulation(normal=law, tangential="annulus").plan(OBLIQUE))
     assert SAME in plan
-    assert "0.03 (KuwabaraKono) to 0.7 (Linear)" in plan
-    assert "0.04 (KuwabaraKono) to 0.6 (Linear)" in str(Simulation(normal=law).plan(OBLIQUE))
+    assert "0.03 (kuwabara_kono) to 0.7 (linear)" in plan
+    assert "0.04 (kuwabara_kono) to 0.6 (linear)" in str(Simulation(normal=law).plan(OBLIQUE))
     elastic = contactlab.create("normal.tsuji", restitution=1.0)
     assert SAME not in str(Simulation(normal=elastic).plan(OBLIQUE))
     assert SAME not in str(Simulation().plan(OBLIQUE))
@@ -171,12 +171,10 @@ def test_tsujis_law_names_the_law_that_is_furthest():
 )
 def test_an_assumed_hemisphere_is_a_caution(name, tangential):
     law = contactlab.create(f"normal.{name}")
-    assert "hemispherical pressure" in str(
-        Simulation(normal=law, tangential=tangential).plan(OBLIQUE)
-    )
+    assert "pressure profile" in str(Simulation(normal=law, tangential=tangential).plan(OBLIQUE))
 
 
 @pytest.mark.parametrize("name", ["hertz", "dmt"])
 def test_a_pressure_that_is_hertzs_is_none(name):
     plan = Simulation(normal=name, tangential="springs").plan(OBLIQUE)
-    assert "hemispherical pressure" not in str(plan)
+    assert "pressure profile" not in str(plan)

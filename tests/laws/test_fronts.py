@@ -223,7 +223,7 @@ def test_re_sticking_while_loading_and_reversals_are_found():
 def test_the_default_is_exact_and_says_so():
     assert Simulation() == Simulation(tangential="fronts", integrator="events")
     plan = Simulation().plan(scene(1.2))
-    assert "numerical error of psi2: at most 1.2e-09, declared" in str(plan)
+    assert "numerical error of psi2: below 1.2e-09" in str(plan)
     assert plan.psi2_error <= 1e-9 * 1.2 * (1.0 + 2e-3)
     assert exact().plan(scene(1.2)).psi2_error <= 1e-9 * 1.2 * (1.0 + 1e-9)
     paper = Simulation(tangential="annulus", integrator="paper").plan(scene(1.2))

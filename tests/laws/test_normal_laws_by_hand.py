@@ -214,11 +214,11 @@ def test_defaults(name, options, defaults):
     ("name", "tabor", "sentence"),
     [
         ("jkr", 5.01, None),
-        ("jkr", 4.96, "Tabor's parameter is 5, with a range of attraction of 3e-10 m: the theory "
-         "holds above 5; see normal.dmt (model, not numerical error)"),
+        ("jkr", 4.96, "model: Tabor's parameter is 5, but the theory holds above 5. Use "
+         "normal.dmt."),
         ("dmt", 0.099, None),
-        ("dmt", 0.12, "Tabor's parameter is 0.12, with a range of attraction of 3e-10 m: the "
-         "theory holds below 0.1; see normal.jkr (model, not numerical error)"),
+        ("dmt", 0.12, "model: Tabor's parameter is 0.12, but the theory holds below 0.1. Use "
+         "normal.jkr."),
     ],
 )  # fmt: skip
 def test_which_theory_of_adhesion_holds(name, tabor, sentence):

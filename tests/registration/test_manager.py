@@ -121,7 +121,7 @@ def test_a_law_is_registered_by_name(registered):
     registered(Mine, "tangential.mine")
     assert isinstance(contactlab.create("tangential.mine"), Mine)
     contactlab.plugin_manager().unregister(name="tangential.mine")
-    with pytest.raises(ValueError, match="no such law"):
+    with pytest.raises(ValueError, match="no friction law"):
         contactlab.create("tangential.mine")
     registered(Mine, "tangential.mine")
 

@@ -62,17 +62,12 @@ def test_a_name_that_is_no_text_is_refused():
         contactlab.create(None)
 
 
-def test_unknown_name_gives_the_nearest_and_the_list():
-    with pytest.raises(
-        ValueError, match=r"did you mean 'tangential.coulomb'.*installed: .*tangential.springs"
-    ):
+def test_unknown_name_gives_the_nearest():
+    with pytest.raises(ValueError, match=r"no friction law 'columb'.*did you mean 'coulomb'"):
         contactlab.create("tangential.columb")
-    with pytest.raises(
-        ValueError, match=r"'tangential.exact': no such law is installed; installed"
-    ):
+    with pytest.raises(ValueError, match=r"no friction law 'exact' is installed; all names"):
         contactlab.create("tangential.exact")  # like none but for the kind
-    with pytest.raises(ValueError, match=r"did you mean 'normal.hertz'"):
-        contactlab.create("hertz")
+    assert contactlab.create("hertz") == contactlab.create("normal.hertz")
 
 
 def test_a_third_party_law_is_made_like_any_other(registry, install, law_source):
@@ -222,7 +217,7 @@ def test_names_of_no_law_with_a_distribution_are_refused_with_what_is_meant(
         registry.create(f"contactlab:{MINE}")
     with pytest.raises(ValueError, match=r"did you mean 'my-laws'"):
         registry.create("my-law:tangential.other")
-    with pytest.raises(ValueError, match="no such law is installed"):
+    with pytest.raises(ValueError, match="no friction law"):
         registry.create("my-laws:tangential.miner")
 
 

@@ -31,7 +31,7 @@ def test_the_whole_impact_law_of_a_stranger_is_not_exact():
     simulation = Simulation(tangential=Walton())
     result = simulation.run(scene)
     assert np.isfinite(result.plan.psi2_error).tolist() == [True, False, False]
-    assert "numerical error of psi2 (2 of 3 impacts): not declared" in str(result.plan)
+    assert "numerical error of psi2 (2 of 3 impacts): the laws state no bound" in str(result.plan)
     one = Simulation(tangential=Walton()).run(scene.take(1))
     assert "numerical error of psi2: not estimated; not declared" in str(one)
 
@@ -157,8 +157,8 @@ def test_a_false_declaration_is_said_loudly():
     """With both numbers; not where the estimate does not contradict it."""
     scene = Scene.nondimensional(psi1=9.0, chi=1.0)
     said = str(Simulation(tangential=Boasts()).run(scene, estimate_error=True))
-    false = "the declared numerical error of psi2 is false"
-    assert f"caution: {false}: at most 9e-12 is declared, about 0.08 is estimated" in said
+    false = "the stated bound of the error of psi2 is wrong"
+    assert f"caution: {false}: stated 9e-12, estimated 0.08" in said
     honest = Simulation(tangential=Boasts(claimed=0.1)).run(scene, estimate_error=True)
     assert false not in str(honest)
     assert "about 0.08, estimated; at most 0.1, declared" in str(honest)

@@ -80,8 +80,8 @@ def test_an_author_says_which_default_is_to_be_told():
     def cautions(law):
         return Simulation(normal=law, tangential="coulomb").plan(scene).cautions
 
-    assert "loss = 0.5 was taken by default: give Guessing" in str(cautions(Guessing()))
-    assert "taken" not in str(cautions(Guessing(loss=0.5)))
+    assert "no loss given, using 0.5" in str(cautions(Guessing()))
+    assert "given, using" not in str(cautions(Guessing(loss=0.5)))
 
 
 def test_the_error_of_a_solved_motion_is_that_of_its_load_impulse():

@@ -1,5 +1,6 @@
 """Every refusal of a run, a sweep, a path, a rebound or a law: name, value, rule and remedy."""
 
+import re
 from typing import ClassVar
 
 import attrs
@@ -280,20 +281,17 @@ def test_a_law_without_one_of_its_options_says_how_to_give_it(registry, install,
 @pytest.mark.parametrize(
     ("name", "hint"),
     [
-        ("normal.springs", "did you mean 'tangential.springs'? "),
-        ("springs", "did you mean 'tangential.springs'? "),
-        ("tangential.sprung", "did you mean 'tangential.springs'? "),
-        ("tangential.zzz", ""),
-        ("nobody:tangential.zzz", ""),
-        ("contactlap:tangential.zzz", "did you mean 'contactlab'? "),
-        ("nobody:normal.hertz", "'normal.hertz' is offered as 'contactlab:normal.hertz'; "),
+        (
+            "normal.springs",
+            "no normal law 'springs' is installed; did you mean 'tangential.springs'",
+        ),
+        ("tangential.sprung", "no friction law 'sprung' is installed; did you mean 'springs'"),
+        ("tangential.zzz", "no friction law 'zzz' is installed; all names"),
+        ("nobody:tangential.zzz", "no friction law 'nobody:zzz' is installed; all names"),
+        ("contactlap:tangential.zzz", "is installed; did you mean 'contactlab'"),
+        ("nobody:normal.hertz", "is installed; write 'contactlab:normal.hertz'"),
     ],
 )
 def test_a_law_that_is_not_installed_has_a_hint(registry, name, hint):
-    kind = name.rpartition(":")[2].partition(".")[0]
-    kinds = registry.names(kind if kind in KINDS.split(", ") else None)
-    with pytest.raises(ValueError, match=" ") as caught:
+    with pytest.raises(ValueError, match=re.escape(hint)):
         registry.create(name)
-    assert str(caught.value) == (
-        f"name = {name!r}: no such law is installed; {hint}installed: {', '.join(kinds)}"
-    )

@@ -32,7 +32,7 @@ def test_the_exact_law_declares_its_errors(name):
     assert (np.abs(result.psi2 - finer.psi2) <= bounds).all()
     assert np.abs(result.normal_restitution - finer.normal_restitution).max() <= 1e-9
     assert np.array_equal(result.plan.psi2_error, bounds)
-    assert f"numerical error of psi2: at most {bounds.max():.2g}, declared" in str(result.plan)
+    assert f"numerical error of psi2: below {bounds.max():.2g}" in str(result.plan)
 
 
 def test_in_a_mixed_batch_each_impact_has_its_own_errors():

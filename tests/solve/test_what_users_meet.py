@@ -30,7 +30,7 @@ BLOCK = HalfSpace(STEEL)
 SLIPS = {
     "sphere.radius = 10 m": Scene(Sphere(10.0, STEEL), BLOCK, 0.2, 1.0, 0.5),
     "shear_modulus = 80 Pa": Scene(Sphere(0.01, TABULAR), HalfSpace(TABULAR), 0.2, 1.0, 0.5),
-    "30° are as many radians": Scene.at_angle(
+    "was this 30° in radians?": Scene.at_angle(
         Sphere(0.01, STEEL), BLOCK, 0.2, speed=3.0, angle_deg=math.radians(30.0)
     ),
 }
@@ -88,23 +88,23 @@ def test_a_number_that_nobody_gave_is_told_until_one_is_given(name):
     kind, _, short = name.partition(".")
     by_default, given = contactlab.create(name), contactlab.create(name, **{option: value})
     copied = pickle.loads(pickle.dumps(Simulation(**{kind: short})))
-    words = f"{option} = {value:g} was taken by default"
+    words = f"no {option} given, using {value:g}"
     for laws in (Simulation(**{kind: short}), copied, Simulation(**{kind: by_default})):
         assert words in str(laws.plan(scene))
         assert words in str(laws.run(scene))
         assert laws == copied
     assert given != by_default
-    assert "by default" not in str(Simulation(**{kind: given}).plan(scene))
-    assert "by default" not in str(Simulation().plan(scene))
+    assert "given, using" not in str(Simulation(**{kind: given}).plan(scene))
+    assert "given, using" not in str(Simulation().plan(scene))
 
 
 def test_a_number_that_nobody_gave_is_told_along_a_path_and_yields_to_its_rival():
     scene, depth = SLIPS["sphere.radius = 10 m"], np.linspace(0.0, 1e-6, 20)
     law = contactlab.create("normal.hunt_crossley")
-    assert "restitution = 0.9 was taken" in str(load_path(scene, depth, depth, normal=law).cautions)
+    assert "no restitution given" in str(load_path(scene, depth, depth, normal=law).cautions)
     other = attrs.evolve(law, damping=0.1)
     assert other == contactlab.create("normal.hunt_crossley", damping=0.1)
-    assert "taken" not in str(load_path(scene, depth, depth, normal=other).cautions)
+    assert "given, using" not in str(load_path(scene, depth, depth, normal=other).cautions)
 
 
 def test_a_run_without_history_says_how_to_have_one():

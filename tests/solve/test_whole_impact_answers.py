@@ -69,8 +69,8 @@ def test_fields_of_whole_impacts_are_nan_where_an_answer_has_none():
     assert not result.history.tangential_force[:, 1].any()
     said = [str(clause) for clause in result.plan.left_out]
     assert said == [
-        "march of the tangential motion (2 of 3 impacts): halved",
-        "march of the tangential motion (1 of 3 impacts): slow",
+        "stepping through the contact (2 of 3 impacts): halved",
+        "stepping through the contact (1 of 3 impacts): slow",
     ]
 
 
