@@ -40,18 +40,17 @@ def _no_answer(laws: Laws, part: Scene) -> str | None:
     able, turns = laws.capability, not part.planar
     name, reason = _name(laws.tangential), None
     if turns and "vectors" not in able.tangential_claims:
-        reason = f"{name} follows slip along one line"
+        reason = "the law follows slip along one line"
     elif able.coupled is not None:
         return None
     elif able.causal is None:
-        reason = f"{name} needs the normal motion first"
+        reason = "the law needs the normal motion first"
     elif able.marcher is None:
-        name = _name(laws.integrator)
-        reason = f"{name} needs the normal motion first"
+        name, reason = _name(laws.integrator), "the integrator needs the normal motion first"
     if reason is None:
         return None
     where = "the slip turns" if turns else "friction affects the approach"
-    return f"{name} has no answer: {where}, and {reason}"
+    return f"{name}: has no answer, as {where} and {reason}"
 
 
 def _fitting(laws: Laws, kinds: Iterable[str]) -> Iterator[tuple[dict[str, str], Laws]]:

@@ -205,14 +205,14 @@ def _remedy(name: str) -> str:
     option = name.rpartition(".")[2]
     having = laws_with(option)
     if option == SHEAR_LOSS:
-        return f"; it is an option of {', '.join(having)} under normal = {tabulated.LOSSY!r}"
+        return f"; {', '.join(having)} has this option under normal = {tabulated.LOSSY!r}"
     if not having:
         return "; options of a law are there once it is chosen and they have a number"
     usual = full_name("normal", tabulated.LOSSY)
     if option == RESTITUTION and usual in having:
         others = ", ".join(law for law in having if law != usual)
-        return f"; it is an option of {usual} (one loss for pressure and shear), and of {others}"
-    return f"; it is an option of {', '.join(having)}: choose one of them"
+        return f"; {usual} has this option (equal damping), and so have {others}"
+    return f"; choose a law that has this option: {', '.join(having)}"
 
 
 def laws_with(option: str) -> list[str]:

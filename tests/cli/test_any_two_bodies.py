@@ -134,7 +134,7 @@ def test_an_integrator_alone_has_the_friction_law_that_it_marches(run, file, int
 @pytest.mark.parametrize(
     ("command", "word"),
     of_commands(
-        (("run", FOOT, "--stick-slip", "m.png"), "step by step"),
+        (("run", FOOT, "--stick-slip", "m.png"), "springs for any body"),
         (("fit", FOOT, "drops.csv"), "along = [x, y, z]"),
         (("animate", EXAMPLES / "sweep.toml", "--out", "m.gif"), "single impact"),
     ),

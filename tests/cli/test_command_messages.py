@@ -69,7 +69,7 @@ MISSING = "must be given too (chi is 1.4412 for a solid sphere)"
         (["compare", "--chi", 1], f"--psi1: {MISSING}"),
         (["compare", "SWEEP", "--chi", 1], BOTH),
         (["compare", "--psi1", "0:1:2", "--chi", "1:2:2"],
-         "--psi1, --chi: one of them may be a range; give the other one number"),
+         "--psi1, --chi: only one may be a range; give one number for the other"),
         (["compare", "SWEEP", "--all", "--tangential", "coulomb"], "ALL"),
         (["compare", "SWEEP", "--all", "--integrator", "paper"], "ALL"),
         (["compare", "SWEEP", "--all", "--normal", "hertz,jkr"], "ALL"),
@@ -103,8 +103,8 @@ def test_a_refusal_is_one_line(run, short_sweep, ball, tmp_path, monkeypatch, wo
         assert ran.err.startswith(f"{head}topic = 'qqq': is not in the guide; known: getting-sta")
     elif told == "ALL":
         assert ran.err == (
-            f"{head}--all takes every tangential law, each under its integrator; leave out "
-            "--tangential and --integrator, and name one normal law at most\n"
+            f"{head}--all runs every tangential law with its own integrator; leave out "
+            "--tangential and --integrator, and name at most one normal law\n"
         )
     else:
         assert ran.err == f"{head}{told.format(ball=ball, file=file)}\n"

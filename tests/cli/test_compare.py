@@ -335,7 +335,7 @@ def test_psi1_and_chi_stand_in_place_of_a_file(run):
     [
         (("--psi1", 1), "--chi: must be given too"),
         (("--chi", 1), "--psi1: must be given too"),
-        (("--psi1", "0:6:4", "--chi", "1:2:3"), "one of them may be a range"),
+        (("--psi1", "0:6:4", "--chi", "1:2:3"), "only one may be a range"),
     ],
 )
 def test_half_given_or_doubly_varied_numbers_are_refused(run, given, words):

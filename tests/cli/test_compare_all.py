@@ -92,7 +92,7 @@ def test_a_law_that_the_files_integrator_does_not_run_gets_another(run, sweep):
     assert content["laws"]["fronts"]["values"]["psi2"][2] == pytest.approx(-1.3796832924, abs=1e-9)
     asked = run("compare", sweep, "--tangential", "fronts", "--integrator", "paper")
     assert asked.status == 2
-    assert "these would fit" in asked.err
+    assert "; use " in asked.err
 
 
 @pytest.mark.slow

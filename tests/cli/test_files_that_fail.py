@@ -73,7 +73,7 @@ def test_a_kept_sweep_whose_file_fails_goes_on_from_its_folder(run, tmp_path, mo
         ran = run(*SWEEP, "--out", out, "--resume")
     assert ran.status == 1
     assert ran.err.splitlines()[-1] == (
-        f"contactlab sweep: 3000 impacts are kept in {folder}; the same command goes on from them"
+        f"contactlab sweep: 3000 impacts are kept in {folder}; repeat the command to continue"
     )
     ran = run(*SWEEP, "--out", out, "--resume")
     assert (ran.status, ran.err) == (0, "contactlab sweep: 3000 impacts were done before\n")

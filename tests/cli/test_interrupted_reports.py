@@ -59,8 +59,8 @@ def test_stability(run, monkeypatch, tmp_path, after):
     assert not picture.exists()
     assert partial(picture).read_text() == "earlier"
     assert "no map drawn: interrupted" in ran.err
-    assert f"{partial(table)} has what is done" in ran.err
-    assert f"{partial(picture)} has what is done" not in ran.err
+    assert f"what is done is in {partial(table)}" in ran.err
+    assert f"what is done is in {partial(picture)}" not in ran.err
 
 
 def test_figures(run, monkeypatch, tmp_path):

@@ -200,5 +200,5 @@ def test_a_sphere_given_as_a_body_rebounds_as_little(e):
 @pytest.mark.parametrize("e", [0.0, 0.005, [0.5, 0.0]])
 def test_bodies_that_hardly_rebound_are_refused_where_friction_changes_the_approach(e):
     met = attrs.evolve(rod(-35.0, slip=0.3), friction_coefficient=0.3 * np.ones(np.shape(e)))
-    with pytest.raises(ValueError, match=r"restitution = 0.0.*must be from 0.01 where friction"):
+    with pytest.raises(ValueError, match=r"restitution = 0.0.*must be from 0.01 for this body"):
         collide(met, restitution=e)

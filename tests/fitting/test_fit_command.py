@@ -195,10 +195,10 @@ def test_bad_input_is_one_line_and_status_2(run, impacts, arguments, words):
 @pytest.mark.parametrize(
     ("files", "words"),
     [
-        (["a.csv"], "the bodies as SCENE.toml"),
+        (["a.csv"], "SCENE.toml with"),
         (["none.csv", KHARAZ], "none.csv: no such file"),
         ([EXAMPLES / "steel_ball.toml"], "has no [[measured]] values"),
-        ([KHARAZ, KHARAZ], "the bodies as SCENE.toml"),
+        ([KHARAZ, KHARAZ], "SCENE.toml with"),
         (["a.csv", "b.csv", KHARAZ], "FILE = a.csv b.csv"),
         (["none.toml"], "none.toml: no such file"),
     ],

@@ -79,5 +79,5 @@ def test_the_command_tells_that_it_makes_no_bootstrap_of_a_long_table(tmp_path, 
                       "kind = 'half-space'\nmaterial = 'steel'\n", encoding="utf-8")  # fmt: skip
     assert main(["fit", str(data), str(bodies), "--json"]) == 0
     told = capsys.readouterr()
-    assert "no bootstrap of more than 20000 impacts" in told.err
+    assert "no bootstrap above 20000 impacts" in told.err
     assert json.loads(told.out)["samples"] == 0

@@ -173,7 +173,7 @@ def test_a_sweep_of_one_entry_beside_impacts_that_vary_in_two_is_refused(bodies)
     words = r"angle_deg, speed vary together, .*varies angle_deg; leave it out, and each impact"
     with pytest.raises(ValueError, match=words):
         with_measurements(swept, made)
-    with pytest.raises(ValueError, match=r"no column is of the impact itself.*such as angle_deg"):
+    with pytest.raises(ValueError, match=r"no column describes the impact.*such as angle_deg"):
         with_measurements(bodies(), read_measurements({"slip_restitution": [0.1, 0.2]}))
 
 

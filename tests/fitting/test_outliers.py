@@ -133,7 +133,7 @@ def test_a_change_between_two_rows_has_the_chance_of_its_f_test():
     y = np.where(np.arange(12) < 6, 2.0, 2.1) * x + NOISE
     problem = line({"y": y}, option("a"), x=x)
     seen = patterns.pattern(problem, best(problem), {"y": 0.01}, {"x": x})
-    assert "a is another up to impact 6 than from impact 7 on" in seen.words
+    assert "a changes between impacts 6 and 7" in seen.words
 
     def left(columns):
         return np.sum((y - columns @ np.linalg.lstsq(columns, y, rcond=None)[0]) ** 2)

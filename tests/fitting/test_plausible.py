@@ -57,7 +57,7 @@ def test_numbers_before_the_impact(columns, told):
 )
 def test_the_radius_of_a_ball(radius, unlikely):
     scene = attrs.evolve(BODIES, sphere=attrs.evolve(BODIES.sphere, radius=radius))
-    words = f"the radius of the sphere, {radius:.3g} m, is unlikely: look at its unit"
+    words = f"the radius of the sphere, {radius:.3g} m, is unlikely: check the unit"
     assert sentences({"angle_deg": [5.0]}, scene=scene) == [words] * unlikely
 
 
@@ -89,7 +89,7 @@ def test_what_no_rebound_does(name, values, outside):
     found = sentences({"slip_restitution": [0.5] * len(values)} | {name: values})
     assert len(found) == bool(outside)
     if outside:
-        assert found[0].startswith(f"{name}: {outside} numbers lie beyond ")
+        assert found[0].startswith(f"{name}: {outside} numbers lie outside ")
 
 
 def test_a_spin_before_may_give_any_tangential_velocity():

@@ -250,7 +250,7 @@ MOVING = {"speed (m/s)": [2.0], "angle_deg": [20.0], "target_normal_velocity (m/
     ("columns", "words"),
     [
         ({"target_normal_velocity (m/s)": [-1.0], "rebound_spin (rad/s)": [1.0]},
-         "needs the velocity of the sphere"),
+         "needs columns for the velocity"),
         (MOVING | {"rebound_angle_deg": [9.0]}, "are needed together"),
         (MOVING | {"local_rebound_angle_deg": [9.0]}, "is not the same to a struck body"),
         (MOVING | {"tangential_restitution": [0.9], "tangential_restitution_error": [0.1]},

@@ -70,7 +70,7 @@ def test_in_python(typed, words):
         (
             "normal_speed",
             "restitution = 0.9\nnormal_speed",
-            "impact.restitution: is not a known key; write it under [simulation]",
+            "impact.restitution: unknown key; write it under [simulation]",
         ),
         (
             "[impact]",
@@ -101,7 +101,7 @@ def test_in_toml(old, new, words, tmp_path, capsys):
         ("version", "version is an option: write contactlab --version"),
         ("run drops.csv", "measured impacts go to contactlab fit drops.csv bodies.toml"),
         ("run --psi1 1.2 --chi 1.44 --set springs=8",
-         "springs: is an option of tangential.springs: write --tangential springs --set "
+         "springs: belongs to tangential.springs: write --tangential springs --set "
          "tangential.springs=..."),
     ],
 )  # fmt: skip
@@ -123,7 +123,7 @@ def test_laws_that_one_reason_leaves_out_are_told_in_one_line(capsys):
     told = capsys.readouterr().err.splitlines()
     assert len(told) == 1
     assert "annulus, annulus mean" in told[0]
-    assert "are left out: each has no answer where friction changes the approach" in told[0]
+    assert "are left out: each has no answer, as friction affects the approach" in told[0]
 
 
 LAW = """

@@ -52,7 +52,7 @@ def test_create_passes_options_and_checks_them():
         contactlab.create("integrator.paper", steps=0)
     with pytest.raises(
         ValueError,
-        match=r"step = 3: integrator.paper does not know it; did you mean 'steps'",
+        match=r"step = 3: paper has no such option; did you mean 'steps'",
     ):
         contactlab.create("integrator.paper", step=3)
 

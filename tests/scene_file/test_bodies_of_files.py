@@ -247,7 +247,7 @@ def test_a_body_by_its_speed_and_angle_which_may_be_swept(read):
         (SPEEDS[1].replace("1, 0, 0", "1, 0"), "must be a vector of three numbers"),
         (SPEEDS[1].replace("1.02", "-1.02"), "impact.speed = -1.02: must"),
         (SPEEDS[1].replace("11.31", "95"), "impact.angle_deg = 95.0: must lie between -90 and 90"),
-        (f"{SPEEDS[0]}\n{SPEEDS[1]}", "has velocity, a vector, and along"),
+        (f"{SPEEDS[0]}\n{SPEEDS[1]}", "velocity is a vector, but along"),
         (SPEEDS[1].partition("\n")[2], "along = [x, y, z]"),
         (
             f"{SPEEDS[1]}\ntarget_spin = 3.0",

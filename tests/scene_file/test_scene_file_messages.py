@@ -58,17 +58,17 @@ def test_what_is_missing(tmp_path, missing, words):
         ("target.kind", "3", 'target.kind = 3: must be "half-space", "sphere" or "body"'),
         ("target.kind", '"plane"', "target.kind = 'plane': must be \"half-space\", "
          '"sphere" or "body"'),
-        ("sphere.density", "7800", "sphere.density: is not a known key; a number of the material: "
+        ("sphere.density", "7800", "sphere.density: unknown key; a number of the material: "
          "write it under [sphere.material]"),
         ("sphere.raduis", "1",
-         f"sphere.raduis: is not a known key; did you mean 'radius'? known: {BODY}"),
-        ("impact.xyz", "1", "impact.xyz: is not a known key; known: friction_coefficient, speed, "
+         f"sphere.raduis: unknown key; did you mean 'radius'? known: {BODY}"),
+        ("impact.xyz", "1", "impact.xyz: unknown key; known: friction_coefficient, speed, "
          "angle_deg, normal_speed, tangential_velocity, spin, normal_spin, velocity, normal, "
          "target_velocity, target_spin, target_normal_velocity, target_tangential_velocity"),
         ("impact.density", "1", None),
         ("about.title", "3", "about.title = 3: must be text; put it in quotes"),
         ("about.titel", "3",
-         "about.titel: is not a known key; did you mean 'title'? known: title, citation, notes"),
+         "about.titel: unknown key; did you mean 'title'? known: title, citation, notes"),
         ("sphere.material", '"stel"', None),
         ("sphere.material.yield", "1", None),
     ],
@@ -88,8 +88,8 @@ def test_what_is_wrong(tmp_path, key, value, words):
     [
         (document() + "impact.normal_speed = 1.0", "impact: has both speed/angle_deg and "
          "normal_speed/tangential_velocity; leave out one pair"),
-        (document() + "nondimensional.psi1 = 1.0", "nondimensional: cannot stand beside [sphere]; "
-         "psi1 and chi define the scene, leave out one or the other"),
+        (document() + "nondimensional.psi1 = 1.0", "nondimensional: psi1 and chi define the "
+         "whole scene; leave out [sphere], or [nondimensional]"),
         (document() + SPACE, "impact: has vectors, and speed too; velocity and normal define the "
          "impact, leave out one or the other"),
         (document(without=["impact.speed", "impact.angle_deg"]) + SPACE.splitlines()[0],

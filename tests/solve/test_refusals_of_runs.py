@@ -187,7 +187,7 @@ REFUSED = [
     ),
     (
         lambda: contactlab.create("tangential.frictionless", step=3),
-        "step = 3: tangential.frictionless does not know it; it has no options",
+        "step = 3: frictionless has no such option; its options: none",
     ),
     (
         lambda: contactlab.create("integrator.paper", steps=0),

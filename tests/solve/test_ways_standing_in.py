@@ -103,7 +103,7 @@ def follow_all(scene, laws):
 
 def test_rigid_theory_is_not_taken_in_silence():
     """By name it answers, with a caution."""
-    with pytest.raises(ValueError, match="rigid friction only, which is not taken unnamed"):
+    with pytest.raises(ValueError, match="runs only rigid friction"):
         Simulation(normal="tsuji", integrator="events")
     for name in ("central", "planar", "space"):
         rigid = Simulation(normal="tsuji", tangential="coulomb", integrator="events")

@@ -157,7 +157,7 @@ RESULT = Simulation().run(Scene.nondimensional(psi1=1.2, chi=1.44), history=True
 WRONG_NAMES = {
     "Simulation(normal='tsuji', restitution=0.9)": r"'normal.viscoelastic', restitution=0.9\)",
     "Simulation(law='springs')": "did you mean 'tangential'",
-    "Simulation('springs')": "arguments are written with their names.*it has normal, tangential",
+    "Simulation('springs')": "write arguments as name=value; arguments: normal, tangential",
     "Sphere(diameter=0.02, material=STEEL)": "did you mean 'radius', half the diameter",
     "Sphere(0.01)": "material must be given",
     "Sphere(0.01, STEEL, 0.1)": "but for radius and material, arguments are written with their",
