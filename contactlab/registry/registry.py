@@ -220,7 +220,7 @@ class Registry:
             if plain in (info.name, short_name(info.name))
         ]
         if offered:
-            hint = f"write {' or '.join(map(repr, offered))}. "
+            hint = f"write {' or '.join(map(repr, offered))}; "
         elif distribution:
             others = {info.distribution for info in self.installed()} - {distribution}
             hint = nearest(distribution, others)

@@ -294,7 +294,7 @@ def test_numbers_that_a_float_cannot_hold_are_refused():
 
 
 def test_the_plan_says_what_passes_through():
-    assert "spin about the normal" not in str(collide(meeting()).plan)
+    assert "its friction is left out" not in str(collide(meeting()).plan)
     spinning = collide(meeting(spin=(0.0, 1.0, 2.0)))
     assert "spin about the normal: its friction is left out" in str(spinning.plan)
     assert "energy check" in str(spinning.plan)
@@ -345,7 +345,7 @@ def test_three_spins_for_a_vector_are_not_taken_silently():
         Simulation().run(scene).plan,
         Simulation().sweep(scene).plan,
     ):
-        assert "spin has three numbers, taken for three impacts" in str(plan.cautions[-1])
+        assert "spin: three numbers were read as three impacts" in str(plan.cautions[-1])
     two = Scene(BALL, PLATE, 0.2, 1.0, np.array([0.5, 1.0, 2.0]), np.array([0.0, 10.0, 3.0]))
     assert "three numbers" not in str(Simulation().plan(two))
     paper = Scene.nondimensional(psi1=np.array([1.0, 2.0, 3.0]), chi=1.0)

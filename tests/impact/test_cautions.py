@@ -173,8 +173,8 @@ SIZES = [
     ({"normal": ("tsuji", 0.8)}, of_groups(1.4), of_groups(4.0), "damping law", "by up to"),
     ({"normal": ("hunt_crossley", 0.5)}, of_groups(1.4), of_groups(0.5), "damping law", "up to"),
     ({"tangential": "mindlin_cap"}, of_groups(30.0), of_groups(400.0), "create energy", "% more"),
-    ({}, turning(0.5), turning(100.0), "spin about the normal is ignored", "about"),
-    ({}, turning(0.5), turning(0.5, chi=3.0), "spin about the normal is ignored", "about"),
+    ({}, turning(0.5), turning(100.0), "spin about the normal is ignored", "psi2: about"),
+    ({}, turning(0.5), turning(0.5, chi=3.0), "spin about the normal is ignored", "psi2: about"),
 ]
 
 

@@ -151,7 +151,7 @@ def test_what_is_known_of_a_shell_is_told():
     lasting = math.pi * math.sqrt(2.7e-3 / spring)
     assert f"wall of {wall * 1e3:.2g} mm" in told
     assert f"spring of {spring / 1e3:.2g} kN/m" in told
-    assert f"for {lasting * 1e3:.2g} ms" in told
+    assert f"lasts about {lasting * 1e3:.2g} ms" in told
     assert 0.5e-3 < lasting < 1.5e-3
 
 

@@ -245,7 +245,7 @@ def test_where_nothing_is_declared_large_chi_is(laws):
     )
     assert np.isnan(plan.psi2_error).tolist() == [True, True, False]
     (text,) = told(plan)
-    assert "(1 of 3 impacts): not declared" in text
+    assert "(1 of 3 impacts): not stated" in text
     once = Scene.nondimensional(psi1=1.2, chi=12.0)
     assert told(Simulation(**laws).run(once).plan)
     assert not told(Simulation(**laws).run(once, estimate_error=True).plan)

@@ -294,13 +294,13 @@ class Wrapping(Bare):
 
 
 NAMED = [
-    ({"tangential": "springs"}, "symplectic over springs"),
+    ({"tangential": "springs"}, "springs, followed by symplectic"),
     (
         {
             "tangential": contactlab.create("tangential.springs", springs=100, grid="doubling"),
             "integrator": contactlab.create("integrator.symplectic", steps=400),
         },
-        "symplectic (steps=400) over springs (springs=100, grid='doubling')",
+        "springs (springs=100, grid='doubling'), followed by symplectic (steps=400)",
     ),
     ({"normal": contactlab.create("normal.tsuji", restitution=0.9), **SPRINGS}, ": tsuji, in"),
     (

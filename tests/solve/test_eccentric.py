@@ -520,7 +520,7 @@ def test_steps_caution_where_friction_jams_and_the_mass_is_nearly_singular(lam, 
     scene = planar(psi1=psi1, chi=chi, lam=lam, eta=(1.0 - left) * 2.0 * chi / lam)
     law = springs(50, 200)
     found = [str(each) for each in law.plan(scene).cautions if "singular" in str(each)]
-    assert [f"up to {told:g} " in each for each in found] == [True] * (told is not None)
+    assert [f"up to {told:g};" in each for each in found] == [True] * (told is not None)
     exact, rough = EXACT.run(scene).check(), law.run(scene)
     assert not any("singular" in str(each) for each in exact.plan.cautions)
     off = np.abs(rough.normal_velocity - exact.normal_velocity) / np.maximum(

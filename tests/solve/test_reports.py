@@ -92,7 +92,7 @@ def test_methods_of_any_kind_of_law():
 @pytest.mark.parametrize(
     ("laws", "words"),
     [
-        (["normal.softest"], "did you mean 'normal.softer'"),
+        (["normal.softest"], "did you mean 'softer'"),
         (
             ["fronts", "normal.softer"],
             "fronts: fits no installed .* under normal.softer",

@@ -62,7 +62,7 @@ def test_the_normal_restitution_has_an_error_of_its_own(springs, steps):
         assert np.mean((ratio > 1 / 3) & (ratio < 3.0)) > 0.9
         assert ratio.min() > 0.3
     assert np.isnan(result.plan.restitution_error).all()
-    assert "numerical error of the normal restitution: not declared" in str(result.plan)
+    assert "numerical error of the normal restitution: the laws state no bound" in str(result.plan)
 
 
 @pytest.mark.slow

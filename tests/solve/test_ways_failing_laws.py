@@ -177,7 +177,7 @@ def test_books_that_nobody_bounds_are_cautioned_of(scene):
     assert set(statuses(result)) == {"SUCCESS"}
     off = np.max(np.abs(result.energy.relative_imbalance))
     assert off > 0.05
-    told = [text for text in result.cautions if "Liar declares no bound" in text]
+    told = [text for text in result.cautions if "Liar is the cause" in text]
     assert len(told) == 1
     assert f"off by {off:.2g} of the energy at the start" in told[0]
     assert told[0] in str(result)

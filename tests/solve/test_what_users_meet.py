@@ -210,5 +210,5 @@ def test_a_comparison_prints_as_a_table():
     lines = str(contactlab.study.compare(scene, laws)).splitlines()
     assert lines[1].split() == ["psi1", "rigid", "exact", "exact", "-", "rigid"]
     assert [float(word) for word in lines[3].split()] == pytest.approx([6.0, 2.0, 2.0, 0.0])
-    assert any(line.startswith("caution, rigid: rigid bodies") for line in lines)
+    assert any(line.startswith("caution, rigid: model: rigid") for line in lines)
     assert "failed" not in "\n".join(lines)
