@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.progress import in_words
+from contactlab.numeric.progress import in_words
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.text_table import table
 from contactlab.registration.hooks import Execute, hookimpl
