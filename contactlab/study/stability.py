@@ -36,8 +36,10 @@ LARGEST, QUICK_LARGEST = 300_000.0, 12_000.0
 DEFAULT_STEPS, DEFAULT_TOLERANCE = 200, 1e-4
 #: Steps under a tolerance where slip turns, over those where it keeps its line.
 SPACE_STEPS = 5.0
-#: Processor time of a case on the machine of the project, in s.
-SECONDS, QUICK_SECONDS = 0.2, 0.05
+#: Parts below which steps under a tolerance become many, as each part slips at once.
+SMOOTH_PARTS = 100.0
+#: Processor time of a case, and of a step of one part, of a quick report, in s.
+SECONDS, SECONDS_A_STEP = 0.02, 7.5e-5
 
 
 @attrs.frozen(kw_only=True)
@@ -174,15 +176,15 @@ def expected_time(methods: Sequence[Method], *, quick: bool = False) -> tuple[in
     """Return the number of cases, and about the processor time that they take, in s."""
     listed = list_cases(methods, quick=quick)
     largest = QUICK_LARGEST if quick else LARGEST
-    cases = sum(work(case) <= largest for case in listed)
-    return cases, cases * (QUICK_SECONDS if quick else SECONDS)
+    works = [each for each in map(work, listed) if each <= largest]
+    return len(works), SECONDS * len(works) + SECONDS_A_STEP * sum(works)
 
 
 def work(case: Cell) -> float:
     """Return an estimate of the work of a case, in steps of one part.
 
-    Under a tolerance the number of steps grows with the root of chi, faster where slip turns, and
-    falls with the root of the tolerance.
+    Under a tolerance the number of steps grows with the root of chi, faster where slip turns and
+    where parts are few, and falls with the root of the tolerance.
     """
     options, parts = case.options["integrator"], dict(case.options["tangential"])
     parts.pop("tolerance", None)
@@ -193,6 +195,8 @@ def work(case: Cell) -> float:
             steps *= math.sqrt(1.0 + min(float(np.max(case.scene.make().chi)), 1e12))
         steps *= math.sqrt(DEFAULT_TOLERANCE / tolerance)
         steps *= SPACE_STEPS if case.family == "space" else 1.0
+        fewest = float(min(parts.values(), default=SMOOTH_PARTS))
+        steps *= max(SMOOTH_PARTS / fewest, 1.0)
     return steps * (1.0 + float(max(parts.values(), default=0.0)) ** 2 / 1e4)
 
 

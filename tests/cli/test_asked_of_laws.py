@@ -45,7 +45,7 @@ def test_an_option_goes_to_the_laws_that_have_it():
     found = asked_for(tangential=["annulus", "springs", "coulomb"], settings=settings)
     assert found["annulus"].tangential.annuli == 7
     assert found["springs"].tangential.springs == 9
-    with pytest.raises(ValueError, match=r"^--set tangential\.springs\.springs: none of the laws"):
+    with pytest.raises(ValueError, match=r"^--set tangential\.springs\.springs: no chosen law"):
         asked_for(tangential=["annulus"], settings=settings[1:])
     with pytest.raises(ValueError, match=r"this option; known: none$"):
         asked_for(tangential=["annulus"], settings=[("normal.annuli", 3)])

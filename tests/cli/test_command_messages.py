@@ -36,7 +36,7 @@ def test_every_file_is_written_though_one_fails(tmp_path, capsys):
     assert shared.save((None, full), progress_wanted=False) == shared.OK
 
 
-BOTH = "is a scene already; leave out the file, or both"
+BOTH = "--psi1, --chi: {sweep} is a scene already; leave out the file, or both"
 SPHERE = "must be given (chi is 1.4412 for a solid sphere, nu = 0.3)"
 MISSING = "must be given too (chi is 1.4412 for a solid sphere)"
 
@@ -60,7 +60,8 @@ MISSING = "must be given too (chi is 1.4412 for a solid sphere)"
         (["sweep", "--chi", 1], "--psi1: must be given, or a sweep file"),
         (["sweep", "SWEEP", "--chi", 1], BOTH),
         (["sweep", "--psi1", "0:1:1001", "--chi", "1:2:1000"],
-         "--psi1, --chi = 1001000: at most 1000000 impacts; --out folder/ holds more"),
+         "--psi1, --chi = 1001000: at most 1000000 impacts; contactlab sweep "
+         "--out folder/ holds more"),
         (["sweep", "--psi1", "0:1:2", "--chi", 1, "--resume"],
          "--resume: needs --out FILE; finished impacts are kept beside this file"),
         (["sweep", "BALL"], "{ball}: holds a single impact; use contactlab run"),
@@ -76,12 +77,12 @@ MISSING = "must be given too (chi is 1.4412 for a solid sphere)"
         (["compare", "SWEEP", "--all", "--set", "tangential.annuli=3"], "--set tangential.annuli: "
          "with --all name one law, such as --set integrator.symplectic.steps=400"),
         (["compare", "SWEEP", "--tangential", "coulomb", "--set", "tangential.annuli=5"], "--set "
-         "tangential.annuli: none of the laws chosen has this option; known: none"),
+         "tangential.annuli: no chosen law has this option; known: none"),
         (["compare", "SWEEP", "--tangential", "annulus", "--set", "tangential.anuli=5"], "--set "
-         "tangential.anuli: none of the laws chosen has this option; did you mean "
+         "tangential.anuli: no chosen law has this option; did you mean "
          "'tangential.annuli'? known: tangential.annuli, tangential.displacement"),
         (["validate", "--out", "no/such/dir"],
-         "--figures no/such/dir: there is no folder no/such"),
+         "--out no/such/dir: there is no folder no/such"),
         (["guide", "qqq"], None),
         (["guide", "theory", "99"], "section = '99': is not a section of 'theory'; leave it out "
          "for the whole topic"),
@@ -107,7 +108,7 @@ def test_a_refusal_is_one_line(run, short_sweep, ball, tmp_path, monkeypatch, wo
             "--tangential and --integrator, and name at most one normal law\n"
         )
     else:
-        assert ran.err == f"{head}{told.format(ball=ball, file=file)}\n"
+        assert ran.err == f"{head}{told.format(ball=ball, file=file, sweep=short_sweep)}\n"
 
 
 @pytest.mark.parametrize(("count", "shown"), [(25, 25), (26, 25), (3, 3)])

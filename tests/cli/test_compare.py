@@ -110,7 +110,7 @@ def test_option_goes_to_the_laws_that_know_it(run, short_sweep):
     )
     unknown = run("compare", short_sweep, *BOTH, "--set", "tangential.annuli=5")
     assert unknown.status == 2
-    assert "none of the laws" in unknown.err
+    assert "no chosen law" in unknown.err
     assert "known: none" in unknown.err
     springs = ("--tangential", "springs,coulomb", "--set", "tangential.sprngs=5")
     misspelt = run("compare", short_sweep, *springs)
@@ -197,8 +197,8 @@ def test_cautions_of_the_plans_are_told_with_their_laws(run, tmp_path):
     )
     laws = ("--tangential", "fronts,mindlin_cap")
     out = " ".join(run("compare", path, *laws).out.split())
-    assert out.count("caution, all laws: unlike bodies") == 1
-    assert "caution, mindlin_cap: one spring" in out
+    assert out.count("caution, all laws: model: unlike bodies") == 1
+    assert "caution, mindlin_cap: model: one spring" in out
     told = json.loads(run("compare", path, *laws, "--json").out)["laws"]["fronts"]["cautions"]
     assert len(told) == 1
 

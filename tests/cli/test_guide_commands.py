@@ -35,10 +35,10 @@ def test_every_command_has_a_row_in_the_table():
 @pytest.mark.parametrize("command", COMMANDS)
 def test_the_laws_in_the_examples_of_a_help_text_are_installed(command):
     examples = import_module(COMMANDS[command].module).__doc__
-    options = r"--(law|normal|tangential|integrator|ghost) (\S+)|plugins \w+ (\w+\.\w+)"
+    options = r"--(normal|tangential|integrator|ghost) (\S+)|plugins \w+ (\w+\.\w+)"
     for kind, listed, shown in re.findall(options, examples):
-        kind = "tangential" if kind in ("law", "ghost") else kind
-        for name in (listed or shown).split(","):
+        kind = "tangential" if kind == "ghost" else kind
+        for name in (listed or shown).replace("exact,", "").split(","):
             full = name if kind_of(name) in KINDS else full_name(kind, name)
             assert REGISTRY.law_class(full)
 

@@ -72,4 +72,6 @@ def test_the_arguments_before_a_command(run):
     told = run("--help").out
     assert "show the traceback of an error (before COMMAND)" in told
     assert "exit status: 0 success, 1 a run failed, 2 bad input, 130 interrupted" in told
-    assert all(f"\n    {command} " in told for command in COMMANDS)
+    assert all(f"\n  {command} " in told for command in COMMANDS)
+    headings = re.findall(r"^(\w[\w ]*):$", told, re.MULTILINE)
+    assert headings[:4] == ["compute", "judge a law", "show", "take away"]

@@ -53,7 +53,10 @@ def test_run_tells_in_words_json_and_files(run, files, tmp_path):
         plan = json.loads(text)["plan"]
         assert "spin about the normal: its friction is left out" in plan["left_out"]
         assert any(CAUTION in each for each in plan["cautions"])
-    assert "spin about the normal (2 of 3 impacts)" in run("run", sweep, "--no-estimate-error").out
+    assert (
+        "model (2 of 3 impacts): friction of the spin"
+        in run("run", sweep, "--no-estimate-error").out
+    )
 
 
 @pytest.mark.parametrize(
