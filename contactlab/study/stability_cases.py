@@ -111,11 +111,11 @@ def cases(method: Method, *, quick: bool = False) -> Iterator[Cell]:
         return
     law = REGISTRY.law_class(full_name("tangential", method.tangential))
     integrator = REGISTRY.law_class(full_name("integrator", method.integrator))
-    by_tolerance = "tolerance" in (law.resolution, integrator.resolution)
+    by_tolerance = "tolerance" in (law.resolution, integrator.resolution) and not method.whole
     for scene in extreme_scenes(quick=quick):
-        if quick and by_tolerance and scene.family == "chi" and not method.whole:
-            if float(scene.make().chi) > QUICK_TOLERANCE_CHI:
-                continue
+        long = quick and by_tolerance and scene.family == "chi"
+        if long and float(scene.make().chi) > QUICK_TOLERANCE_CHI:
+            continue
         yield _case(method, scene, {})
         if method.whole:
             continue

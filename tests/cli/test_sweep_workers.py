@@ -95,6 +95,6 @@ def test_interrupted_it_keeps_what_is_done(run, monkeypatch, tmp_path):
     assert len(list((tmp_path / "a.npz.kept").glob("*.npz"))) == 1
     again = run(*SWEEP, "--out", out, "--resume")
     assert again.status == 0
-    assert "a.partial.npz is of an interrupted run, and" in again.err
+    assert "a.partial.npz is left from an interrupted run" in again.err
     assert len(calls) == 5  # the block that is kept was computed again, to compare
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.npz", "a.partial.npz"]
