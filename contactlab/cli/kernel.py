@@ -33,7 +33,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         type=shared.folder_of,
         required=True,
         metavar="DIR",
-        help="folder; made if it is not there",
+        help="folder for the files, created if missing",
     )
     return shared.check_outputs_first(execute)
 

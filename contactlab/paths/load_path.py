@@ -206,10 +206,8 @@ def _laws(scene: Scene, normal: object, tangential: object) -> tuple[Any, Any, S
     """Return the two laws of a path, with what materials give, and the scene; or refuse them."""
     first = composition.law("normal", normal)
     second = composition.law("tangential", tangential)
-    rule = "must answer to steps, as a SteppedTangentialLaw does"
-    of_kind(
-        "tangential", second, SteppedTangentialLaw, rule=rule, remedy="take springs, or annulus"
-    )
+    rule = "must be a law of steps, a SteppedTangentialLaw"
+    of_kind("tangential", second, SteppedTangentialLaw, rule=rule, remedy="use springs or annulus")
     if (complaint := composition.misfit(first, second)) is not None:
         raise ValueError(complaint)
     first, second, scene = bound_laws(first, second, scene)

@@ -117,7 +117,7 @@ class Table:
             raise ValueError(self.at(str(error))) from error
         except ArithmeticError as error:
             rule = f"the numbers are too large or too small to compute with ({error})"
-            raise ValueError(f"{self.path}: {rule}; check their units") from error
+            raise ValueError(f"{self.path}: {rule}; check the units") from error
 
     def _unknown(self, key: str) -> ValueError:
         """Return the error of an unknown key."""

@@ -32,7 +32,7 @@ BOOKS = 0.03
 def order(integrator: Integrator) -> None:
     """The error of a smooth law falls with the steps at the declared order (Integrator, 4)."""
     steps = getattr(integrator, integrator.resolution or "", None)
-    apply_if(isinstance(steps, int), "It has no count of steps.")
+    apply_if(isinstance(steps, int), "The integrator has no count of steps.")
     for simulation in fitting(integrator, (PressedSpring(),), "normal.hertz"):
         exact = _exact(simulation, 2.0)
         errors = []
@@ -99,7 +99,7 @@ def sliding_impulse_by(integrator: Integrator) -> None:
                     f"The impulse of sliding is {error:.2g} off mu (1 + e) v1 M_n under "
                     f"{type(simulation.normal).__name__}.",
                 )
-    apply_if(tried, "It runs neither of the sliding laws of the kit.")
+    apply_if(tried, "The integrator runs neither of the sliding laws of the kit.")
 
 
 @check(Integrator)
@@ -109,7 +109,7 @@ def books_by(integrator: Integrator) -> None:
     If ``resolution`` is a number of steps, eight times as many at least halve the imbalance.
     """
     simulations = list(fitting(integrator, (Yielding(), SlidingForEver()), "normal.hertz"))
-    apply_if(simulations, "It runs neither of the laws of the kit whose books close.")
+    apply_if(simulations, "The integrator runs neither of the laws of the kit whose books close.")
     for simulation in simulations:
         for psi1 in (0.5, 1.2, 2.0, 8.0):
             imbalance = _imbalance(simulation, psi1)

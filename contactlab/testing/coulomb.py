@@ -37,7 +37,7 @@ def friction_coefficient(law: TangentialLaw) -> None:
             impact = scene(psi1, CHI[1], friction=friction)
             change = float(np.asarray(way.run(impact).motion.slip_velocity_change))
             impulses.append(abs(change) * float(np.asarray(impact.pair.tangential_mass)))
-        apply_if(all(impulses), "It makes no force in slip throughout.")
+        apply_if(all(impulses), "The law makes no force in slip throughout.")
         power = float(np.polyfit(np.log(FRICTION), np.log(impulses), 1)[0])
         within(
             abs(power - 1.0),
@@ -84,7 +84,7 @@ def load_impulse(law: TangentialLaw) -> None:
         expected = friction * float(normal.total_load_impulse)
         # a law that cannot run under this normal law is not asked for wholes either
         for _, change, origin in changes(law, marches, impact, normal) if marches else ():
-            apply_if(change != 0.0, "It makes no force in slip throughout.")
+            apply_if(change != 0.0, "The law makes no force in slip throughout.")
             tried += 1
             error = abs(abs(float(np.asarray(change))) * mass / expected - 1.0)
             within(

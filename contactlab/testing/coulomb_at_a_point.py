@@ -56,7 +56,7 @@ def _hold(law: SteppedTangentialLaw, normal_law: NormalLaw) -> None:
         springs = {"radius", "displacement", "limit"} <= set(fields)
         apply_if(
             springs or {"radius", "traction"} <= set(fields),
-            "It tells no tractions: fields has neither radius and traction, nor radius, "
+            "The law tells no tractions: fields has neither radius and traction, nor radius, "
             "displacement and limit of springs.",
         )
         modulus = float(np.asarray(scene(psi1, chi).pair.effective_shear_modulus))

@@ -48,14 +48,14 @@ class Noting(Yielding):
 @check(Integrator)
 def drift(integrator: Integrator) -> None:
     """The displacement of a step is velocity times drift, if the drift is told (Increment)."""
-    apply_if(SteppedTangentialLaw in integrator.needs, "It has no steps.")
+    apply_if(SteppedTangentialLaw in integrator.needs, "The integrator has no steps.")
     law, impact = Noting(), scene(ANGLES[1], CHI)
     normal = normal_motion(REGISTRY.create("normal.hertz"), impact)
     integrator.integrate(impact, normal, law, None)
-    apply_if(law.seen, "It did not ask the law.")
+    apply_if(law.seen, "The integrator did not ask the law.")
     told = np.array([(*step[:2], step.drift) for step in law.seen], dtype=np.float64)
     moved, velocity, drifts = told.T
-    apply_if(not np.isnan(drifts).all(), "It does not tell the drift.")
+    apply_if(not np.isnan(drifts).all(), "The integrator does not tell the drift.")
     gap = float(np.max(np.abs(moved - velocity * drifts)) / np.max(np.abs(moved)))
     within(gap, AT, f"Displacements are {gap:.2g} off velocity times drift.")
 
@@ -75,7 +75,7 @@ def dissipation(law: NormalLaw) -> None:
     for impact in (scene(ANGLES[1], CHI), scene(np.array(ANGLES), CHI)):
         motion = normal_motion(law, impact)
         declared = np.asarray(law.dissipation(motion), dtype=np.float64)
-        apply_if(not np.isnan(declared).all(), "It declares none.")
+        apply_if(not np.isnan(declared).all(), "The law declares none.")
         energy = 0.5 * impact.pair.normal_mass * np.square(impact.normal_speed)
         lost = energy - 0.5 * impact.pair.normal_mass * np.square(motion.final_rate)
         gap = float(np.max(np.abs(lost - declared) / energy))
@@ -94,4 +94,4 @@ def partners(law: Law) -> None:
         try:
             law.accept(impact)
         except ValueError as error:
-            hold(str(error), "It refuses a scene without a word.")
+            hold(str(error), "The law refuses a scene without a word.")

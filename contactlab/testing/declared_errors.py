@@ -58,7 +58,7 @@ def declared_error(law: TangentialLaw) -> None:
                 f"psi1 = {psi1}, chi = {chi:.3g}: psi2_error = {declared:.2g} is declared, and "
                 f"psi2 is {error:.2g} off {source} ({way}).",
             )
-    apply_if(tried, "It declares no psi2_error, or nothing is finer to compare it with.")
+    apply_if(tried, "The law declares no psi2_error, or nothing is finer to compare it with.")
 
 
 def _declare(way: Way, impact: Scene) -> float:
@@ -138,7 +138,7 @@ def motion_accuracy(law: ClosedFormNormalLaw) -> None:
 def resolution_told(integrator: Integrator) -> None:
     """An impact run at the value of ``resolution_for`` ends the same (Integrator, 8)."""
     if not integrator.resolution:
-        raise NotApplicableError("It has no resolution.")
+        raise NotApplicableError("The integrator has no resolution.")
     for simulation in sound(integrator):
         impact = scene(2.0, SOLID)
         normal = normal_motion(simulation.normal, impact)

@@ -76,7 +76,10 @@ def contract(law: Law) -> None:
         hold(False, f"waives() names {word!r}, which is neither in offers nor in needs.")
     if isinstance(law, TangentialLaw):
         ways = ", ".join(way.__name__ for way in WAYS)
-        hold(isinstance(law, WAYS), f"It must be derived from one of {ways}: nobody can run it.")
+        hold(
+            isinstance(law, WAYS),
+            f"The law must be derived from one of {ways}, or nobody can run the law.",
+        )
     if isinstance(law, Integrator):
         hold(
             any(isinstance(each, type) and issubclass(each, TangentialLaw) for each in law.needs),
@@ -85,11 +88,11 @@ def contract(law: Law) -> None:
     for word, promising, method in PROMISED:
         if isinstance(law, promising) and word in claims(law):
             defined = getattr(type(law), method) is not getattr(promising, method)
-            hold(defined, f"It has the word {word!r}, and does not define {method}.")
+            hold(defined, f"The law has the word {word!r}, and does not define {method}.")
     if "elastic_hertz" in claims(law):
         hold(
             isinstance(law, ClosedFormNormalLaw),
-            "It offers 'elastic_hertz', and is no ClosedFormNormalLaw.",
+            "The law offers 'elastic_hertz', and is no ClosedFormNormalLaw.",
         )
     parameter_names = inspect.signature(type(law)).parameters
     hold(
@@ -136,7 +139,7 @@ def expected_failures(law: Law) -> None:
         hold(name in by_name, f"expected_failures names {name!r}, which is not a check.")
         hold(isinstance(reason, str) and len(reason.split()) > 2, f"{name!r} needs a reason.")
         claim = by_name[name].claim
-        hold(claim not in claims(law), f"It offers {claim!r} and expects to fail {name!r}.")
+        hold(claim not in claims(law), f"The law offers {claim!r} and expects to fail {name!r}.")
         hold(by_name[name].applies_to(law), f"{name!r} is not a check of such a law.")
 
 

@@ -63,7 +63,7 @@ def bounded(integrator: Integrator) -> None:
     apply_if(simulations, NONE_FIT)
     for simulation in simulations:
         name = type(simulation.tangential).__name__
-        endless = f"{name} is asked without end."
+        endless = f"{name} is called without end."
         try:
             motion = marched_impact(simulation, 2.0)
         except TooManyCallsError:

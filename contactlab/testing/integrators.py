@@ -45,7 +45,7 @@ def ends_well(integrator: Integrator) -> None:
         motion = marched_impact(simulation, 2.0)
         hold(
             isinstance(motion, TangentialMotion),
-            f"It returns a {type(motion).__name__}, not a TangentialMotion.",
+            f"The integrator returns a {type(motion).__name__}, not a TangentialMotion.",
         )
         hold_success(motion)
         hold(motion.detail == "", f"A success says {motion.detail!r}.")

@@ -39,10 +39,10 @@ def motion_agrees(law: ClosedFormNormalLaw) -> None:
     within(
         abs(rate_at_touch / speed - 1.0),
         1e-12,
-        f"It starts at {rate_at_touch!r} m/s, not {speed!r}.",
+        f"The motion starts at {rate_at_touch!r} m/s, not {speed!r}.",
     )
     touches = abs(float(start.approach)) <= 1e-12 * motion.maximum_approach
-    hold(touches, "It does not start at touch.")
+    hold(touches, "The motion does not start at touch.")
 
 
 @check(ClosedFormNormalLaw)
@@ -77,7 +77,9 @@ def motion_obeys_newton(law: ClosedFormNormalLaw) -> None:
         ("final rate", rate[-1], motion.final_rate),
         ("total load impulse", impulse[-1], motion.total_load_impulse),
     ):
-        within(abs(float(last) / float(total) - 1.0), 1e-9, f"It does not end at its {name}.")
+        within(
+            abs(float(last) / float(total) - 1.0), 1e-9, f"The motion does not end at its {name}."
+        )
     mass = motion.maximum_force * per_time / (impact.pair.normal_mass * impact.normal_speed)
     gap = abs(motion.scaled_mass * mass - 1.0)
     within(gap, 1e-9, f"The scaled mass is {gap:.1e} off that of Newton's law.")

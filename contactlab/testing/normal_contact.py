@@ -72,7 +72,10 @@ def radius(law: NormalLaw) -> None:
     impact, approach, rate = strokes()
     force, radii, _, _ = respond(law, impact, approach, rate)
     pressed = (force > 1e-6 * force.max()) & (approach > 0.0)
-    hold(np.all(radii[pressed] > 0.0), "It offers 'radius', and has none where it presses.")
+    hold(
+        np.all(radii[pressed] > 0.0),
+        "The law offers 'radius', but gives no radius where the bodies press.",
+    )
     deepest = int(approach.argmax())
     share = float(radii[deepest] ** 2) / (impact.pair.radius * float(approach[deepest]))
     hold(
@@ -133,12 +136,14 @@ def viscous(law: NormalLaw) -> None:
     pressed = (4.0 / 3.0) * impact.pair.effective_modulus * exact * depths
     rest, _, _, _ = respond(law, impact, depths, np.zeros_like(depths))
     gap = float(np.max(np.abs(rest / pressed - 1.0)))
-    within(gap, ROUNDING, f"It is viscous, and its force at rest is {gap:.2g} off Hertz's.")
+    within(gap, ROUNDING, f"The law is viscous, and its force at rest is {gap:.2g} off Hertz's.")
     rates = np.full_like(depths, float(impact.normal_speed))
     force, radii, _, _ = respond(law, impact, depths, rates)
     gap = float(np.max(np.abs(radii / exact - 1.0)))
-    within(gap, ROUNDING, f"It is viscous, and its radius is {gap:.2g} off Hertz's in approach.")
-    hold(np.all(force > rest), "It is viscous, and resists an approach no more than rest.")
+    within(
+        gap, ROUNDING, f"The law is viscous, and its radius is {gap:.2g} off Hertz's in approach."
+    )
+    hold(np.all(force > rest), "The law is viscous, and resists an approach no more than rest.")
 
 
 @check(NormalLaw, claim="kelvin_voigt")

@@ -71,7 +71,9 @@ def _ignores_displacement(law: SteppedTangentialLaw, bench: Bench) -> None:
     moved = increment._replace(displacement=2.0 * increment.displacement)
     state = bench.start(law)
     forces = [law.advance(state, each, after, after)[0].force for each in (increment, moved)]
-    hold(forces[0] == forces[1], "It states stiffness 0, and its force depends on displacement.")
+    hold(
+        forces[0] == forces[1], "The law states stiffness 0, and its force depends on displacement."
+    )
 
 
 @check(SteppedTangentialLaw)

@@ -161,7 +161,7 @@ def sound(integrator: Integrator) -> list[Simulation]:
     """Return at least one simulation with laws of the kit that do not fail."""
     laws = (PressedSpring(), Yielding(), Slider(), SlidingForEver())
     simulations = list(fitting(integrator, laws, "normal.hertz"))
-    hold(simulations, "It fits none of the laws of the kit: see the contracts that it states.")
+    hold(simulations, "The law fits none of the laws of the kit: see the contracts that it states.")
     return simulations
 
 

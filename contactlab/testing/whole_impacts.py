@@ -71,7 +71,7 @@ def whole_impacts(law: TangentialLaw) -> None:
     marches = [way for way in ways(law) if way.integrator is not None]
     apply_if(marches, "No integrator can march it.")
     answered = [each for each in answered_impacts(law) if each.psi1 != 0.0]
-    apply_if(answered, "It has no whole-impact answer for an impact with slip.")
+    apply_if(answered, "The law has no whole-impact answer for an impact with slip.")
     for way, each in itertools.product(marches, answered):
         psi1, chi, impact, _, answer = each
         change = way.run(impact).change
@@ -128,7 +128,7 @@ def whole_impact_form(law: TangentialLaw) -> None:
     from scipy.integrate import trapezoid  # help and lists import this file and need no scipy
 
     answered = list(answered_impacts(law))
-    apply_if(answered, "It has no whole-impact answer.")
+    apply_if(answered, "The law has no whole-impact answer.")
     for each in answered:
         impact, answer = each.scene, each.answer
         mass, slip = float(impact.pair.tangential_mass), float(np.asarray(impact.slip_velocity))

@@ -28,7 +28,7 @@ VARIES = 0.1
 #: Leverage above which a single number determines the fit.
 ALONE = 0.95
 ORDER = "the order of the rows"
-LOOK = "look at that column, at what else has changed with it, and at other laws"
+LOOK = "check that column, what else changed with it, and other laws"
 
 
 class Pattern(NamedTuple):

@@ -53,8 +53,8 @@ def with_spins(table: Measurements, scene: Scene, spin: Real | None) -> Measurem
         ball = scene.sphere
         if not isinstance(ball, Sphere) or not isinstance(scene.target, HalfSpace):
             raise ValueError(
-                f"{table.source or 'the film'}: angle: is missing, and the spin between bounces "
-                "follows for a sphere on a half-space alone; add a column angle (deg)"
+                f"{table.source or 'the film'}: angle: is missing. For this body the spin between "
+                "bounces cannot be inferred; add a column angle (deg)"
             )
         per_velocity = 1.0 / (ball.gyration_ratio**2 * ball.radius)
         given["spin"] = (0.0 if spin is None else spin) + change * per_velocity

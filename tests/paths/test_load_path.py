@@ -230,7 +230,7 @@ PATH = np.full(4, DEEP)
         ((SCENE, PATH, [0.0, 0.0, np.nan, 0.0]), {}, "displacement = "),
         ((SCENE, np.zeros((4, 2)), np.zeros((4, 3))), {}, "must broadcast"),
         ((SCENE, PATH, PATH), {"time": [0.0, 1.0, 1.0, 2.0]}, "must grow"),
-        ((SCENE, PATH, PATH), {"tangential": "coulomb"}, "must answer to steps"),
+        ((SCENE, PATH, PATH), {"tangential": "coulomb"}, "must be a law of steps"),
         ((SCENE, PATH, PATH), {"tangential": "springz"}, "springs"),
         (("steel", PATH, PATH), {}, "must be a Scene"),
     ],

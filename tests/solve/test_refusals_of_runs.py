@@ -141,7 +141,7 @@ REFUSED = [
     ),
     (
         lambda: load_path(BALL, PATH, PATH, tangential="frictionless"),
-        "tangential = Frictionless(): must answer to steps, as a SteppedTangentialLaw does; take "
+        "tangential = Frictionless(): must be a law of steps, a SteppedTangentialLaw; use "
         "springs, or annulus",
     ),
     (

@@ -69,7 +69,7 @@ class Interpolates(Sound):
 
 #: Each with the check meant for it, and words of what the check says of it.
 BROKEN = [
-    (OneOfThreeWays, "contract", "It must be derived from one of SteppedTangentialLaw"),
+    (OneOfThreeWays, "contract", "The law must be derived from one of SteppedTangentialLaw"),
     (Mutable, "immutable", "ratio can be set"),
     (CannotBePickled, "copies", "CannotBePickled.<lambda>"),
     (TakesAnything, "parameters", "extra = nan: accepted without a ValueError"),

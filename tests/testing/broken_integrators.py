@@ -167,7 +167,7 @@ BROKEN = [
     (ShortImpulse, "sliding_impulse_by", "The impulse of sliding is 0.01 off"),
     (FirstLoad, "sliding_impulse_by", "The impulse of sliding is 0.0002 off"),
     (ArrayOfOne, "ends_well", "slip_velocity_change = array(["),
-    (AsksTillItGives, "bounded", "Unyielding is asked without end"),
+    (AsksTillItGives, "bounded", "Unyielding is called without end"),
     *broken(Steps, "alter",
         ("OneStatusForAll",
          lambda motion, scene: motion if not scene.shape else attrs.evolve(
@@ -178,7 +178,7 @@ BROKEN = [
              motion, friction_work=motion.friction_work + time.perf_counter()),
          "impact_repeatable", "run twice, ends differently"),
         ("ReturnsATuple", lambda motion, *_: (motion.slip_velocity_change, motion.friction_work),
-         "ends_well", "It returns a tuple"),
+         "ends_well", "The integrator returns a tuple"),
         ("WorkOfTheLastStage",
          lambda motion, *_: attrs.evolve(motion, friction_work=2.0 * motion.friction_work),
          "books_by", "of the energy is unaccounted"),

@@ -208,7 +208,7 @@ BROKEN = [
         ("HalfAsWide", lambda contact, *_: contact._replace(radius=0.5 * contact.radius),
          "hertzian_pressure", "b² is 0.25 R z at greatest compression: less than"),
         ("WithoutItsRadius", lambda contact, *_: contact._replace(radius=0.0 * contact.radius),
-         "radius", "has none where it presses"),
+         "radius", "but gives no radius"),
     ),
     *broken(Moving, "moving",
         ("ScaledOtherwise", Hurried, "motion_scaled", "off scaled"),

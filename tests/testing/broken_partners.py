@@ -48,7 +48,7 @@ class RefusesSpeechless(Sound):
 
 BROKEN = [
     (MisTellsDrift, "drift", "0.5 off velocity times drift"),
-    (RefusesSpeechless, "partners", "It refuses a scene without a word"),
+    (RefusesSpeechless, "partners", "The law refuses a scene without a word"),
     *broken(Sound, "books_bound",
         ("BoundOfABatch", lambda *_: np.array([0.1, 0.1]),
          "books_bound_told", "must be at least 0, of shape () or ()"),

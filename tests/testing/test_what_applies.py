@@ -17,7 +17,7 @@ from tests.testing.broken_partners import STEPS, Seen
 from tests.testing.fresh_sound import HardSphere, Press
 from tests.testing.made import checked
 
-BOOKS = "It runs neither of the laws of the kit whose books close."
+BOOKS = "The integrator runs neither of the laws of the kit whose books close."
 FAULTY = "None of the faulty laws of the kit fits it."
 
 
@@ -92,32 +92,32 @@ GLUED = Adhesive(pull=2e4, reach=1e-4)  # holds 1.3 J, of which the fastest impa
 STICKY = Adhesive(pull=500.0, reach=5e-6)  # holds 2 mJ: the slowest has 0.23 mJ, the next 23
 
 CASES = [
-    (RunsItsOwnLawsOnly(), "sliding_impulse_by", "It runs neither of the sliding laws of the kit."),
+    (RunsItsOwnLawsOnly(), "sliding_impulse_by", "The integrator runs neither of the sliding laws of the kit."),
     (RunsItsOwnLawsOnly(), "books_by", BOOKS),
     (RunsItsOwnLawsOnly(), "faults_reported", FAULTY),
     (RunsItsOwnLawsOnly(), "faults_named", FAULTY),
     (RunsItsOwnLawsOnly(), "normal_faults_reported", FAULTY),
     (RunsItsOwnLawsOnly(), "bounded", FAULTY),
-    (AsksNobody(), "drift", "It did not ask the law."),
-    (TellsNoDrift(), "drift", "It does not tell the drift."),
-    (WithoutResolution(), "resolution_told", "It has no resolution."),
-    (WithoutResolution(), "order", "It has no count of steps."),
+    (AsksNobody(), "drift", "The integrator did not ask the law."),
+    (TellsNoDrift(), "drift", "The integrator does not tell the drift."),
+    (WithoutResolution(), "resolution_told", "The integrator has no resolution."),
+    (WithoutResolution(), "order", "The integrator has no count of steps."),
     (SpoiledHertz(), "motion_accuracy", "Its motion declares no accuracy."),
-    (Stepwise(), "dissipation", "It declares none."),
+    (Stepwise(), "dissipation", "The law declares none."),
     (GLUED, "rebounds", "At no speed do the bodies part: adhesion holds them."),
     (GLUED, "normal_passive", "Adhesion holds the surfaces far behind first touch: no cycle is "
      "closed."),
     (OfElasticBodies(), "coulomb_at_a_point_damped", "No integrator runs it under "
      "StronglyDampedHertz."),
-    (Sound(), "coulomb_at_a_point", "It tells no tractions: fields has neither radius and "
+    (Sound(), "coulomb_at_a_point", "The law tells no tractions: fields has neither radius and "
      "traction, nor radius, displacement and limit of springs."),
     (OfElasticBodies(), "load_impulse", "There is no way to run it under a normal law that pulls."),
-    (AnswersNothing(), "whole_impact_form", "It has no whole-impact answer."),
-    (AnswersNothing(), "whole_impacts", "It has no whole-impact answer for an impact with slip."),
+    (AnswersNothing(), "whole_impact_form", "The law has no whole-impact answer."),
+    (AnswersNothing(), "whole_impacts", "The law has no whole-impact answer for an impact with slip."),
     (HardSphere(), "whole_impacts", "No integrator can march it."),
     (HardSphere(), "impact_coulomb_limit", "Its whole-impact answers have no course, and so no "
      "force to check."),
-    (HardSphere(), "declared_error", "It declares no psi2_error, or nothing is finer to compare "
+    (HardSphere(), "declared_error", "The law declares no psi2_error, or nothing is finer to compare "
      "it with."),
     (Sound(), "at_rest_stiffness", "Its stiffness does not grow in proportion to the contact "
      "radius."),

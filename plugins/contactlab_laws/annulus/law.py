@@ -93,9 +93,9 @@ class Annulus(PartialSlip, AllStepsTangentialLaw):
     def field_cautions(self) -> tuple[str, ...]:
         """Return the caution that maps of stick and slip have false spots, with their extent."""
         return (
-            "stick and slip of annuli: while few are in contact the outermost stick or slip "
-            "falsely, for up to a quarter of an impact (numerical error, not in psi2); springs "
-            "and fronts do not",
+            "stick and slip of annuli: false while few annuli are in contact, for up to a quarter "
+            "of the impact (numerical error; psi2 is right). springs and fronts show no such "
+            "spots.",
         )
 
     def start(self, scene: Scene, normal: NormalMotion) -> State:
