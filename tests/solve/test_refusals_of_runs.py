@@ -142,7 +142,7 @@ REFUSED = [
     (
         lambda: load_path(BALL, PATH, PATH, tangential="frictionless"),
         "tangential = Frictionless(): must be a law of steps, a SteppedTangentialLaw; use "
-        "springs, or annulus",
+        "springs or annulus",
     ),
     (
         lambda: load_path(BALL, PATH, PATH, tangential=DEMANDING),

@@ -92,7 +92,8 @@ GLUED = Adhesive(pull=2e4, reach=1e-4)  # holds 1.3 J, of which the fastest impa
 STICKY = Adhesive(pull=500.0, reach=5e-6)  # holds 2 mJ: the slowest has 0.23 mJ, the next 23
 
 CASES = [
-    (RunsItsOwnLawsOnly(), "sliding_impulse_by", "The integrator runs neither of the sliding laws of the kit."),
+    (RunsItsOwnLawsOnly(), "sliding_impulse_by",
+     "The integrator runs neither of the sliding laws of the kit."),
     (RunsItsOwnLawsOnly(), "books_by", BOOKS),
     (RunsItsOwnLawsOnly(), "faults_reported", FAULTY),
     (RunsItsOwnLawsOnly(), "faults_named", FAULTY),
@@ -113,12 +114,13 @@ CASES = [
      "traction, nor radius, displacement and limit of springs."),
     (OfElasticBodies(), "load_impulse", "There is no way to run it under a normal law that pulls."),
     (AnswersNothing(), "whole_impact_form", "The law has no whole-impact answer."),
-    (AnswersNothing(), "whole_impacts", "The law has no whole-impact answer for an impact with slip."),
+    (AnswersNothing(), "whole_impacts",
+     "The law has no whole-impact answer for an impact with slip."),
     (HardSphere(), "whole_impacts", "No integrator can march it."),
     (HardSphere(), "impact_coulomb_limit", "Its whole-impact answers have no course, and so no "
      "force to check."),
-    (HardSphere(), "declared_error", "The law declares no psi2_error, or nothing is finer to compare "
-     "it with."),
+    (HardSphere(), "declared_error", "The law declares no psi2_error, or nothing is finer to "
+     "compare it with."),
     (Sound(), "at_rest_stiffness", "Its stiffness does not grow in proportion to the contact "
      "radius."),
 ]  # fmt: skip
