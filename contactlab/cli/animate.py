@@ -1,4 +1,4 @@
-"""Draw one impact as a moving picture: the body, the forces, the contact from above.
+"""Draw one impact as a moving picture.
 
 Examples
 --------

@@ -1,4 +1,4 @@
-"""Measure error against run time of every law and integrator, against the exact solution.
+"""Measure error against run time of every law and integrator.
 
 Examples
 --------

@@ -1,4 +1,4 @@
-"""Print the sources of a scene's data, of its laws and of contactlab as BibTeX.
+"""Print the sources of data and laws as BibTeX.
 
 Examples
 --------

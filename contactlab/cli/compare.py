@@ -1,4 +1,4 @@
-"""Run several laws on one scene or sweep: differences, cost, and measured values.
+"""Run several laws on one scene: differences, cost, measured values.
 
 With --all every installed friction law that fits is run, each under the integrator that suits it,
 and has one row: distance from the exact law, energy from nothing, force from load alone, cost.

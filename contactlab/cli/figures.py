@@ -1,4 +1,4 @@
-"""Draw the paper's Figs 1-4, as PNG by default, with their numbers as CSV.
+"""Draw the paper's Figs 1-4, with their numbers as CSV.
 
 Examples
 --------

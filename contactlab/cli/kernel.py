@@ -1,4 +1,4 @@
-"""Write a step of a contact, and the whole bounce, in C and JavaScript, with notes.
+"""Write a contact step and the whole bounce, in C and JavaScript.
 
 Examples
 --------

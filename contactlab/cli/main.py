@@ -191,6 +191,7 @@ def _parser(names: Mapping[str, PluginInfo], called: bool) -> argparse.ArgumentP
     about = "Oblique impact of elastic bodies, with contact laws as plug-ins."
     parser = Parser(
         prog="contactlab",
+        usage="%(prog)s [-h] [--version] [--traceback] COMMAND ...",
         description=about if called else "\n\n".join([about, *_listed(names)]),
         epilog=EPILOG,
         formatter_class=raw,
@@ -200,6 +201,7 @@ def _parser(names: Mapping[str, PluginInfo], called: bool) -> argparse.ArgumentP
         "--traceback", action="store_true", help="show the traceback of an error (before COMMAND)"
     )
     subparsers = parser.add_subparsers(
+        prog="contactlab",
         dest="command",
         metavar="COMMAND",
         required=True,

@@ -1,4 +1,4 @@
-"""List plug-ins of every kind, show one, or check one against its contract.
+"""List plug-ins, show one, or check one against its contract.
 
 Examples
 --------

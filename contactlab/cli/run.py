@@ -1,4 +1,4 @@
-"""Run one impact or a sweep and print velocities, energy books, plan, status and cost.
+"""Run one impact or a range: velocities, energy, plan and status.
 
 Examples
 --------

@@ -30,7 +30,7 @@ class Inputs(NamedTuple):
 
 def add_allow_code(parser: argparse.ArgumentParser) -> None:
     """Add ``--allow-code``, which every command that reads a scene has."""
-    words = "run the Python files that the scene names as laws"
+    words = "run the Python files that the scene names as laws: code can do anything"
     parser.add_argument("--allow-code", action="store_true", help=words)
 
 

@@ -1,4 +1,4 @@
-"""Run stiff and extreme cases over every law and integrator; find silently wrong answers.
+"""Run extreme cases over every law; find silently wrong answers.
 
 Examples
 --------

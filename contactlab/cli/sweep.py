@@ -1,4 +1,4 @@
-"""Run many impacts: a sweep file, or ranges of the paper's two parameters.
+"""Run many impacts: a sweep file, or ranges of psi1 and chi.
 
 Examples
 --------

@@ -1,4 +1,4 @@
-"""Check laws against closed forms, reference values, experiments and finite elements.
+"""Check laws against closed forms, experiments and finite elements.
 
 Examples
 --------

@@ -1,4 +1,4 @@
-"""Fit friction, stiffness ratio or options of laws to measured impacts, and rank laws by fit.
+"""Fit friction or options of laws to measured impacts, and rank laws.
 
 Examples
 --------

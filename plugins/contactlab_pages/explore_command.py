@@ -1,4 +1,4 @@
-"""Write a page on which one throws a ball, for a browser without a network.
+"""Write a page on which one throws a ball, for any browser.
 
 Examples
 --------

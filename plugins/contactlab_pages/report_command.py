@@ -1,4 +1,4 @@
-"""Write a page to send: scene, plan, results, laws compared, figures, sources, in one file.
+"""Write a page to send: scene, plan, results, laws and sources.
 
 Examples
 --------
