@@ -23,7 +23,6 @@ from contactlab.impact.cautions import (
     unlikely,
     yield_unknown,
 )
-from contactlab.impact.coupling import coupling_number
 from contactlab.impact.hertz import elongation_of
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, some, spread, taken
@@ -50,9 +49,7 @@ from contactlab.solve.way import WHOLE, Masks, Way, ask
 #: Advice of a plan if the error is not declared.
 ADVICE = "; run(scene, estimate_error=True) estimates the error"
 #: Entry of a plan whose friction work is a difference of energies.
-UNCHECKED = (
-    "energy check: the friction work is computed from the velocities, so the energy always balances"
-)
+UNCHECKED = "energy check: friction work comes from the velocities, so energy always balances"
 #: Undeclared imbalances over the energy at the start are cautioned of from here on.
 BOOKS_OFF = 0.01
 #: Entries of a motion by the names that a normal motion has for them.
@@ -286,9 +283,8 @@ def _absent(way: Way) -> list[str]:
     """Return what contactlab can do and these impacts do not need, each with why."""
     scene, pair = way.scene, way.scene.pair
     absent = []
-    if not np.any(coupling_number(scene.central)):
-        why = "equal" if name_bodies(scene) else "none given"
-        absent.append(f"coupling of unlike materials ({why})")
+    if name_bodies(scene) and not np.any(scene.pair.dundurs_beta):
+        absent.append("coupling of unlike materials (equal)")
     if "elastic_hertz" in way.laws.capability.normal_claims:
         absent.append("loss (none given)")
     if not np.any(scene.normal_spin):

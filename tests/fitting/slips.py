@@ -212,7 +212,7 @@ def slips(series=30):
         "protractor off by six degrees": (
             changed(measured(E_T, seed=27), "angle_deg", lambda v: v + 6.0), "angle_deg"),
         "the plate was oiled half way": (
-            drifted(measured), POINTS + r"\b7 on"),
+            drifted(measured), POINTS + r"\band 7\b"),
         "spin before in rpm": (
             changed(spinning, "spin (rad/s)", (BACKSPIN / RPM).round(1)), r"(?<!rebound_)\bspin"),
         "sign of the spin before": (

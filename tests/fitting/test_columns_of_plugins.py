@@ -33,7 +33,7 @@ def test_friction_is_found_from_what_reads_the_motion(laws):
     with column(Column("heat", "J/m3", value=heat, needs=("sizes", "motion"))):
         found = fit(measured("heat"), BODIES, simulation=laws)
     assert found["friction_coefficient"] == pytest.approx(0.17, abs=3e-4)
-    told = "heat: read from the motion of an impact; impacts are followed"
+    told = "heat: read from the motion of an impact, so the fit follows"
     assert any(note.startswith(told) for note in found.notes) == (laws is None)
 
 

@@ -149,7 +149,7 @@ def test_what_is_missing_is_named(files, capsys):
         (["SWEEP", "--columns", "a,b"],
          "--columns: names headings of --measured DATA.csv, which is missing"),
         (["SWEEP", "--measured", "a.csv", "--column", "a=b", "--column", "a=c"],
-         "--column: 'a' is named twice; leave one of them out"),
+         "--column: 'a' is named twice; leave out one"),
     ],
 )  # fmt: skip
 def test_a_refusal_is_one_line(run, short_sweep, words, told):

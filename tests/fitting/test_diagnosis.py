@@ -92,20 +92,22 @@ def test_numbers_that_nobody_measures_are_told(change, words):
 def test_copies_of_a_table_are_told(times):
     once = table(restitution(0.12) + SCATTER)
     copied = fit({name: np.tile(values, times) for name, values in once.items()}, BODIES)
-    assert [note for note in copied.notes if f"is there {times} times" in note]
+    assert [note for note in copied.notes if f"occurs {times} times" in note]
     first = np.r_[0, 0:12]  # one impact twice may be chance
     assert fit({name: values[first] for name, values in once.items()}, BODIES).notes == ()
 
 
 def test_a_column_that_is_fitted_is_told():
     data = table(restitution(0.12) + SCATTER, friction_coefficient=np.full(12, 0.3))
-    assert fit(data, BODIES).notes == ("the column friction_coefficient is not used: it is fitted",)
+    assert fit(data, BODIES).notes == (
+        "the column friction_coefficient is not used, as friction_coefficient is fitted",
+    )
 
 
 def test_an_unlikely_friction_is_told():
     (note,) = fit(table(1.0 - 0.0012 * SLOPE + 0.01 * SCATTER, SLIPPING), BODIES).notes
     assert note.startswith("friction_coefficient from 0.001")
-    assert "look at the units of tangential_restitution" in note
+    assert "check the units of tangential_restitution" in note
 
 
 def test_errors_in_another_unit_are_told():

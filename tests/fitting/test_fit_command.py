@@ -177,8 +177,8 @@ def test_restitution_comes_out_of_kharaz(run):
     [
         (("--fit", "mu"), "did you mean 'friction_coefficient'"),
         (("--fit", "stiffness_ratio"), "measure tangential_restitution at angles"),
-        (("--tangential", "exakt"), "tangential.exakt"),
-        (("--normal", "herz"), "did you mean 'normal.hertz'"),
+        (("--tangential", "exakt"), "'exakt'"),
+        (("--normal", "herz"), "did you mean 'hertz'"),
         (("--quantity", "spin"), "was not measured"),
         (("--bootstrap", "-1"), "--bootstrap"),
         (("--set", "normal.stiffness=1"), "stiffness"),

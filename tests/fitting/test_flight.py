@@ -122,7 +122,7 @@ def test_a_third_coordinate_and_other_headings(tmp_path):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"y (m)": None}, "y: is missing; a film has the columns"),
+        ({"y (m)": None}, "y: is missing; a film needs the columns"),
         ({"x (m)": None, "x": 1.0}, "heading 'x': has no unit; write 'x .m.', or .mm."),
         ({"y (m)": None, "y (furlongs)": 1.0}, "is in furlongs, which is not known here"),
         ({"y (m)": -1.0}, "y: the flights are no parabolas.*grows upwards"),

@@ -170,7 +170,7 @@ def test_each_impact_has_the_entries_of_its_row(bodies, given, varied):
 
 def test_a_sweep_of_one_entry_beside_impacts_that_vary_in_two_is_refused(bodies):
     swept, made = bodies("[sweep]\nangle_deg = [1.0, 2.0]\n"), table(**{"speed (m/s)": [2, 2, 3]})
-    words = r"angle_deg, speed vary together, .*varies angle_deg; leave it out, and each impact"
+    words = r"angle_deg, speed vary, .*varies angle_deg; leave out .sweep."
     with pytest.raises(ValueError, match=words):
         with_measurements(swept, made)
     with pytest.raises(ValueError, match=r"no column describes the impact.*such as angle_deg"):

@@ -165,7 +165,7 @@ def test_a_change_along_a_column_may_be_another_law():
     y = np.where(x < 6.5, 2.0, 2.1) * x + NOISE
     problem = line({"y": y}, option("a"), x=x)
     seen = patterns.pattern(problem, best(problem), {"y": 0.01}, {"x": x})
-    assert "in the order of the rows, which is that of x" in seen.words
+    assert "in the order of the rows (also that of x)" in seen.words
 
 
 def test_a_number_alone_has_its_leverage():
@@ -174,7 +174,7 @@ def test_a_number_alone_has_its_leverage():
     problem = line({"z": np.full(4, np.nan), "y": 2.0 * x}, option("a"), x=x)
     share = 100.0 / 103.0
     (sentence,) = patterns.leverage(problem, np.array([2.0]), {"z": 1.0, "y": 1.0})
-    assert "y: the fit runs through impact 3 whatever" in sentence
+    assert "y: impact 3 alone decides the fit" in sentence
     assert f"(leverage {share:.2f})" in sentence
     x[2] = 7.0  # 49/52 is below 0.95
     assert patterns.leverage(problem, np.array([2.0]), {"z": 1.0, "y": 1.0}) == []

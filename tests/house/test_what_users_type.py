@@ -51,7 +51,7 @@ def rod(**given):
         (lambda: shapes.box(sides=[1, 1, 1], corner_radius=0.1, material=STEEL, normal=[1, 1, 1],
                             axes=Rotation.identity()), "as axes.as_matrix()"),
         (lambda: rod(axis=30), "such as [0, 0, 1], up; an angle is tilt_deg of a scene file"),
-        (lambda: shapes.rod(1.0, 0.02), "written with their names, name=value; it has length"),
+        (lambda: shapes.rod(1.0, 0.02), "write arguments as name=value; arguments: length"),
         (lambda: rod(axes=np.eye(3)), "rod: axes is not an argument; did you mean 'axis'?"),
         (lambda: rod(), "rod: axis must be given"),
         (lambda: Scene.nondimensional(psi1=[0.1, 0.1], chi=np.eye(2), lam=[9.0, 0.0], rho=1.0),

@@ -36,10 +36,7 @@ if library() is None:
     )
 STATED = "(bound stated by the laws)"
 #: What exists and was not needed.
-ABSENT = (
-    "coupling of unlike materials (none given), loss (none given), spin about the normal (none), "
-    "elliptic contact (round)"
-)
+ABSENT = "loss (none given), spin about the normal (none), elliptic contact (round)"
 
 
 def scene(psi1=1.2):

@@ -279,7 +279,7 @@ def test_a_law_made_for_a_circle_says_so_along_a_path(name):
     steps = np.linspace(0.0, 1e-7, 11)
     for normal, told in ((name, True), ("hertz", False)):
         path = load_path(scene, 1e-7 + steps, steps, normal=normal)
-        assert any("elliptic contact" in text for text in path.cautions) == told
+        assert any("an ellipse of" in text for text in path.cautions) == told
 
 
 def test_a_path_cautions_of_its_bodies():

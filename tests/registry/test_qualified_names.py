@@ -200,7 +200,7 @@ REFUSED = {
     "old.py:Half": "api_version",
     "contactlab_laws:Half": "has no law",
     "no_package.at_all:Half": "a file is named by its path",
-    "soft.py:Soft": "is a law of kind 'normal'; pass it as normal",
+    "soft.py:Soft": "is a law of kind 'normal'; pass the law as normal",
 }
 
 

@@ -187,7 +187,7 @@ def test_fit_needs_the_users_word(tmp_path, ran, capsys, kind):
         refused(told, str(tmp_path / "beside" / "evil.py"))
         told = command(capsys, *words, "--fit", "stiffness_ratio", "--allow-code")[1]
         assert ran.exists()
-        assert "pass it as tangential" in told
+        assert "pass the law as tangential" in told
     else:
         assert "--allow-code" not in told
         assert not ran.exists()

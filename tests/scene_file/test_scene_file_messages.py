@@ -25,7 +25,7 @@ SPACE = "impact.velocity = [1.0, 0.0, -1.0]\nimpact.normal = [0.0, 0.0, 1.0]\n"
         (["sphere.material.poisson_ratio"],
          "sphere.material.poisson_ratio: is missing; for example 0.3"),
         (["sphere.material.young_modulus"],
-         "sphere.material: exactly one of shear_modulus and young_modulus must be given, in Pa; "
+         "sphere.material: give exactly one of shear_modulus and young_modulus, in Pa; "
          "the other follows from E = 2 G (1 + nu)"),
         (["sphere.material.density"],
          "sphere: mass is unknown; give sphere.mass in kg, or sphere.material.density in kg/m³"),

@@ -97,7 +97,8 @@ def test_not_physical(tmp_path, key, value, rule):
 def test_unknown_key_with_the_nearest(tmp_path, key, nearest):
     message = refusal(tmp_path, document(**{key: "1"}))
     unknown = key if "sphre" not in key else "sphre"
-    assert f"{unknown}: unknown key; did you mean {nearest!r}?" in message
+    what = "table" if unknown == "sphre" else "key"
+    assert f"{unknown}: unknown {what}; did you mean {nearest!r}?" in message
 
 
 @pytest.mark.parametrize(
@@ -105,7 +106,7 @@ def test_unknown_key_with_the_nearest(tmp_path, key, nearest):
     [
         (["sphere.radius"], "sphere.radius: is missing"),
         (["sphere.material.poisson_ratio"], "sphere.material.poisson_ratio: is missing"),
-        (["sphere.material.young_modulus"], "sphere.material: exactly one of shear_modulus"),
+        (["sphere.material.young_modulus"], "sphere.material: give exactly one of shear_modulus"),
         (["sphere.material.density"], "give sphere.mass in kg, or sphere.material.density"),
         (["target.kind"], "target.kind: is missing"),
         ([key for key in GOOD if key.startswith("target")], "target: is missing"),

@@ -101,6 +101,6 @@ def test_laws_are_named_with_a_normal_law_that_is_not_the_default():
     assert {"fronts", "springs", "walton, tsuji restitution=0.98"} <= set(found)
     assert found["springs, tsuji restitution=0.98"].normal.restitution == 0.98
     assert list(left_out) == ["fronts, tsuji restitution=0.98"]
-    assert "elastic_hertz" in left_out["fronts, tsuji restitution=0.98"]
+    assert "elastic Hertz contact" in left_out["fronts, tsuji restitution=0.98"]
     plain, _ = simulations_over({"jkr": {}})
     assert "springs, jkr" in plain

@@ -84,7 +84,7 @@ BROKEN = [
     ),
     *broken(Sound, "offers",
         ("OffersByParameter", property(lambda _: frozenset({"partial_slip"})),
-         "contract", "offers must be a frozenset, a constant of the class; waives()"),
+         "contract", "offers must be a frozenset, a constant of the class; for words that"),
         ("Misspells", frozenset({"partialslip"}),
          "contract", "'partialslip' is a word that no check knows"),
     ),
