@@ -124,7 +124,7 @@ def test_a_heading_without_meaning_is_refused_with_what_to_write(text, words):
 
 
 def test_all_bad_headings_are_told_at_once():
-    words = r"'speed \(m': .*'spin': has no unit.*: zzz"
+    words = r"'speed \(m': .*'spin': has no unit.*left out, .*: zzz"
     with pytest.raises(ValueError, match=words):
         read_measurements({"speed (m": [1.0], "spin": [2.0], "zzz": [3.0], "e": [0.5]})
 

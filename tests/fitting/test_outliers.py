@@ -183,4 +183,4 @@ def test_a_number_alone_has_its_leverage():
     both = line({"z": np.array([6.0, np.nan]), "y": np.array([np.nan, 90.0])}, option("a"),
                 x=np.array([0.0, 45.0]))  # fmt: skip
     (sentence,) = patterns.leverage(both, np.array([2.0]), {"z": 1.0, "y": 1.0})
-    assert sentence.startswith("y: the fit runs through impact 2 whatever")
+    assert sentence.startswith("y: impact 2 alone decides the fit")

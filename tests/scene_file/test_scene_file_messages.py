@@ -90,8 +90,8 @@ def test_what_is_wrong(tmp_path, key, value, words):
          "normal_speed/tangential_velocity; leave out one pair"),
         (document() + "nondimensional.psi1 = 1.0", "nondimensional: psi1 and chi define the "
          "whole scene; leave out [sphere], or [nondimensional]"),
-        (document() + SPACE, "impact: has vectors, and speed too; velocity and normal define the "
-         "impact, leave out one or the other"),
+        (document() + SPACE, "impact: velocity and normal define the impact; leave them out, or "
+         "speed"),
         (document(without=["impact.speed", "impact.angle_deg"]) + SPACE.splitlines()[0],
          "impact.normal: is missing; an impact in space needs normal = [x, y, z]"),
         (document(without=["impact.speed", "impact.angle_deg"]) + SPACE.splitlines()[1],
