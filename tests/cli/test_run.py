@@ -10,6 +10,7 @@ import time
 import numpy as np
 import pytest
 
+from contactlab import rebound
 from contactlab.numeric import progress
 from tests.full_disk import full_disk
 
@@ -289,3 +290,21 @@ def test_vectors_of_both_bodies(run, tmp_path):
         np.hypot(*pushed[:2])
     )
     assert float(row["target_rebound_spin (rad/s)"]) < 0.0
+
+
+def test_ranges_run_as_a_sweep(run):
+    """As ``contactlab.rebound`` answers."""
+    ran = run("run", "--psi1", "0:7:8", "--chi", 1.44, "--csv")
+    assert ran.status == 0
+    rows = list(csv.DictReader(ran.out.splitlines()))
+    assert [float(row["psi1 (1)"]) for row in rows] == [*range(8)]
+    psi2 = [float(row["psi2 (1)"]) for row in rows]
+    assert psi2 == pytest.approx(rebound(np.arange(8.0), 1.44), abs=1e-7)
+    assert "psi1" in run("run", "--psi1", "0:7:8", "--chi", 1.44).out.splitlines()[0]
+
+
+def test_of_bodies_velocity_and_spin_come_first_and_psi2_last(run, ball):
+    out = run("run", ball).out
+    order = [out.index(words) for words in ("normal velocity", "spin", "energy", "\npsi2 ")]
+    assert order == sorted(order)
+    assert run("run", "--psi1", 1.2, "--chi", 1.44).out.startswith("psi2 ")

@@ -24,11 +24,12 @@ from contactlab.study.stability_cases import (
     STEPS,
     Case,
     Cell,
+    all_cases,
     cases,
     extreme_scenes,
     normal_scenes,
 )  # fmt: skip
-from contactlab.study.stability_coupled import rod
+from contactlab.study.stability_coupled import refined, rod
 from contactlab.study.stability_judge import (
     ANSWERED,
     REFUSED,
@@ -434,3 +435,22 @@ def test_a_reference_under_another_normal_law_settles_where_inertia_is_heavy(nor
     )
     change = float(other.run(scene).check().motion.slip_velocity_change)
     assert found == pytest.approx(change, abs=0.004 * 0.6 * scene.normal_speed)
+
+
+def test_impacts_in_space_reach_from_light_to_heavy_inertia():
+    (method,) = methods(["springs", "integrator.symplectic"])
+    for quick, number in ((True, 3), (False, 10)):
+        cells = [case for case in all_cases(method, quick=quick) if case.family == "space"]
+        chis = [float(case.scene.make().chi[0, 0]) for case in cells]
+        assert (len(cells), min(chis), max(chis)) == (number, 0.05, 1000.0)
+    (rigid,) = methods(["fronts"])
+    assert not any(case.family == "space" for case in all_cases(rigid, quick=True))
+
+
+@pytest.mark.parametrize("chi", [0.5, 3.0])
+def test_the_reference_in_space_is_the_exact_law_where_the_slip_keeps_its_line(chi):
+    """With an inertia that is alike along both tangents the slip falls along its line."""
+    scene = Scene.nondimensional(psi1=[0.72, 0.54], chi=chi * np.eye(2), lam=[0.0, 0.0], rho=1.0)
+    along = contactlab.Simulation().run(Scene.nondimensional(psi1=0.9, chi=chi)).check().psi2
+    springs = contactlab.create("tangential.springs", springs=200)
+    assert refined(springs, scene) == pytest.approx([0.8 * along, 0.6 * along], abs=2e-3)
