@@ -92,7 +92,7 @@ def _refuse_speeds(impact: object) -> None:
         if key not in VECTOR_KEYS and isinstance(impact, Mapping) and key in impact:
             raise ValueError(
                 f"impact.{key}: is for spheres; for a body write velocity = [x, y, z] in m/s, or "
-                f"keep {key} and add along = [x, y, z], the direction of the tangential velocity"
+                f"keep {key} and add along = [x, y, z], the tangential direction"
             )
 
 

@@ -62,8 +62,7 @@ def friction_load(law: SteppedTangentialLaw) -> None:
             abs(force - share * full),
             slack(law, 1e-6),
             f"In gross slip F = {force:.4g} mu P_max, where mu times the friction load is "
-            f"{share * full:.4g} and mu times the normal force {full:.4g}: Coulomb's limit is that "
-            "of the friction load.",
+            f"{share * full:.4g} and mu times the normal force {full:.4g}.",
         )
 
 
@@ -91,8 +90,7 @@ def load_impulse(law: TangentialLaw) -> None:
                 error,
                 slack(law, 0.0) + INTEGRATION + (SLOWING if varies(law) else 0.0),
                 f"Under a normal law that pulls, chi = {chi:.3g}: the impulse of a grazing impact "
-                f"is {error:.2g} off mu times the impulse of the friction load ({origin}), which is"
-                " not mu (1 + e) M_n v1 there.",
+                f"is {error:.2g} off mu times the impulse of the friction load ({origin}).",
             )
     apply_if(tried, "There is no way to run it under a normal law that pulls.")
 
@@ -121,6 +119,6 @@ def at_rest_stiffness(law: SteppedTangentialLaw) -> None:
     within(
         abs(mean - nearest),
         NEAR,
-        f"dF/dD of a contact at rest is {mean:.4g} times 2 G* b, at every normal load: Mindlin's "
-        "stiffness is 1 times it, and 2/3 in some codes. Is it 8 G* b with the G* of the pair?",
+        f"dF/dD of a contact at rest is {mean:.4g} times 2 G* b, at every normal load. Mindlin's "
+        "stiffness is once 2 G* b, with the G* of the pair.",
     )

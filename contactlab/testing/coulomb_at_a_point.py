@@ -86,8 +86,7 @@ def _hold(law: SteppedTangentialLaw, normal_law: NormalLaw) -> None:
     hold(
         worst <= ROOM,
         f"The traction exceeds mu p by {worst:.2g} of the mean of mu p, at {where} under "
-        f"{type(normal_law).__name__}; {ROOM} is the bound. Coulomb's law holds at every point, "
-        "not in the sum only.",
+        f"{type(normal_law).__name__}; {ROOM} is the bound.",
     )
 
 

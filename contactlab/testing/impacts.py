@@ -209,8 +209,7 @@ def impact_after_another(law: TangentialLaw) -> None:
             gap,
             1e-8,
             f"An impact of other bodies, run after another scene of its shape, is {gap:.2g} off in "
-            f"psi: alone in a batch of shape (1, 1, 1) it ends otherwise. Is something kept from "
-            f"one scene for the next ({way})?",
+            f"psi. Is something kept from one scene for the next ({way})?",
         )
 
 

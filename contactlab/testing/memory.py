@@ -76,8 +76,8 @@ def contact_again(law: SteppedTangentialLaw) -> None:
             gap,
             slack(law, 1e-9),
             f"After {apart} step(s) out of contact, contact is made again: pressing alone gives "
-            f"F = {pressed:.2g} mu P_max, and the force is {gap:.2g} off that of a first contact. "
-            "The memory of the contact before is still there.",
+            f"F = {pressed:.2g} mu P_max, {gap:.2g} off a first contact. The law still remembers "
+            "the contact before.",
         )
 
 

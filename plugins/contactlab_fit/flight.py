@@ -239,8 +239,7 @@ def _bounces(film: dict[str, Array], *, in_pixels: bool) -> Measurements:
     if scatter["y"] > ROUGH * noise + FLAT * max(float(np.ptp(throw["y"])) for throw in throws):
         raise ValueError(
             f"y: the flights are no parabolas, off by {scatter['y']:.2g} m (rms); check that y is "
-            "the height of the centre and grows upwards (else --column 'y=-y'), and that the floor "
-            "is level"
+            "the height of the centre, grows upwards (else --column 'y=-y'), on a level floor"
         )
     rows = [_row(*pair, scatter) for pair in pairs]
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}

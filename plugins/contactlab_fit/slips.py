@@ -293,7 +293,7 @@ def _free_shear_loss(problem: Problem, values: Array) -> Wider:
         return (
             f"the contact point looks as if it rebounded {'less' if shear_loss > own else 'more'} "
             f"than these laws give: as with {SHEAR_LOSS} = {shear_loss:.3g} (now {own:.3g}). Fit "
-            f"{SHEAR_LOSS} too, or {others}; Poisson's ratios and friction must be known"
+            f"{SHEAR_LOSS} too, or {others}, if Poisson's ratios and friction are known"
         )
 
     fitted = [parameter.name.rpartition(".")[2] for parameter in parameters]

@@ -93,9 +93,8 @@ class Annulus(PartialSlip, AllStepsTangentialLaw):
     def field_cautions(self) -> tuple[str, ...]:
         """Return the caution that maps of stick and slip have false spots, with their extent."""
         return (
-            "stick and slip of annuli: false while few annuli are in contact, for up to a quarter "
-            "of the impact (numerical error; psi2 is right). springs and fronts show no such "
-            "spots.",
+            "stick and slip of annuli: false while few annuli are in contact, up to a quarter of "
+            "the impact (numerical error; psi2 is right). springs and fronts show none.",
         )
 
     def start(self, scene: Scene, normal: NormalMotion) -> State:
