@@ -154,7 +154,7 @@ def test_a_restitution_that_is_given_stands_in_place_of_a_property():
     assert "restitution=0.8" in str(told.plan)
     assert simulation.run(scene(of_time(2e-6))).psi2 == told.psi2  # nor does one body need it
     taken = Simulation(normal="viscoelastic").run(scene(of_time(2e-6), of_time(2e-6)))
-    assert "was taken by default" not in str(taken.plan)  # the property stands for 0.9
+    assert "given, using" not in str(taken.plan)  # the property stands for 0.9
 
 
 @pytest.mark.parametrize(
