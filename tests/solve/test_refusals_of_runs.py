@@ -109,7 +109,8 @@ REFUSED = [
     (lambda: collide(meeting(), restitution=-0.1), f"restitution = -0.1: {E_RULE}"),
     (
         lambda: collide(meeting(), restitution=[0.9, 0.8]),
-        "restitution = array([0.9, 0.8]): must be one number, or of the shape () of the encounters",
+        "restitution = array([0.9, 0.8]): must be one number, or of the shape () of the impacts; "
+        "give one number for each impact",
     ),
     (
         lambda: collide(meeting(), Simulation(), restitution=0.9),
