@@ -651,10 +651,10 @@ REFUSED = [
     (lambda: planar(psi1=[1.0, 0.0], chi=np.eye(2), lam=[0.1, 0.0, 0.0], rho=1.0), "lam.shape"),
     (lambda: Scene(Sphere(0.01, STEEL), FLOOR, 0.1, 1.0, inverse_mass=np.eye(3)),
      "inverse_mass"),
-    (lambda: Simulation(tangential="annulus").run(rod(30.0).scene), "before the march; take tan"),
+    (lambda: Simulation(tangential="annulus").run(rod(30.0).scene), "use tangential='fronts'"),
     (lambda: Simulation(tangential="fronts").run(rod(30.0, across=0.5).scene), "slip along one"),
     (lambda: Simulation(tangential="mindlin_deresiewicz").run(rod(30.0, across=0.5).scene),
-     "take tangential='springs', integrator='symplectic'"),
+     "use tangential='springs', integrator='symplectic'"),
     (lambda: collide(two_bodies(3, 1), restitution=[0.5, 0.6]), "restitution"),
 ]  # fmt: skip
 

@@ -47,9 +47,13 @@ def test_what_is_known_has_the_declared_error():
 
 def test_where_steps_are_raised_it_is_what_was_taken_that_is_doubled():
     """Asked for 100, 200 or 400 steps, a heavy inertia takes 392 or 400 of them."""
-    laws = {"normal": "linear", "integrator": "symplectic"}
+    laws = {
+        "normal": "linear",
+        "tangential": contactlab.create("tangential.springs", springs=50),
+        "integrator": contactlab.create("integrator.symplectic", steps=200),
+    }
     scene = Scene.nondimensional(psi1=0.3, chi=1e3)
-    result = Simulation(tangential="springs", **laws).run(scene, estimate_error=True).check()
+    result = Simulation(**laws).run(scene, estimate_error=True).check()
     fine = Simulation(
         normal="linear",
         tangential=contactlab.create("tangential.springs", springs=1000),

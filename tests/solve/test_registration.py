@@ -79,7 +79,7 @@ class Weighed(Springs):
 #: Classes by kind, with a word or two of why they are refused.
 REFUSED = {
     ("integrator", "OldOrder"): "OldOrder.integrate has the arguments (normal, tangential, scene",
-    ("integrator", "OldErrors"): "(scene, normal, tangential), in this order and by these names",
+    ("integrator", "OldErrors"): "(scene, normal, tangential), in this order",
     ("integrator", "OldCoupled"): "OldCoupled.integrate_coupled has the arguments",
     ("integrator", "AnyOrder"): "AnyOrder.cautions has the arguments (given)",
     ("normal", "ByParameter"): "ByParameter.offers must be a frozenset",

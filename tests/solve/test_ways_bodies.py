@@ -149,8 +149,8 @@ YIELDING = Sphere(0.01, attrs.evolve(STEEL, yield_stress=1e5))
 NARROW = meeting(attrs.evolve(body(), cross_radius=1e-4, curvature_axis=(1, 0, 0)))
 STACKED = [
     ([RINGING.scene, RINGING.scene], "body rings"),
-    ([NARROW.scene, meeting().scene], "C = 0.768"),
-    ([NARROW.scene, OFF_CENTRE.scene], "C = 0.768"),
+    ([NARROW.scene, meeting().scene], "a/R = 0.768"),
+    ([NARROW.scene, OFF_CENTRE.scene], "a/R = 0.768"),
     ([AGAINST_A_BALL["spheres"].scene] * 2, "spin about the normal"),
     ([RINGING.scene, OFF_CENTRE.scene], "body rings"),
     ([OFF_CENTRE.scene, RINGING.scene], "body rings"),

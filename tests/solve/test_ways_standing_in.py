@@ -107,7 +107,7 @@ def test_rigid_theory_is_not_taken_in_silence():
         Simulation(normal="tsuji", integrator="events")
     for name in ("central", "planar", "space"):
         rigid = Simulation(normal="tsuji", tangential="coulomb", integrator="events")
-        assert any("rigid bodies" in text for text in rigid.run(ONES[name]).check().cautions)
+        assert any("rigid contact" in text for text in rigid.run(ONES[name]).check().cautions)
 
 
 HISTORIES = [
