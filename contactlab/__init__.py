@@ -71,6 +71,7 @@ if TYPE_CHECKING:
     from contactlab.impact import shapes
     from contactlab.impact.bodies import HalfSpace, Sphere
     from contactlab.impact.encounter import Encounter
+    from contactlab.impact.gathering import Body, Gathering, Touch
     from contactlab.impact.material import Material
     from contactlab.impact.rigid_body import RigidBody
     from contactlab.impact.scene import Scene
@@ -91,6 +92,7 @@ __version__ = "0.1.0"
 __all__ = [
     "AllStepsResponse",
     "AllStepsTangentialLaw",
+    "Body",
     "CausalTangentialLaw",
     "ClosedFormMotion",
     "ClosedFormNormalLaw",
@@ -101,6 +103,7 @@ __all__ = [
     "Encounter",
     "EnergyLedger",
     "Errors",
+    "Gathering",
     "HalfSpace",
     "ImpactError",
     "ImpactResult",
@@ -121,6 +124,7 @@ __all__ = [
     "TangentialLaw",
     "TangentialMotion",
     "TangentialResponse",
+    "Touch",
     "UnfollowedNormalLaw",
     "WholeImpact",
     "WholeImpactTangentialLaw",
@@ -163,9 +167,11 @@ def create(name: str, **options: object) -> Any:
 
 #: Where the public names are: ``import contactlab`` imports none of them.
 MODULES = {
+    "Body": "impact.gathering",
     "Collision": "collisions.collision",
     "Encounter": "impact.encounter",
     "EnergyLedger": "outcome.energy",
+    "Gathering": "impact.gathering",
     "HalfSpace": "impact.bodies",
     "ImpactError": "outcome.answer",
     "ImpactResult": "outcome.result",
@@ -177,6 +183,7 @@ MODULES = {
     "Sphere": "impact.bodies",
     "Status": "contracts.status",
     "SweepFolder": "outcome.sweep_folder",
+    "Touch": "impact.gathering",
     "collide": "collisions.collide",
     "compare": "study.comparison",
     "fit": "contactlab_fit",

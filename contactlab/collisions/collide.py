@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from contactlab.collisions.collision import Collision
 from contactlab.collisions.restituted import run_by_restitution, run_in_blocks
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.impact.encounter import Encounter
+from contactlab.impact.gathering import Gathering
 from contactlab.impact.of_speed import numbers_at, spread_over
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, some, taken
@@ -20,9 +21,15 @@ from contactlab.numeric.types import Array, Numbers, Real
 from contactlab.numeric.vectors import LEAST
 from contactlab.runs.simulation import Simulation
 
+if TYPE_CHECKING:
+    from contactlab.collisions.gathered import GatheringResult
+
 SEPARATING = ("refuse", "pass")
 #: Remedies for what is given in place of an encounter, or of a simulation.
-WITH_ARRAYS = "make a single Encounter with arrays of vectors, shape (..., 3)"
+WITH_ARRAYS = (
+    "make a single Encounter with arrays of vectors, shape (..., 3); bodies that touch at several "
+    "contacts at once are a Gathering(bodies, touches)"
+)
 INSTEAD: dict[type, str] = {
     list: WITH_ARRAYS,
     tuple: WITH_ARRAYS,
@@ -31,14 +38,31 @@ INSTEAD: dict[type, str] = {
 }
 
 
+@overload
 def collide(
     encounter: Encounter,
     simulation: Simulation | None = None,
     *,
     restitution: Numbers | Callable[[float], Numbers] | Callable[[Array], Numbers] = 1.0,
     separating: str = "refuse",
-) -> Collision:
+    history: bool = False,
+) -> Collision: ...
+@overload
+def collide(
+    encounter: Gathering, simulation: Simulation | None = None, *, history: bool = False
+) -> GatheringResult: ...
+def collide(
+    encounter: Any,
+    simulation: Simulation | None = None,
+    *,
+    restitution: Numbers | Callable[[float], Numbers] | Callable[[Array], Numbers] = 1.0,
+    separating: str = "refuse",
+    history: bool = False,
+) -> Any:
     """Return velocities and spins of both bodies after an encounter, or after each of a batch.
+
+    Of a ``Gathering`` it returns those of all bodies and what each contact went through: the
+    contacts march together, by springs in even steps unless a simulation has other laws.
 
     Between bodies that are no spheres each impact goes its own way: as spheres where friction does
     not change the approach, else by laws that are exact in a plane, and by springs in space. They
@@ -47,9 +71,10 @@ def collide(
 
     Parameters
     ----------
-    encounter : Encounter
+    encounter : Encounter or Gathering
     simulation : Simulation, optional
-        The laws. The default is ``contactlab.rebound``, exact for elastic spheres with Hertz
+        The laws; of a gathering any normal law, and a causal tangential law that takes vectors. The
+        default is ``contactlab.rebound``, exact for elastic spheres with Hertz
         contact and partial slip: under a microsecond per encounter in a large batch, about 10 us
         for a single one beside 5 to 10 us for its ``Encounter``.
     restitution : float, array of shape (...,), or callable
@@ -64,6 +89,13 @@ def collide(
     separating : "refuse" or "pass"
         For bodies that do not approach each other: an error with the index of the first, or both
         bodies unchanged, with ``Collision.collided`` False.
+    history : bool
+        Keep the course of the contacts of a gathering.
+
+    Returns
+    -------
+    Collision or GatheringResult
+        Vectors have the shape (..., 3); of N bodies and C contacts (..., N, 3) and (..., C, 3).
 
     Raises
     ------
@@ -87,8 +119,13 @@ def collide(
     >>> collide(met).target_velocity.round(4)
     array([ 2.    , -0.1144,  0.    ])
     """
+    if type(encounter) is Gathering:
+        return _gathered(encounter, simulation, restitution, separating, history=history)
     if type(encounter) is not Encounter:  # a call takes longer than this test
         of_kind("encounter", encounter, Encounter, remedy="make one: Encounter(...)", meant=INSTEAD)
+    if history:
+        remedy = "simulation.run(encounter.scene, history=True)"
+        raise refuse("history", history, "belongs to a gathering", remedy)
     if simulation is not None:
         remedy = "or leave it out"
         of_kind("simulation", simulation, Simulation, remedy=remedy, meant=INSTEAD)
@@ -124,6 +161,28 @@ def collide(
     else:
         result = run_by_restitution(scene, e)
     return Collision.by(encounter, result, met, **about)
+
+
+def _gathered(
+    gathering: Gathering,
+    simulation: Simulation | None,
+    restitution: object,
+    separating: str,
+    *,
+    history: bool,
+) -> GatheringResult:
+    """Return the outcome of a gathering; its contacts have their own restitutions."""
+    from contactlab.collisions.gathered import collide_all  # encounters need none of this
+
+    if simulation is not None:
+        of_kind("simulation", simulation, Simulation, remedy="or leave it out", meant=INSTEAD)
+    if not (isinstance(restitution, float) and restitution == 1.0):
+        remedy = "give it to each contact: Touch(..., restitution={e})"
+        raise refuse("restitution", restitution, "belongs to each contact of a gathering", remedy)
+    if separating != "refuse":
+        rule = "belongs to encounters: contacts of a gathering may separate"
+        raise refuse("separating", separating, rule, "leave it out")
+    return collide_all(gathering, simulation, history=history)
 
 
 def _alone(given: object, restitution: Real, simulation: Simulation) -> None:

@@ -17,7 +17,7 @@ from contactlab.numeric.arrays import are_zeros, consecutive, merge_parts, sprea
 from contactlab.numeric.types import AnyArray, Mask, Real
 
 #: Entries of motions that are no numbers.
-NO_NUMBERS = ("status", "detail", "counters", "normal")
+NO_NUMBERS = ("status", "detail", "counters", "normal", "contacts")
 
 
 @attrs.frozen(kw_only=True, eq=False, slots=False)  # frozen slots are slow to fill

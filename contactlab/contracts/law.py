@@ -51,6 +51,8 @@ class Law(ABC):
        ``normal_spin``           whole-impact answers have ``normal_spin_change``, odd in the spin
        ``elliptic``              it holds on an ellipse: ``Pair`` has the radius of the circle as
                                  stiff, G* along t1, and ``cross_stiffness_ratio``
+       ``several_contacts``      an integrator marches the contacts of a gathering, the last axis
+                                 of a scene with ``links``, together: its motion has ``contacts``
        ========================  ====================================================
 
     4. ``needs`` are the words of the normal law, and the classes of the other laws, beside which

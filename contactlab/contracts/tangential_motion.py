@@ -9,6 +9,7 @@ import attrs
 
 from contactlab.contracts.batch_motion import BatchMotion
 from contactlab.contracts.contact import NormalContact
+from contactlab.contracts.contacts import Contacts
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.sampled_motion import Ends
 from contactlab.numeric.types import Mask, Real
@@ -78,6 +79,8 @@ class TangentialMotion(BatchMotion):
         The normal motion that came of the friction, if the friction changes it. Restitution,
         duration and maxima of the result are then those of this motion, and the energy books take
         the dissipation that the normal law declares. Motions of both together always have it.
+    contacts : Contacts or None
+        What each contact of a gathering went through; None of impacts of one contact.
     """
 
     slip_velocity_change: Any = attrs.field(metadata={"vectors": True})
@@ -85,6 +88,7 @@ class TangentialMotion(BatchMotion):
     shear_loss: Real = 0.0
     normal_spin_change: Real = attrs.field(default=0.0, metadata={"rare": True})
     normal: NormalMotion | Ends | None = None
+    contacts: Contacts | None = None
 
     @classmethod
     def merged(cls, parts: Sequence[tuple[slice | Mask, Self]], shape: tuple[int, ...]) -> Self:
@@ -96,6 +100,9 @@ class TangentialMotion(BatchMotion):
             As of ``BatchMotion.merged``.
         """
         motion = super().merged(parts, shape)
+        contacts = [(where, part.contacts) for where, part in parts]
+        if any(each is not None for _, each in contacts):
+            motion = attrs.evolve(motion, contacts=Contacts.merged(contacts, shape))
         normals = [(where, part.normal) for where, part in parts]
         if all(normal is None for _, normal in normals):
             return motion

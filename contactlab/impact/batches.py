@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.impact.kinetics import Motions
+from contactlab.impact.kinetics import Motions, batch_of
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import check_place, refuse
 from contactlab.numeric.types import Array, Index, Numbers
@@ -78,6 +78,9 @@ class Batches(Motions):
         for position, scene in enumerate(scenes):
             if not isinstance(scene, cls):
                 raise refuse(f"scenes[{position}]", scene, "must be a Scene")
+            if scene.links is not None:
+                remedy = "make one Gathering with arrays of velocities, gaps or numbers"
+                raise refuse(f"scenes[{position}]", scene, "is that of a gathering", remedy)
             if scene.shape:
                 remedy = "batches go one after another into a folder: sweep(scenes, into=...)"
                 raise refuse(f"scenes[{position}]", scene.shape, "must be a single impact", remedy)
@@ -150,6 +153,8 @@ class Batches(Motions):
             isinstance(part, slice) and self.shape and part == slice(0, self.shape[0])
         ):
             return self
+        if self.links is not None:
+            return self._gatherings(part)
         plain = self if self.encounter is None else self._with(encounter=None)
         taken: Self = batch.taken(plain, self.shape, part)
         if self.encounter is not None:
@@ -164,6 +169,20 @@ class Batches(Motions):
         count = np.shape(taken.index)
         spread = taken._evolve(normal_speed=np.full(count, taken.normal_speed))
         return spread.numbered(taken.index)
+
+    def _gatherings(self, part: Index) -> Self:
+        """Return the scene of some gatherings, whole: no contact is cut from its neighbours."""
+        shape = batch_of(self)
+        try:
+            found = np.shape(np.empty(shape, dtype=bool)[part])
+        except IndexError:
+            found = ()
+        if len(found) != 1:
+            rule = "would take contacts of a gathering apart"
+            raise refuse("part", part, rule, "give a slice or a mask of the gatherings")
+        taken: Self = batch.taken(self, shape, part)
+        object.__setattr__(taken, "shape", (*found, self.shape[-1]))
+        return taken
 
     def _varied_at(self, part: Index) -> tuple[tuple[str, Array], ...]:
         """Return the values of each entry that varies, of the impacts that ``part`` indexes."""

@@ -155,6 +155,24 @@ class Side(NamedTuple):
     sense: float
 
 
+class Reach(NamedTuple):
+    """A contact as one of its bodies has it.
+
+    Attributes
+    ----------
+    axes : three vectors
+        n, t1 and t2, by their components.
+    arm : vector
+        From the centre of mass to the contact, in m.
+    sense : float
+        1 if the body is the first of the contact, -1 if it is the second.
+    """
+
+    axes: Sequence[Vector]
+    arm: Vector
+    sense: float
+
+
 def sides(encounter: _Meeting, normal: Vector) -> list[Side]:
     """Return the bodies that move; a half-space does not."""
     found = []
@@ -189,6 +207,23 @@ def inverse_mass_of(bodies: Sequence[Side], axes: Sequence[Vector]) -> list[list
             for j in range(i + 1):
                 W[i][j] = W[j][i] = W[i][j] + dot(moment, turns[j])
     return W
+
+
+def coupling_of(body: Sphere | RigidBody, one: Reach, other: Reach) -> list[list[Any]]:
+    """Return the rows of the block of W in 1/kg by which one contact of a body moves another.
+
+    The block of a contact with itself is that of ``inverse_mass_of``.
+    """
+    rates = [cross(one.arm, axis) for axis in one.axes]
+    turns = turn_body(body, *(cross(other.arm, axis) for axis in other.axes))
+    sense = one.sense * other.sense
+    return [
+        [
+            sense * (dot(axis, along) / body.mass + dot(rate, turn))
+            for along, turn in zip(other.axes, turns, strict=True)
+        ]
+        for axis, rate in zip(one.axes, rates, strict=True)
+    ]
 
 
 def relative_velocity(encounter: _Meeting, bodies: Sequence[Side]) -> Vector:
@@ -269,7 +304,7 @@ def _tangents(normal: Vector) -> tuple[Vector, Vector]:
 
 
 def frame(encounter: _Meeting, bodies: Sequence[Side], normal: Vector) -> Frame:
-    """Return the frame with t1 along W_nt, or along the slip without coupling; bodies approach.
+    """Return the frame with t1 along W_nt, or along the slip without coupling.
 
     For an ellipse t1 is the axis that holds both, or else the major one.
     """
@@ -277,8 +312,6 @@ def frame(encounter: _Meeting, bodies: Sequence[Side], normal: Vector) -> Frame:
     W = inverse_mass_of(bodies, (normal, one, other))
     velocity = relative_velocity(encounter, bodies)
     approach = dot(velocity, normal)
-    if not every(approach >= LEAST):
-        raise encounter.separate()
     # vectors of the tangent plane are complex numbers
     coupling = W[0][1] + 1j * W[0][2]
     slip = dot(velocity, one) + 1j * dot(velocity, other)
@@ -414,7 +447,9 @@ def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
     """Return the scene in numbers; it keeps the inverse mass if any impact needs it."""
     shape, bodies = encounter.shape, sides(encounter, normal)
     axes, W, (speed, *slip), gap = frame(encounter, bodies, normal)
-    contact = _elastic(encounter, gap)
+    if not every(speed >= LEAST):
+        raise encounter.separate()
+    contact = elastic_numbers(encounter, gap)
     ways = inverse_mass.ways(W, speed, slip, contact.get("cross_stiffness_ratio", 1.0))
     central = ways == inverse_mass.CENTRAL
     aside: Any = abs(slip[1])
@@ -458,7 +493,7 @@ def _lost(bodies: Sequence[Side]) -> ValueError:
     raise AssertionError("spheres have a scene of their own")
 
 
-def _elastic(encounter: _Meeting, gap: Gap) -> dict[str, Any]:
+def elastic_numbers(encounter: _Meeting, gap: Gap) -> dict[str, Any]:
     """Return the entries of ``Pair`` that follow from the materials and the gap."""
     first, second = encounter.body.material, encounter.target.material
     compliance = normal_compliance(first) + normal_compliance(second)

@@ -268,7 +268,7 @@ class Encounter:
         to the target and along the slip, as three components of the batch shape. ``approach`` and
         ``slip`` are speeds in m/s, of the batch shape.
         """
-        n1, n2, n3 = normal = self._direction()
+        n1, n2, n3 = normal = self.unit_normal()
         if not self.of_spheres:
             return meeting_of_bodies(self, normal)
         u1, u2, u3 = difference(self.velocity, self.target_velocity)
@@ -282,7 +282,7 @@ class Encounter:
         along = (u1 * inverse, u2 * inverse, u3 * inverse)
         return Contact(normal, along, approach, slip)
 
-    def _direction(self) -> tuple[Any, Any, Any]:
+    def unit_normal(self) -> tuple[Any, Any, Any]:
         """Return the unit normal."""
         n1, n2, n3 = components(self.normal)
         length = square_root(n1 * n1 + n2 * n2 + n3 * n3)
@@ -317,7 +317,7 @@ class Encounter:
             If bodies separate.
         """
         if not self.of_spheres:
-            return scene_of_bodies(self, self._direction())
+            return scene_of_bodies(self, self.unit_normal())
         contact = self.meeting()
         if not every(contact.approach >= LEAST):
             raise self.separate()

@@ -14,6 +14,9 @@ from contactlab.numeric.arrays import chosen, quotient
 from contactlab.numeric.types import Array, Real
 from contactlab.numeric.vectors import components, dot, entry, hypotenuse, join_components, rows
 
+if TYPE_CHECKING:
+    from contactlab.impact.links import Links
+
 #: Groups of theory §14, where friction changes the approach.
 COUPLED = ("lam", "eta", "rho")
 #: Groups of theory §17, where bodies spin about the normal.
@@ -32,6 +35,7 @@ class Motions:
         shape: tuple[int, ...]
         planar: bool
         inverse_mass: Array | None
+        links: Links | None
         friction_coefficient: Real
         normal_speed: Real
         tangential_velocity: Any
@@ -152,7 +156,8 @@ class Motions:
             mass = 1.0 / inverse_mass.along(rows(self.inverse_mass), *along)
             pair = batch.change_entries(pair, tangential_mass=batch.lock_arrays(mass))
         slip = batch.spread(slip_speed(self) if not self.planar else self.slip_velocity, self.shape)
-        return self._with(tangential_velocity=slip, pair=pair, inverse_mass=None, planar=True)
+        alone = {"inverse_mass": None, "planar": True, "links": None}
+        return self._with(tangential_velocity=slip, pair=pair, **alone)
 
     def _with(self, **entries: object) -> Self:
         """Return this scene with other entries, of numbers that were checked before."""
@@ -263,6 +268,11 @@ def along_slip(scene: Motions, velocity: Real) -> Any:
         return velocity
     part = np.einsum("...i,...i->...", velocity, inverse_mass.unit_slip(scene.slip_velocity))
     return batch.plain(part)
+
+
+def batch_of(scene: Motions) -> tuple[int, ...]:
+    """Return the shape of what is solved by itself: without the contacts of a gathering."""
+    return scene.shape if scene.links is None else scene.shape[:-1]
 
 
 def slip_axes(scene: Motions) -> tuple[int, ...]:

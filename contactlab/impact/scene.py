@@ -33,6 +33,7 @@ from contactlab.numeric.vectors import entry, over
 
 if TYPE_CHECKING:
     from contactlab.impact.grid import GridParts
+    from contactlab.impact.links import Links
 
 #: Least kinetic energy of the normal motion, in J, and least tangential velocity, in m/s. Numbers
 #: computed from smaller values would have fewer than sixteen digits.
@@ -118,6 +119,9 @@ class Scene(Batches):
     of_slip : OfSlip, optional
         The function or table of the friction coefficient. A scene with other velocities has the
         numbers that follow; one with another friction coefficient has that.
+    links : Links, optional
+        How the contacts of a ``Gathering`` move one another; contacts are then the last axis.
+        ``collide`` answers such a scene, and nothing else does.
 
     Raises
     ------
@@ -157,6 +161,7 @@ class Scene(Batches):
     _options: Mapping[str, Any] = attrs.field(default=NOTHING, kw_only=True, repr=False)
     #: How friction follows from slip; None where it is given by numbers.
     _of_slip: OfSlip | None = attrs.field(default=None, eq=False, kw_only=True, repr=False)
+    links: Links | None = attrs.field(default=None, eq=False, repr=False, kw_only=True)
     #: Batch shape: () for one impact.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
     _index: Any = attrs.field(init=False, eq=False, repr=False)
@@ -185,6 +190,7 @@ class Scene(Batches):
         planar: bool = True,
         options: Mapping[str, object] = NOTHING,
         of_slip: OfSlip | None = None,
+        links: Links | None = None,
     ) -> None: ...
 
     def __attrs_post_init__(self) -> None:

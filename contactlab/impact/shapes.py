@@ -19,13 +19,13 @@ import numpy as np
 from contactlab.impact.material import Material
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.arrays import lock_arrays
-from contactlab.numeric.checks import POSITIVE, real, refuse
+from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, real, refuse
 from contactlab.numeric.names import SHAPES, function_told
 from contactlab.numeric.types import Array, Numbers, Real
 from contactlab.registration.bring import by_name
 from contactlab.registration.hooks import hookimpl
 
-__all__ = ["box", "disc", "ellipsoid", "rod"]
+__all__ = ["box", "disc", "ellipsoid", "flat_box", "flat_rod", "rod"]
 
 Maker = TypeVar("Maker", bound=Callable[..., tuple[RigidBody, Array]])
 
@@ -302,10 +302,12 @@ def box(
     crown = _crown(crown_radius, 0.5 * float(edges.max()))
     flush = int((np.abs(outward) < FLUSH).sum())
     if flush == 2:
-        raise refuse("normal", turn @ outward, "contact along a face of the box", "tilt the box")
+        remedy = "tilt the box; as it lands flat flat_box gives its corners for a Gathering"
+        raise refuse("normal", turn @ outward, "contact along a face of the box", remedy)
     if flush and crown == math.inf:
         rule = "contact along a line: an edge of the box touches"
-        raise refuse("normal", turn @ outward, rule, "tilt the box, or give crown_radius=")
+        remedy = "tilt the box, give crown_radius=, or flat_box gives both ends for a Gathering"
+        raise refuse("normal", turn @ outward, rule, remedy)
     contact = np.sign(outward) * (0.5 * edges - corner) + corner * outward
     curvature: dict[str, Any] = {"curvature_radius": corner}
     along = int(np.argmin(np.abs(outward)))
@@ -327,6 +329,106 @@ def box(
         **curvature,
     )
     return body, turn @ contact
+
+
+@function_told
+def flat_box(
+    *,
+    sides: Numbers,
+    corner_radius: float,
+    material: Material,
+    normal: Numbers,
+    reach: float,
+    axes: Numbers | None = None,
+    mass: float | None = None,
+) -> tuple[RigidBody, Array, Array]:
+    """Return a box that lands flat, contact vectors of its corners (K, 3) in m, and gaps (K,) in m.
+
+    They make the touches of a ``Gathering``: ``Touch("box", floor, 0.3, normal=normal, contact=c,
+    gap=g)`` of each. A face has four, an edge two, in the order of their gaps by the tilt.
+
+    Parameters
+    ----------
+    sides, corner_radius, material, mass
+        As of ``box``.
+    normal : array, shape (3,)
+        Into the plane that the box lands on.
+    reach : float
+        Corners whose gap is up to this distance in m touch, or may do so.
+    axes : array, shape (3, 3), optional
+        As of ``box``; a tilt opens gaps.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+    outward = _unit("normal", normal)
+    turn, edges, corner = _axes(axes), _three("sides", sides), _size("corner_radius", corner_radius)
+    seen = turn.T @ outward
+    toward = np.where(seen < 0.0, -1.0, 1.0)
+    body, _ = box(
+        sides=sides, corner_radius=corner_radius, material=material, normal=turn @ toward,
+        axes=axes, mass=mass,
+    )  # fmt: skip
+    signs = np.array([[x, y, z] for x in (1.0, -1.0) for y in (1.0, -1.0) for z in (1.0, -1.0)])
+    corners = (signs * toward * (0.5 * edges - corner)) @ turn.T + corner * outward
+    return body, *_in_reach(corners, outward, reach)
+
+
+@function_told
+def flat_rod(
+    *,
+    length: float,
+    radius: float,
+    material: Material,
+    normal: Numbers,
+    axis: Numbers,
+    reach: float,
+    end_radius: float | None = None,
+    mass: float | None = None,
+) -> tuple[RigidBody, Array, Array]:
+    """Return a rod that lands on its side, contact vectors of its rounded ends, and gaps in m.
+
+    The vectors have the shape (K, 3), the gaps (K,): two ends, or one if the other is out of reach.
+    Ends are half spheres; the line of contact between them is left out.
+
+    Parameters
+    ----------
+    length, radius, material, end_radius, mass
+        As of ``rod``.
+    normal : array, shape (3,)
+        Into the plane that the rod lands on.
+    axis : array, shape (3,)
+        Direction of the rod; a tilt opens a gap.
+    reach : float
+        Ends whose gap is up to this distance in m touch, or may do so.
+
+    Raises
+    ------
+    ValueError
+        If ends are no half spheres, or a number is out of range.
+    """
+    outward, along = _unit("normal", normal), _unit("axis", axis)
+    if end_radius is not None and end_radius != radius:
+        rule = "must be radius where a rod lands on its side: its dome does not reach the plane"
+        raise refuse("end_radius", end_radius, rule, "leave it out")
+    body, _ = rod(
+        length=length, radius=radius, material=material, normal=along, axis=axis, mass=mass
+    )
+    centres = np.array([1.0, -1.0])[:, None] * along * (0.5 * length - radius)
+    return body, *_in_reach(centres + radius * outward, outward, reach)
+
+
+def _in_reach(contacts: Array, outward: Array, reach: float) -> tuple[Array, Array]:
+    """Return the contacts whose gap is in reach, the nearest first, and their gaps in m."""
+    least = real("reach", reach, rule=NON_NEGATIVE, remedy="in m, such as 1e-5")
+    depth = contacts @ outward
+    gaps = depth.max() - depth
+    gaps = np.where(gaps < FLUSH * np.abs(contacts).max(), 0.0, gaps)
+    order = np.argsort(gaps, kind="stable")
+    order = order[gaps[order] <= least]
+    return contacts[order], gaps[order]
 
 
 @function_told

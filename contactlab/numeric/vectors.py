@@ -36,10 +36,12 @@ def vector(unit: str, *, default: object = attrs.NOTHING) -> Any:
     )
 
 
-def _check_vectors(value: Numbers, field: attrs.Attribute[object]) -> Array:
-    """Return vectors, shape (..., 3), as a read-only copy."""
+def _check_vectors(value: Numbers | None, field: attrs.Attribute[object]) -> Array | None:
+    """Return vectors, shape (..., 3), as a read-only copy; None where that is the default."""
     if value is NOTHING:
         return ZERO
+    if value is None and field.default is None:
+        return None
     numbers: Any = value.tolist() if type(value) is np.ndarray and value.shape == (3,) else value
     if type(numbers) in (list, tuple) and len(numbers) == 3:  # three plain numbers, the fast path
         x, y, z = numbers

@@ -182,7 +182,7 @@ def judge_energy(motion: Motion, normal: NormalMotion) -> Motion:
     if not some(faster):
         return motion
     sentence = "Without friction the bodies part {:.4g} times as fast as they met."
-    return motion.failing(faster, Status.UNBALANCED, _sentences(sentence, parting / speed))
+    return motion.failing(faster, Status.UNBALANCED, tell_each(sentence, parting / speed))
 
 
 def judge_books(
@@ -270,11 +270,11 @@ def _mark_imbalance(
          "Off by {:.3g} times the energy at the start.", lambda: (imbalance / start,)),
     ):  # fmt: skip
         if some(where):
-            motion = motion.failing(where, Status.UNBALANCED, _sentences(sentence, *numbers()))
+            motion = motion.failing(where, Status.UNBALANCED, tell_each(sentence, *numbers()))
     return motion, imbalance / start
 
 
-def _sentences(sentence: str, *numbers: Real) -> str | NDArray[np.object_]:
+def tell_each(sentence: str, *numbers: Real) -> str | NDArray[np.object_]:
     """Return the sentence of each impact with its numbers filled in, in the shape of the first."""
     shape = np.shape(numbers[0])
     if not shape:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Protocol
 
+import numpy as np
 from matplotlib.axes import Axes
 
 from contactlab.numeric.checks import refuse
@@ -37,17 +38,29 @@ def draw_history(axes: Axes | None, history: Forces, *, width: Width | None = No
     force, time = history.unit("normal_force"), history.unit("time")
     with on_axes(axes, width) as drawn:
         zero_line(drawn)
-        forces = (
-            ("normal force", history.normal_force),
-            ("tangential force", history.tangential_force),
-        )
-        for number, (name, column) in enumerate(forces):
-            curves = drawn.plot(history.time, column, color=curve_colour(number))
+        for number, (name, times, column) in enumerate(_curves(history)):
+            curves = drawn.plot(times, column, color=curve_colour(number))
             curves[0].set_label(name)
         drawn.set_xlabel(f"time ({time})")
         drawn.set_ylabel(f"force ({force})")
         drawn.legend()
     return drawn
+
+
+def _curves(history: Forces) -> Iterator[tuple[str, Array, Array]]:
+    """Yield name, times and force of each curve; of several contacts those of each.
+
+    The tangential force of a contact among several is the length of its vector.
+    """
+    time, normal, tangential = history.time, history.normal_force, history.tangential_force
+    if tangential.ndim < 3:
+        yield "normal force", time, normal
+        yield "tangential force", time, tangential
+        return
+    for k in range(normal.shape[1]):
+        when = time if time.ndim == 1 else time[:, k]
+        yield f"contact {k}, normal force", when, normal[:, k]
+        yield f"contact {k}, tangential force", when, np.hypot(*tangential[:, k].T)
 
 
 @contextmanager

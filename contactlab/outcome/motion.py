@@ -115,6 +115,7 @@ class Motion(TangentialMotion):
             status=lock_arrays(tangential.status),
             detail=lock_arrays(tangential.detail),
             counters=tangential.counters,
+            contacts=getattr(tangential, "contacts", None),
         )
 
 

@@ -27,6 +27,7 @@ from contactlab.registry import composition
 from contactlab.registry.acceptance import accept
 from contactlab.registry.bound import bound_laws
 from contactlab.registry.law_words import name_of, of_taken
+from contactlab.solve.solve import refuse_gathering
 from contactlab.solve.unfollowed import refusal
 
 #: Columns of a path that the laws return.
@@ -184,6 +185,7 @@ def load_path(
     array([0.697, 1.   ])
     """
     of_kind("scene", scene, Scene, remedy="make one: Scene(...)")
+    refuse_gathering(scene)
     first, second, scene = _laws(scene, normal, tangential)
     laws = first, second
     points, origin, scene = _path(scene, approach, displacement, time)

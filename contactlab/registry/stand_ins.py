@@ -10,6 +10,9 @@ from contactlab.registration.names import KINDS
 from contactlab.registry.composition import FOR_COUPLED, RIGID, Laws, misfit
 from contactlab.registry.registry import REGISTRY
 
+#: What integrators offer that march the contacts of gatherings.
+SEVERAL = "several_contacts"
+
 
 def stand_in(laws: Laws, part: Scene) -> Laws:
     """Return the laws of impacts in which friction changes the approach.
@@ -41,15 +44,19 @@ def _no_answer(laws: Laws, part: Scene) -> str | None:
     name, reason = _name(laws.tangential), None
     if turns and "vectors" not in able.tangential_claims:
         reason = "the law follows slip along one line"
-    elif able.coupled is not None:
+    elif able.coupled is not None and part.links is None:
         return None
     elif able.causal is None:
         reason = "the law needs the normal motion first"
     elif able.marcher is None:
         name, reason = _name(laws.integrator), "the integrator needs the normal motion first"
+    elif part.links is not None and SEVERAL not in laws.integrator.offers:
+        name, reason = _name(laws.integrator), "the integrator marches each contact by itself"
     if reason is None:
         return None
     where = "the slip turns" if turns else "friction affects the approach"
+    if part.links is not None:
+        where = "several contacts act at once"
     return f"{name}: has no answer, as {where} and {reason}"
 
 

@@ -131,7 +131,7 @@ def _bound_alike(given: Laws, laws: Laws, scene: Scene) -> None:
 def _batches(scenes: Scene | Iterable[Scene], size: int) -> Iterator[Scene]:
     """Yield batches of one axis; single impacts are joined, ``size`` in a batch."""
     if isinstance(scenes, Scene):
-        one_axis(scenes.shape)
+        one_axis(scenes)
         yield scenes
         return
     singles: list[Scene] = []
@@ -143,7 +143,7 @@ def _batches(scenes: Scene | Iterable[Scene], size: int) -> Iterator[Scene]:
             yield Scene.stack(singles)
             singles = []
         if scene.shape:
-            one_axis(scene.shape)
+            one_axis(scene)
             yield scene
     if singles:
         yield Scene.stack(singles)

@@ -306,7 +306,7 @@ class Simulation:
             rule = "is a grid in parts, which needs a folder"
             raise refuse("scenes", scenes, rule, "give into=folder, or Scene.grid")
         batch = scenes if isinstance(scenes, Scene) else Scene.stack(scenes)
-        one_axis(batch.shape)
+        one_axis(batch)
         laws, batch = bound(self.laws, batch)
         ways = solve.accept_scene(laws, batch)
         with follow(progress, "impacts") as count:
@@ -378,10 +378,13 @@ def _result(
 def _scene(scene: object) -> Scene:
     """Return ``scene``, or refuse an object of another class."""
     if type(scene) is Scene:
+        solve.refuse_gathering(scene)
         return scene
     from contactlab.impact.encounter import Encounter  # needed for the refusal only
+    from contactlab.impact.gathering import Gathering
 
     meant: dict[type, str] = {str: FOR_FILES, Path: FOR_FILES, Encounter: FOR_BODIES}
+    meant[Gathering] = "several contacts at once: collide(gathering, simulation)"
     found: Scene = of_kind("scene", scene, Scene, remedy="make one: Scene(...)", meant=meant)
     return found
 

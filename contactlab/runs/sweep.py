@@ -20,6 +20,7 @@ from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import PlanColumns
 from contactlab.registry.composition import Laws
 from contactlab.runs.pieces import Part, Piece, leave_open, solve_chunk
+from contactlab.solve.solve import refuse_gathering
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -115,11 +116,12 @@ def _kept(
     return kept_in(keep, laws, scene, block)
 
 
-def one_axis(shape: tuple[int, ...]) -> None:
-    """Refuse scenes that are no batch of one axis."""
-    if len(shape) != 1:
+def one_axis(scene: Scene) -> None:
+    """Refuse a scene that is no batch of one axis."""
+    refuse_gathering(scene)
+    if len(scene.shape) != 1:
         rule = "must be a sequence, or a one-dimensional batch"
-        raise refuse("scenes", shape, rule, "for one impact use run")
+        raise refuse("scenes", scene.shape, rule, "for one impact use run")
 
 
 def _gaps(pieces: Iterable[Piece], size: int) -> list[Chunk]:

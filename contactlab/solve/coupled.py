@@ -36,6 +36,8 @@ CANCELS = 1e-4
 #: to a tenth of it, where abs(lam) > 1: of V2 over max(1, V2) and psi2 over max(1, psi1), in 1,200
 #: random planar impacts by 50 springs and 200 steps.
 NEAR_SINGULAR = ((0.1, 0.07), (0.01, 0.4), (0.001, 1.2))
+#: Springs of gatherings that are solved at a time.
+IN_CACHE = 25_000
 #: Least slip at which cautions are ask, over the larger of two.
 LITTLE = 1e-3
 #: Statuses by which a law ends a whole batch: its impacts are then solved one by one.
@@ -76,10 +78,13 @@ class Coupled(Way):
         """Return the columns of the plan: who answers, and the declared errors."""
         scene, laws = self.scene, self.laws
         law, integrator = laws.capability.coupled, laws.integrator
+        law = law if scene.links is None else None
         code = chosen(separates(normal), MARCHED if law is None else 0, ENDLESS)
         errors: object
         if type(normal) is FailedMotion:  # no law is asked about an approach that is not known
             errors = Errors()
+        elif scene.links is not None:  # what laws declare is of one contact
+            code, errors = np.full(scene.shape, MARCHED), Errors()
         elif law is None:
             errors = integrator.errors(scene, normal, laws.tangential)
         else:
@@ -96,22 +101,27 @@ class Coupled(Way):
                 scene.shape, normal.status, normal.detail, axes=kinetics.slip_axes(scene)
             )
         motion = self._ended_as_alone(self._answer(normal, recorder), normal)
-        if recorder is None and scene.shape not in ((), (1,)):
+        if recorder is None and kinetics.batch_of(scene) not in ((), (1,)):
             return self._apart(motion)
         return motion
 
     def _answer(self, normal: NormalMotion, observer: Observer | None) -> Motion:
         """Return the motion that law or integrator answers, or raise LawFaultError."""
         scene, laws, able = self.scene, self.laws, self.laws.capability
-        blamed = laws.integrator if able.coupled is None else able.coupled
+        whole = able.coupled is not None and scene.links is None
+        blamed: Any = able.coupled if whole else laws.integrator
         with faults.blaming(blamed):
-            if able.coupled is not None:
+            if whole:
+                assert able.coupled is not None
                 accuracy = laws.integrator.accuracy
                 answer = able.coupled.solve_coupled(scene, normal, accuracy, observer)
             else:  # other laws are stood in for
                 assert able.marcher is not None
                 assert able.causal is not None
                 answer = able.marcher.integrate_coupled(scene, normal, able.causal, observer)
+                if scene.links is not None and answer.contacts is None:
+                    told = "the answer is that of each contact alone, and not of the gathering"
+                    raise faults.LawFaultError(Status.MALFORMED, faults.sentence(blamed, told, 1))
             moved = check_motion(answer, scene.shape, kinetics.slip_axes(scene))
             if moved.normal is None and np.any(np.asarray(moved.status) == Status.SUCCESS):
                 told = "the answer has not the ends of its normal motion"
@@ -138,7 +148,7 @@ class Coupled(Way):
         again = np.isin(statuses, np.array(GIVEN_UP, dtype=object))
         if not again.any():
             return motion
-        part = self.taking(again)
+        part = self.taking(again if self.scene.links is None else again.any(axis=-1))
         size, shape = part.scene.shape[0], self.scene.shape
         if size == shape[0]:
             _, repeated = part.solve_parts(halves(size, most=ONE_BY_ONE))
@@ -180,6 +190,14 @@ class Coupled(Way):
         scene = self.scene
         slip = spread(slip, scene.shape)
         return attrs.evolve(scene.central, tangential_velocity=slip).numbered(scene.index)
+
+    def most_at_a_time(self) -> float:
+        """Return how many impacts, or gatherings, have springs that stay in the cache."""
+        if self.scene.links is None:
+            return self.at_a_time
+        law: Any = self.laws.tangential
+        springs = getattr(law, law.resolution or "", 1)
+        return max(1.0, IN_CACHE // (self.scene.shape[-1] * max(springs, 1)))
 
     def how(self) -> str:
         """Return words on how the normal motion is found."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import refuse
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import PlanColumns
@@ -20,6 +21,7 @@ from contactlab.solve.way import Way
 
 def ways(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
     """Return the ways in which a scene is solved; ``as_one`` is that of ``kinetics.parts``."""
+    refuse_gathering(scene)
     found: list[Way] = []
     # Where slip turns laws are asked first: their refusal and its remedy hold for the batch.
     for where, part in reversed(kinetics.parts(scene, as_one=as_one)):
@@ -39,6 +41,13 @@ def ways(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
 
         return [each for way in found for each in with_resolutions(way, as_one=as_one)]
     return found
+
+
+def refuse_gathering(scene: Scene) -> None:
+    """Refuse the scene of a gathering, which is no batch of impacts."""
+    if scene.links is not None:
+        rule = "is that of a gathering, whose contacts move one another"
+        raise refuse("scene", scene, rule, "collide(gathering, simulation) answers it")
 
 
 def accept_scene(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:

@@ -107,6 +107,10 @@ class Way(Entries, ABC):
     def how(self) -> str:
         """Return words on how the normal motion is found."""
 
+    def most_at_a_time(self) -> float:
+        """Return how many impacts are solved at a time."""
+        return self.at_a_time
+
     def one_by_one(self, masks: Masks) -> Mask:
         """Return the impacts that a law takes one by one, if it does."""
         return masks.marched
@@ -139,17 +143,18 @@ class Way(Entries, ABC):
     def outcome(self, history: bool | str, recorder: Recorder | None) -> tuple[PlanColumns, Motion]:
         """Return columns of the plan, and motion; a law that raises costs its impacts only."""
         scene, laws = self.scene, self.laws
-        divisible = bool(scene.shape) and recorder is None and math.prod(scene.shape) > 1
-        if divisible and scene.shape[0] > self.at_a_time:
-            return self.solve_parts(blocks(scene.shape[0], int(self.at_a_time)))
+        batch = kinetics.batch_of(scene)  # a gathering is never divided
+        divisible = bool(batch) and recorder is None and math.prod(batch) > 1
+        if divisible and scene.shape[0] > (most := self.most_at_a_time()):
+            return self.solve_parts(blocks(scene.shape[0], int(most)))
         try:
             prepared = self.prepare(history)
             if divisible and isinstance(prepared.normal, FailedMotion):
-                return self.solve_parts(halves(*scene.shape, most=1))
+                return self.solve_parts(halves(*batch, most=1))
             motion = self.solve(prepared, recorder)
         except faults.LawFaultError as fault:
             if divisible:
-                return self.solve_parts(halves(*scene.shape, most=1))
+                return self.solve_parts(halves(*batch, most=1))
             nothing = Motion.nothing(
                 scene.shape, fault.status, fault.detail, axes=kinetics.slip_axes(scene)
             )
@@ -164,6 +169,10 @@ class Way(Entries, ABC):
         ):
             return columns, motion
         motion = judge_energy(sound(motion, coupled=bare), normal)
+        if scene.links is not None:
+            from contactlab.outcome.gathering_energy import judge_gathering  # few scenes need it
+
+            return columns, judge_gathering(motion, scene, bound, self.cancels)
         motion, off = judge_books(
             motion, scene, bound, self.cancels, coupled=self.both, restitution_error=error
         )

@@ -35,6 +35,7 @@ from contactlab.impact import kinetics
 from contactlab.impact.hertz import DURATION_CONSTANT
 from contactlab.numeric.arrays import chosen, lock_arrays, spread_object
 from contactlab.numeric.types import Mask, Real
+from contactlab_laws.march.contacts import TouchingContacts, joined, whole
 from contactlab_laws.march.division import resolving
 
 #: A contact that lasts longer than so many approaches without friction is given up, each as long as
@@ -62,11 +63,25 @@ def needed_steps(scene: Scene, normal: NormalMotion, law: CausalTangentialLaw) -
     W: Any = scene.inverse_mass
     normal_stiffness = 2.0 * scene.pair.effective_modulus * normal.maximum_radius
     tangential = judges.stiffness_of(law, normal.scene, normal)
+    if scene.links is not None:
+        return _needed_by_all(scene, normal, law, (normal_stiffness, tangential))
     inertia = W[..., 1, 1]
     if not scene.planar:
         inertia = inertia + scene.pair.cross_stiffness_ratio * W[..., 2, 2]
     omega = np.sqrt(normal_stiffness * W[..., 0, 0] + tangential * inertia)
     return resolving(omega * _duration(normal) * deepest(scene) ** 0.1, law)
+
+
+def _needed_by_all(
+    scene: Scene, normal: NormalMotion, law: CausalTangentialLaw, stiffness: tuple[Real, Real]
+) -> Real:
+    """Return the least steps in the shortest contact of a gathering, for each of its contacts."""
+    assert scene.links is not None
+    pressed, dragged = stiffness
+    sides = pressed, dragged, np.asarray(scene.pair.cross_stiffness_ratio) * dragged
+    wide = np.stack([np.broadcast_to(each, scene.shape) for each in sides], axis=-1)
+    omega = np.sqrt(scene.links.fastest(wide * (deepest(scene) ** 0.2)[..., None]))
+    return resolving(np.broadcast_to(omega * _counted(scene, normal), scene.shape), law)
 
 
 def _ended(normal: NormalMotion) -> Mask:
@@ -86,8 +101,17 @@ def _duration(normal: NormalMotion) -> Any:
     return np.where(ended, normal.duration, np.minimum(normal.duration, as_deep))
 
 
+def _counted(scene: Scene, normal: NormalMotion) -> Any:
+    """Return the duration in s that is divided in steps: of a gathering that of the shortest."""
+    duration = _duration(normal)
+    return duration if scene.links is None else np.min(duration, axis=-1, keepdims=True)
+
+
 def deepest(scene: Scene) -> Any:
     """Return a bound of zeta^2.5, the energy in the normal contact over that of the approach."""
+    if scene.links is not None:
+        approach = 0.5 * scene.pair.normal_mass * np.square(scene.normal_speed)
+        return np.clip(scene.links.energy / approach, 1.0, DEEPEST)
     unmoved = 0.0 * np.asarray(scene.slip_velocity)
     energy, _, _ = kinetics.energies(scene, scene.normal_speed, unmoved)
     alone = 0.5 * scene.pair.normal_mass * np.square(scene.normal_speed)
@@ -115,7 +139,7 @@ def march_coupled(
     if not np.any(possible):
         return TangentialMotion.nothing(scene.shape, *refused, axes=kinetics.slip_axes(scene))
     divided = divide(scene, normal, count, usual)
-    if observer is None:
+    if observer is None and scene.links is None:  # it follows single contacts
         from contactlab_laws.springs import compiled  # it takes springs alone
 
         motion = compiled.march(scene, normal, law, divided, refused)
@@ -156,7 +180,7 @@ def divide(scene: Scene, normal: NormalMotion, count: Real, usual: float) -> Div
     # steps raised for a contact that grows without end are no reason to follow it longer
     lasting = np.where(_ended(normal), count, np.minimum(count, usual))
     with np.errstate(invalid="ignore"):
-        step = np.where(np.isfinite(count), _duration(normal) / np.asarray(count), math.nan)
+        step = np.where(np.isfinite(count), _counted(scene, normal) / np.asarray(count), math.nan)
     return Division(step, np.ceil(LEADING * np.asarray(count)), longest, longest * lasting)
 
 
@@ -203,12 +227,17 @@ class _March:
             return float(value) if plain else np.array(np.broadcast_to(value, scene.shape))
 
         self.step, self.leading, self.longest, self.most = map(entry, divided)
+        self.links, self.contacts = scene.links, None
+        if self.links is not None:
+            self.contacts = TouchingContacts(scene, self.links)
+            self.most = entry(self.contacts.most_steps(_duration(normal), self.step))
         W: Any = scene.inverse_mass
         size = 1 + self.axes
         self.W = [[entry(W[..., i, j]) for j in range(size)] for i in range(size)]
         slip = np.asarray(scene.slip_velocity)
         sides = [slip] if scene.planar else [slip[..., 0], slip[..., 1]]
-        self.before = [entry(each) for each in (scene.normal_speed, *sides)]
+        speed: Any = scene.normal_speed if self.links is None else self.links.velocity[..., 0]
+        self.before = [entry(each) for each in (speed, *sides)]
         self.change: list[Any] = [0.0 * each for each in self.before]
         zero = self.change[0]
         self.elastic = "elastic_hertz" in normal.claims
@@ -249,7 +278,13 @@ class _March:
         zero = self.change[0]
         contact = NormalContact(zero, zero, zero, zero)
         time, approach = zero, zero
-        pressure, force = zero, [zero] * self.axes
+        if self.contacts is not None:
+            approach = -self.contacts.links.gap
+            if np.any(self.contacts.links.loaded):
+                approach, contact, state = self.contacts.laid(
+                    (alone, law), self.normal, (memory, state), self.step, shares=self.shares
+                )
+        pressure, force = contact.force, [zero] * self.axes
         step = zero  # of the step before
         many = bool(self.shape)  # a law may not change an array of many impacts
         while True:
@@ -318,7 +353,14 @@ class _March:
             again = going & (velocity[0] > 0.0) & (velocity[0] + kick[0] <= 0.0)
             self.compressions = self.compressions + again
             self.duration = self.duration + step * going
-            if self.elastic and (self.shape or not touching):
+            if self.contacts is not None:
+                acting = (pressure * touching, *(each * touching for each in force))
+                flown = self.contacts.after(
+                    step, acting, (going, self.alive), (time, approach, velocity[0])
+                )
+                going, flight = flown
+                time, approach = time + flight, approach + velocity[0] * flight
+            elif self.elastic and (self.shape or not touching):
                 self._note_parting(self.alive & np.logical_not(touching), time, approach, drifting)
             self.alive = going
             if not self.elastic and np.any(again):
@@ -329,6 +371,8 @@ class _March:
                 sentence = faults.sentence(law, "velocity is not finite", self.steps)
                 return self.fail(Status.NON_FINITE, sentence, self.alive)
             late = (self.steps >= self.most) & self.alive
+            if self.contacts is not None:
+                late = late | (self.contacts.too_often & self.alive)
             if np.any(late):
                 self._give_up(late)
                 if not np.any(self.alive):
@@ -343,7 +387,7 @@ class _March:
     def _count_turns(self, back: Mask) -> None:
         """Count turns that tension made, and give up impacts that had too many."""
         self.pulls = self.pulls + back
-        held = self.pulls >= MOST_PULLS
+        held = self._whole(self.pulls >= MOST_PULLS)
         if np.any(held):
             sentence = f"Adhesion holds the bodies: it pulled them back {MOST_PULLS} times."
             self.fail(Status.NOT_SEPARATED, sentence, held & self.alive)
@@ -351,6 +395,10 @@ class _March:
 
     def _give_up(self, late: Mask) -> None:
         """Give up impacts that last too long."""
+        if self.contacts is not None:
+            self.fail(Status.NOT_SEPARATED, self.contacts.told(late), late)
+            self.alive = np.logical_and(self.alive, np.logical_not(late))
+            return
         count = int(np.max(self.compressions, where=late, initial=1))
         longest = float(np.max(self.longest, where=late, initial=LONGEST))
         self.fail(Status.NOT_SEPARATED, tell_too_long(longest, count), late)
@@ -368,7 +416,7 @@ class _March:
 
     def _leave_unanswered_out(self, settled: Mask, force: list[Real]) -> list[Real]:
         """Mark impacts to which the law has no answer, and return the forces of the others."""
-        lost = self.alive & ~np.broadcast_to(settled, self.shape)
+        lost = self._whole(self.alive & ~np.broadcast_to(settled, self.shape))
         sentence = faults.sentence(self.law, "no division into stick and slip found", self.steps)
         if np.any(lost):
             self.fail(Status.UNSETTLED, sentence, lost)
@@ -405,14 +453,24 @@ class _March:
         both = np.broadcast_to(force, (*self.shape, 2))
         return [both[..., 0], both[..., 1]] if self.shape else both.tolist()
 
-    def _kick(self, pressure: Real, force: list[Real], step: Real) -> list[Real]:
+    def _kick(
+        self, pressure: Real | NDArray[np.floating], force: list[Real], step: Real
+    ) -> list[Real]:
         """Return W (P, F) dt, the velocities that a step takes."""
-        each = [pressure, *force]
+        each: list[Any] = [pressure, *force]
+        if self.links is not None:
+            moved = self.links.kick(joined(each, self.shape))
+            return [step * moved[..., k] for k in range(3)]
         return [step * sum(w * f for w, f in zip(row, each, strict=True)) for row in self.W]
+
+    def _whole(self, where: Mask) -> Any:
+        """Return a mask; of gatherings with all contacts where one is marked."""
+        return where if self.contacts is None else whole(where)
 
     def fail(self, status: Status, detail: object, where: Mask) -> None:
         """Mark impacts as failed."""
         if self.shape:
+            where = self._whole(where)
             self.status[where], self.detail[where] = status, detail
         else:
             self.status, self.detail = status, detail
@@ -431,4 +489,5 @@ class _March:
             status=self.status,
             detail=self.detail,
             counters={"steps": self.steps},
+            contacts=None if self.contacts is None else self.contacts.told_of(self.loss),
         )

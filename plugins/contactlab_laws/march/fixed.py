@@ -122,6 +122,7 @@ class FixedSteps(CoupledIntegrator):
     """Even steps over the contact's duration, under any normal law; a subclass samples them."""
 
     resolution: ClassVar[str | None] = "steps"
+    offers: ClassVar[frozenset[str]] = frozenset({"several_contacts"})
     usual_resolution: ClassVar[float | None] = 200
     needs: ClassVar[frozenset[type]] = frozenset({SteppedTangentialLaw})
 

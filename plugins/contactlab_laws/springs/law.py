@@ -29,6 +29,7 @@ from contactlab.contracts import (
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Rule, choice, count, flag, quantity, refuse
+from contactlab.numeric.taken import ByIndex
 from contactlab.numeric.types import Real
 from contactlab_laws.compiled import library, told
 from contactlab_laws.differences import table as differences
@@ -150,6 +151,8 @@ class Springs(ProfileLaw, CausalTangentialLaw):
         e = getattr(normal.law, "restitution", None) if rate is None else -rate / scene.normal_speed
         if e is None or (rate is None and not self.table):
             return ()
+        if isinstance(e, ByIndex):
+            e = e.at(scene.index)
         from contactlab_laws.viscoelastic import whole_impacts  # springs need no table
 
         return whole_impacts.look_up(scene, e, beyond=rate is not None)

@@ -1,0 +1,387 @@
+"""The outcome of a gathering: velocities of all bodies, and what each contact went through."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.collisions.gathering_plan import MICRON, GatheringPlan, gathering_plan
+from contactlab.contracts.contact import NormalContact
+from contactlab.contracts.status import Status, succeeded
+from contactlab.contracts.tangential_motion import Sample
+from contactlab.impact.gathering import Body, Gathering
+from contactlab.impact.gathering_scene import SPARSE
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import refuse
+from contactlab.numeric.names import attributes_told
+from contactlab.numeric.taken import ByIndex
+from contactlab.numeric.types import Array, Real
+from contactlab.outcome.answer import Answer, statuses_told
+from contactlab.outcome.columns import json_value
+from contactlab.outcome.energy import EnergyLedger
+from contactlab.outcome.gathering_energy import gathering_ledger
+from contactlab.outcome.history import NO_HISTORY, History, NoHistory, Recorder
+from contactlab.outcome.motion import Motion, without_failures
+from contactlab.registry import composition
+from contactlab.registry.acceptance import accept
+from contactlab.registry.composition import Laws, versions
+from contactlab.runs.simulation import Simulation
+from contactlab.solve.coupled import Coupled
+
+#: Numbers of a result for each contact, by name and unit.
+OF_CONTACTS = (
+    ("normal_velocity", "m/s"), ("first_touch", "s"), ("last_touch", "s"), ("touches", "1"),
+    ("duration", "s"), ("maximum_force", "N"), ("maximum_radius", "m"), ("friction_work", "J"),
+    ("shear_loss", "J"), ("normal_loss", "J"),
+)  # fmt: skip
+#: Vectors for each body, and for each contact.
+VECTORS_OF_BODIES = (("velocity", "m/s"), ("spin", "rad/s"))
+VECTORS_OF_CONTACTS = (("impulse", "N s"), ("slip_velocity", "m/s"))
+
+
+@attributes_told
+@attrs.frozen(kw_only=True, eq=False, repr=False, slots=False)
+class GatheringResult(Answer):
+    """All bodies after a gathering of N bodies at C contacts, in the batch shape ``(...)``.
+
+    ``result["ball"]`` is the body of that name or place as it moves afterwards.
+
+    Attributes
+    ----------
+    gathering : Gathering
+    simulation : Simulation or None
+        The laws; None where the restitutions of the contacts stand for them.
+    laws : mapping of str to str
+        Names of the three laws with their versions.
+    run_time : float
+        Wall-clock time in s; of a batch, for all its gatherings.
+    history : History or NoHistory
+        Only on request; its columns have an axis of contacts.
+    """
+
+    gathering: Gathering
+    simulation: Simulation | None
+    laws: Mapping[str, str]
+    run_time: float = attrs.field(metadata={"unit": "s"})
+    history: History | NoHistory = attrs.field(default=NO_HISTORY, repr=False)
+    _way: Coupled = attrs.field(repr=False)
+    _motion: Motion = attrs.field(repr=False)
+
+    @property
+    def _scene(self) -> Scene:
+        return self._way.scene
+
+    @cached_property
+    def plan(self) -> GatheringPlan:
+        """What is computed, what is left out, and the cautions; ``per_micron`` when it is read."""
+        return _plan(self.gathering, self.simulation, self._way, self._motion, bool(self.history))
+
+    def _shaped(self, value: Real, *trailing: int) -> Any:
+        """Return what each gathering has in the batch shape."""
+        return np.asarray(value).reshape(*self.gathering.shape, *trailing)
+
+    def _of_contacts(self, value: Real, *trailing: int) -> Array:
+        """Return what each contact has in the batch shape, NaN of gatherings that failed."""
+        lost = np.where(self._motion.status == Status.SUCCESS, 0.0, np.nan)
+        whole = np.broadcast_to(value, (*self._scene.shape, *trailing))
+        lost = lost.reshape(*lost.shape, *(1 for _ in trailing))
+        return np.asarray(self._shaped(whole + lost, self._scene.shape[-1], *trailing))
+
+    def _told(self, name: str, *trailing: int) -> Array:
+        """Return an entry of the contacts that the march tells."""
+        told = self._motion.contacts
+        value = np.nan if told is None else getattr(told, name)
+        return self._of_contacts(value, *trailing)
+
+    @cached_property
+    def _after(self) -> tuple[Array, Array]:
+        """Velocities and spins of the bodies, shape (..., N, 3)."""
+        assembly, told = self.gathering.assembly, self._motion.contacts
+        bodies = len(self.gathering.bodies)
+        if told is None:
+            nothing = np.full((*self.gathering.shape, bodies, 3), np.nan)
+            return nothing, nothing
+        lost = np.where(self._motion.status == Status.SUCCESS, 0.0, np.nan)[:, 0]
+        vectors = assembly.after(told.impulse, told.pushed[:, 0] + lost)
+        velocity, spin = (each + lost[:, None, None] for each in vectors)
+        return self._shaped(velocity, bodies, 3), self._shaped(spin, bodies, 3)
+
+    @property
+    def velocity(self) -> Array:
+        """Velocities of the centres of mass, shape (..., N, 3), in m/s."""
+        return self._after[0]
+
+    @property
+    def spin(self) -> Array:
+        """Spins, shape (..., N, 3), in rad/s."""
+        return self._after[1]
+
+    def __getitem__(self, body: str | int) -> Body:
+        """Return a body by its name or place, with its velocity and spin after the impact."""
+        names: Any = self.gathering.names or range(len(self.gathering.bodies))
+        if isinstance(body, bool) or body not in names:
+            known = ", ".join(map(repr, names))
+            raise refuse("body", body, "is the name of no body", f"there are {known}")
+        k = list(names).index(body)
+        after: dict[str, Any] = {"velocity": self.velocity[..., k, :], "spin": self.spin[..., k, :]}
+        return attrs.evolve(self.gathering.bodies[k], **after)
+
+    @cached_property
+    def frame(self) -> Array:
+        """n, t1 and t2 of each contact as rows, shape (..., C, 3, 3)."""
+        axes = self.gathering.assembly.axes
+        shaped: Array = self._shaped(axes, axes.shape[1], 3, 3)
+        return shaped
+
+    @property
+    def impulse(self) -> Array:
+        """Impulse on the first body of each contact, shape (..., C, 3), in N s."""
+        impulse: Array = -np.einsum("...ia,...i->...a", self.frame, self._told("impulse", 3))
+        return impulse
+
+    @property
+    def psi1(self) -> Array:
+        """Slip at the start along t1 and t2, shape (..., C, 2), in the unit mu v1/kappa.
+
+        v1 is the largest rate of approach of the gathering at the start.
+        """
+        return self._of_contacts(self._scene.psi1, 2)
+
+    @property
+    def psi2(self) -> Array:
+        """Slip at the end along t1 and t2, shape (..., C, 2), in the unit of ``psi1``."""
+        return self._of_contacts(self._scene.psi(self._slip), 2)
+
+    @property
+    def _slip(self) -> Array:
+        """Slip velocity at the end along t1 and t2, in m/s."""
+        return np.asarray(self._scene.slip_velocity + self._motion.slip_velocity_change)
+
+    @property
+    def slip_velocity(self) -> Array:
+        """Velocity of the first surface over the second at the end, in the tangent plane.
+
+        Shape (..., C, 3), in m/s.
+        """
+        slip = self._of_contacts(self._slip, 2)
+        return np.asarray(np.einsum("...ia,...i->...a", self.frame[..., 1:, :], slip))
+
+    @property
+    def normal_velocity(self) -> Array:
+        """Rate of approach at the end, shape (..., C), in m/s; negative: the surfaces part."""
+        return self._of_contacts(self._motion.normal_velocity)
+
+    @property
+    def first_touch(self) -> Array:
+        """Time of the first touch, shape (..., C), in s; NaN of a contact that never closed."""
+        return self._told("first")
+
+    @property
+    def last_touch(self) -> Array:
+        """Time at which a contact was last closed, shape (..., C), in s."""
+        return self._told("last")
+
+    @property
+    def touches(self) -> Array:
+        """How often the surfaces met, shape (..., C); 0 of a contact that never closed."""
+        return self._told("touches")
+
+    @property
+    def duration(self) -> Array:
+        """Time for which the contact was closed, in whole steps, shape (..., C), in s."""
+        return self._of_contacts(self._motion.duration)
+
+    @property
+    def maximum_force(self) -> Array:
+        """Greatest normal force, shape (..., C), in N."""
+        return self._of_contacts(self._motion.maximum_force)
+
+    @property
+    def maximum_radius(self) -> Array:
+        """Greatest contact radius, shape (..., C), in m."""
+        return self._of_contacts(self._motion.maximum_radius)
+
+    @property
+    def friction_work(self) -> Array:
+        """Friction work of each contact, shape (..., C), in J."""
+        return self._of_contacts(self._motion.friction_work)
+
+    @property
+    def shear_loss(self) -> Array:
+        """Loss in shear of each contact, shape (..., C), in J."""
+        return self._of_contacts(self._motion.shear_loss)
+
+    @property
+    def normal_loss(self) -> Array:
+        """Energy that the normal law of each contact took, shape (..., C), in J."""
+        return self._told("dissipation")
+
+    @property
+    def energy(self) -> EnergyLedger:
+        """The energy books of each gathering, in J, of the batch shape.
+
+        The start is the energy of the relative motion at the contacts, the end what their forces
+        leave; constant forces do work beside it.
+        """
+        ledger = gathering_ledger(self._scene, self._motion)
+        shape = self.gathering.shape
+        entries = {
+            field.name: np.asarray(getattr(ledger, field.name)).reshape(shape)[()]
+            for field in attrs.fields(EnergyLedger)
+        }
+        return EnergyLedger(**entries)
+
+    @property
+    def status(self) -> Any:
+        """A ``Status``, or an array of the batch shape."""
+        return self._of_gatherings(self._motion.status)
+
+    def _of_gatherings(self, words: object) -> Any:
+        """Return a status or sentence of each gathering, which its contacts share."""
+        whole = np.broadcast_to(np.asarray(words, dtype=object), self._scene.shape)
+        return whole[:, 0].reshape(self.gathering.shape)[()]
+
+    def _statuses(self) -> tuple[Any, Any]:
+        return self.status, self._of_gatherings(self._motion.detail)
+
+    @property
+    def cautions(self) -> list[str]:
+        """Cautions of the plan."""
+        return [*map(str, self.plan.cautions)]
+
+    def __repr__(self) -> str:
+        """Return how many bodies and contacts there are, velocities of one, and the statuses."""
+        bodies, contacts = len(self.gathering.bodies), len(self.gathering.touches)
+        told = f"{bodies} bodies, {contacts} contacts"
+        if self.gathering.shape:
+            told = f"{np.prod(self.gathering.shape)} gatherings of {told}"
+        return f"GatheringResult({told}; {statuses_told(self.status)})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the vectors of bodies and the numbers of contacts as plain lists."""
+        names = (
+            *VECTORS_OF_BODIES,
+            *VECTORS_OF_CONTACTS,
+            ("psi1", "1"),
+            ("psi2", "1"),
+            *OF_CONTACTS,
+        )
+        told: dict[str, Any] = {name: json_value(getattr(self, name)) for name, _ in names}
+        if self.gathering.names:
+            told["bodies"] = [*self.gathering.names]
+        return told | {"energy": self.energy.to_dict()}
+
+
+def collide_all(
+    gathering: Gathering, simulation: Simulation | None, *, history: bool = False
+) -> GatheringResult:
+    """Return the outcome of a gathering, under its restitutions or the laws of a simulation."""
+    if history not in (True, False):
+        rule = "must be True or False: fields are those of one contact"
+        raise refuse("history", history, rule, "give history=True")
+    started, way = time.perf_counter(), way_for(gathering, simulation)
+    scene = way.scene
+    recorder = _ContactsRecorder((*gathering.shape, scene.shape[-1])) if history else None
+    with np.errstate(under="ignore"):
+        _, motion = way.outcome(history, recorder)
+    contacts = motion.contacts
+    if not succeeded(motion.status):
+        motion = attrs.evolve(without_failures(motion), contacts=contacts)
+    return GatheringResult(
+        gathering=gathering,
+        simulation=simulation,
+        laws=versions(*way.laws),
+        run_time=time.perf_counter() - started,
+        history=NO_HISTORY if recorder is None else recorder.history(),
+        way=way,
+        motion=motion,
+    )
+
+
+def way_for(gathering: Gathering, simulation: Simulation | None) -> Coupled:
+    """Return the way in which a gathering is answered, or refuse laws that have no answer."""
+    way = Coupled.of(..., gathering.scene, _laws_for(gathering, simulation))
+    for law in way.laws.capability.refusing:
+        accept(law, way.scene.central)
+    return way
+
+
+def _plan(
+    gathering: Gathering,
+    simulation: Simulation | None,
+    way: Coupled,
+    motion: Motion | None,
+    history: bool,
+) -> GatheringPlan:
+    """Return the plan of a gathering."""
+
+    def widened() -> Array:
+        return _per_micron(gathering, simulation)
+
+    return gathering_plan(gathering, way, motion, history, widened)
+
+
+def _per_micron(gathering: Gathering, simulation: Simulation | None) -> Array:
+    """Return the largest change of a velocity in m/s if any gap were a micron wider."""
+    contacts = len(gathering.touches)
+    at_once = contacts + 1 if contacts < SPARSE else 1
+    wide = np.eye(contacts + 1)[:, 1:] * MICRON  # no change, then that of each contact
+    found = [
+        _with_gaps(gathering, simulation, wide[first : first + at_once])
+        for first in range(0, contacts + 1, at_once)
+    ]
+    velocity = np.concatenate(found)
+    moved = np.linalg.norm(velocity[1:] - velocity[0], axis=-1)
+    return np.asarray(moved.max(axis=(0, -1)))
+
+
+def _with_gaps(gathering: Gathering, simulation: Simulation | None, wider: Array) -> Array:
+    """Return velocities, (rows, ..., N, 3), with gaps that are wider by rows of C, in m."""
+    rows = wider.T.reshape(*wider.T.shape, *(1 for _ in gathering.shape))
+    touches = []
+    for touch, more in zip(gathering.touches, rows, strict=True):
+        gap = touch.gap + (0.0 if touch.loaded else 1.0) * more
+        touches.append(attrs.evolve(touch, gap=gap))
+    bodies: Any = gathering.bodies
+    if gathering.names:
+        bodies = dict(zip(gathering.names, bodies, strict=True))
+    return collide_all(Gathering(bodies, touches), simulation).velocity
+
+
+class _ContactsRecorder(Recorder):
+    """A recorder of contacts, whose samples have an axis of gatherings before that of contacts."""
+
+    def __call__(self, sample: Sample) -> None:
+        """Keep the sample of one instant, over one axis."""
+        time, approach, rate, contact, slip, force, *_ = sample
+        alone = [_flat(each) for each in (time, approach, rate)]
+        flat = NormalContact(*(_flat(each) for each in contact))
+        vectors = [np.asarray(each).reshape(-1, 2) for each in (slip, force)]
+        super().__call__(Sample(*alone, flat, *vectors))  # type: ignore[call-arg]
+
+
+def _flat(value: Real) -> Any:
+    """Return numbers of gatherings and contacts over one axis."""
+    return value if np.ndim(value) == 0 else np.reshape(value, -1)
+
+
+def _laws_for(gathering: Gathering, simulation: Simulation | None) -> Laws:
+    """Return the laws of a gathering: those of a simulation, or those of its restitutions."""
+    e = gathering.assembly.of_contacts("restitution")
+    if simulation is not None:
+        if np.any(e != 1.0):
+            k = int(np.argwhere(e != 1.0)[0][-1])
+            rule = "stands in place of a simulation, which has a normal law of its own"
+            remedy = "leave out simulation, or restitution of the contacts"
+            value = gathering.touches[k].restitution
+            raise refuse(f"touches[{k}].restitution", value, rule, remedy)
+        return simulation.laws
+    if np.all(e == 1.0):
+        return composition.compose(None, None, None).changed(named=frozenset())
+    normal = composition.law("normal", composition.RESTITUTION["normal"], restitution=ByIndex(e))
+    return composition.compose(normal, None, None)

@@ -1,0 +1,326 @@
+"""The plan of a gathering: what is computed and left out, and the doubts about each contact."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import cached_property
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.contracts.motion import NormalMotion
+from contactlab.contracts.normal import NormalLaw
+from contactlab.impact.gathering import Gathering
+from contactlab.numeric.taken import ByIndex
+from contactlab.numeric.types import Array, Mask
+from contactlab.outcome.motion import Motion
+from contactlab.outcome.plan import Clause, Clauses, Plan, Words
+from contactlab.registry.law_words import in_words, name_of
+from contactlab.solve.coupled import Coupled
+from contactlab.solve.way import ask
+
+#: gap/deep from which contacts act one after another (theory §18).
+IN_SEQUENCE = 3.0
+#: A gap wider by this is what ``per_micron`` tells of, in m; its largest share of v1, and that of
+#: weight, g T/v1, without a caution.
+MICRON, SHARE, WEIGHT = 1e-6, 0.01, 0.01
+#: Most contacts whose cautions ask what a micron does, by as many gatherings.
+FEW = 20
+#: Contact radius over the distance of two contacts of a body, and path v1 T over the least radius,
+#: from which there is a caution; change of the approach by the first (recalled: a point load on a
+#: half-space).
+NEAR, MOVES, ACTS = 0.05, 0.05, 0.4
+#: Spin about the normal over the rates of a contact below which it is rounding.
+TURNING = 1e-9
+
+
+@attrs.frozen(eq=False, slots=False)
+class GatheringPlan(Plan):
+    """What is computed of a gathering of C contacts, what is left out, and the doubts.
+
+    Attributes
+    ----------
+    gap_over_depth : array, shape (..., C)
+        Gap over the depth (1.25 m v1²/K)^0.4 of the contact alone: from 3 on contacts act one after
+        another, below the answer depends on the gap.
+    contact_times : array, shape (..., C)
+        Duration of each contact alone at v1, in s.
+    steps : array, shape (...)
+        Steps in the shortest contact.
+    """
+
+    gap_over_depth: Any = attrs.field(kw_only=True)
+    contact_times: Any = attrs.field(kw_only=True)
+    steps: Any = attrs.field(kw_only=True)
+    _widened: Callable[[], Array] = attrs.field(kw_only=True, repr=False)
+
+    @cached_property
+    def per_micron(self) -> Array:
+        """Largest change of a velocity if any gap were one micron wider, shape (...), in m/s.
+
+        It is found when it is first read, by 1 + C gatherings.
+        """
+        return self._widened()
+
+
+def gathering_plan(
+    gathering: Gathering,
+    way: Coupled,
+    motion: Motion | None,
+    history: bool | str,
+    widened: Callable[[], Array],
+) -> GatheringPlan:
+    """Return the plan of a gathering that is answered in a ``way``; ``motion`` is that of a run.
+
+    ``widened`` returns ``per_micron``.
+    """
+    scene, shape = way.scene, gathering.shape
+    prepared = way.prepare(False)
+    contacts = scene.shape[-1]
+    normal: Any = prepared.normal
+    times = np.broadcast_to(normal.duration, scene.shape)
+    depth = np.broadcast_to(normal.maximum_approach, scene.shape)
+    assert scene.links is not None
+    integrator = way.laws.integrator
+    steps: Any = getattr(integrator, "resolution_for", lambda *_: np.nan)(
+        scene, normal, way.laws.tangential
+    )
+    said = _Words(gathering, way, normal, motion, history)
+    plan: list[GatheringPlan] = []
+
+    def words() -> Words:
+        (found,) = plan
+        return said.computed(found), said.left_out(), tuple(said.cautions(found))
+
+    columns = prepared.columns
+    columns = columns._replace(
+        code=np.asarray(columns.code).reshape(scene.shape)[:, 0].reshape(shape),
+        psi2_error=np.full(shape, np.nan)[()],
+        restitution_error=np.full(shape, np.nan)[()],
+    )
+    plan.append(
+        GatheringPlan(
+            columns,
+            words,
+            gap_over_depth=(scene.links.gap / depth).reshape(*shape, contacts),
+            contact_times=times.reshape(*shape, contacts),
+            steps=np.broadcast_to(steps, scene.shape)[:, 0].reshape(shape)[()],
+            widened=widened,
+        )
+    )
+    return plan[0]
+
+
+class _Words:
+    """The clauses of a plan of gatherings."""
+
+    def __init__(
+        self,
+        gathering: Gathering,
+        way: Coupled,
+        normal: NormalMotion,
+        motion: Motion | None,
+        history: bool | str,
+    ) -> None:
+        self.gathering, self.laws, self.scene = gathering, way.laws, way.scene
+        self.way, self.normal, self.motion, self.history = way, normal, motion, history
+        self.speed = np.asarray(self.scene.normal_speed)[:, 0]
+
+    def _where(self, mask: Mask) -> Any:
+        """Return a mask of gatherings in the batch shape."""
+        return np.asarray(mask).reshape(self.gathering.shape)
+
+    def _everywhere(self, text: str, *values: object) -> Clause:
+        """Return a clause about all gatherings."""
+        return Clause(text, np.ones(self.gathering.shape, dtype=bool), values or None)
+
+    def _numbered(self, numbers: Array) -> Any:
+        """Return numbers of gatherings in the batch shape, one as a float."""
+        shaped = np.asarray(numbers, dtype=float).reshape(self.gathering.shape)
+        return shaped if shaped.ndim else float(shaped)
+
+    def computed(self, plan: GatheringPlan) -> Clauses:
+        """Return what is computed."""
+        links, law = self.scene.links, self.laws
+        assert links is not None
+        open_ = links.gap > 0.0
+        said = [
+            self._everywhere(f"normal motion: {self._normal()}, with the tangential motion"),
+            self._everywhere(
+                f"tangential motion: {in_words(law.integrator)} over {in_words(law.tangential)}"
+            ),
+            self._everywhere("steps: {:.0f} in the shortest contact", plan.steps * 1.0),
+        ]
+        closed = [k for k in range(open_.shape[-1]) if not open_[:, k].any()]
+        said.append(self._everywhere(f"contacts: {_named(closed)} closed at the start"))
+        for k in np.flatnonzero(open_.any(axis=0)).tolist():
+            share = plan.gap_over_depth[..., k]
+            how = "while others are closed"
+            if np.all((share == 0.0) | (share >= IN_SEQUENCE)):
+                how = "one after another"
+            text = f"contacts: touches[{k}] open by {{:.3g}} m, {{:.3g}} of its depth: {how}"
+            gap = self._numbered(links.gap[:, k])
+            deep = share if np.ndim(share) else float(share)
+            said.append(Clause(text, self._where(open_[:, k]), (gap, deep)))
+        ratio = self._numbered(self._ratio())
+        said.append(self._everywhere("contact times: the longest {:.3g} of the shortest", ratio))
+        if self.motion is not None and self.motion.contacts is not None:
+            never = self.motion.contacts.touches == 0.0
+            said += [
+                Clause(f"contacts: touches[{k}] never closed", self._where(never[:, k]))
+                for k in np.flatnonzero(never.any(axis=0)).tolist()
+            ]
+        return tuple(said)
+
+    def _normal(self) -> str:
+        """Return the normal law in words; of contacts with losses of their own the range of e."""
+        e = getattr(self.laws.normal, "restitution", None)
+        if not isinstance(e, ByIndex):
+            return in_words(self.laws.normal)
+        low, high = e.values.min(), e.values.max()
+        return f"{name_of(self.laws.normal)}, each contact with its e, {low:g} to {high:g}"
+
+    def _ratio(self) -> Array:
+        """Return the longest contact time over the shortest, of each gathering."""
+        times = np.broadcast_to(self.normal.duration, self.scene.shape)
+        return np.asarray(times.max(axis=-1) / times.min(axis=-1))
+
+    def left_out(self) -> Clauses:
+        """Return what is left out, and why."""
+        said = [
+            "numerical error: not declared for several contacts; twice the springs and steps "
+            "show it"
+        ]
+        if not self.history:
+            said.append("history: not asked for")
+        if len(self.gathering.touches) > 1 and not self._tells_gaps():
+            said.append("what a micron of gap does: not asked for (plan.per_micron)")
+        return tuple(self._everywhere(text) for text in said)
+
+    def cautions(self, plan: GatheringPlan) -> Iterator[Clause]:
+        """Yield the doubts about the model, each with its contact."""
+        yield from self._gaps(plan)
+        yield from self._near()
+        yield from self._path()
+        yield from self._weights()
+        yield from self._turning()
+        yield from self._of_laws()
+
+    def _gaps(self, plan: GatheringPlan) -> Iterator[Clause]:
+        """Yield the caution of a micron, which a batch is too dear to be asked for."""
+        if not self._tells_gaps():
+            return
+        share = float(plan.per_micron) / float(self.speed[0])
+        if share > SHARE:
+            text = (
+                "gaps: one of a micron more moves a velocity by {:.2g} of v1; contacts that are "
+                "taken as closed are known as well as their gaps (model)"
+            )
+            yield self._everywhere(text, share)
+
+    def _tells_gaps(self) -> bool:
+        """Return whether cautions ask what a micron does: of one gathering of a few contacts."""
+        return not self.gathering.shape and 1 < len(self.gathering.touches) <= FEW
+
+    def _sizes(self) -> Array:
+        """Return the greatest contact radius of each contact: of the run, or alone at v1."""
+        told: Any = self.normal if self.motion is None else self.motion
+        return np.broadcast_to(told.maximum_radius, self.scene.shape)
+
+    def _near(self) -> Iterator[Clause]:
+        """Yield the caution of two contacts of one body that are near each other."""
+        sizes = self._sizes()
+        for place, reaches in enumerate(self.gathering.assembly.reaches):
+            most = np.zeros(self.scene.shape[0])
+            for one, first in reaches.items():
+                for other, second in reaches.items():
+                    if one < other:
+                        parts = zip(first.arm, second.arm, strict=True)
+                        apart = np.sqrt(sum((a - b) ** 2 for a, b in parts))
+                        size = np.maximum(sizes[:, one], sizes[:, other])
+                        most = np.fmax(most, size / np.maximum(apart, 1e-300))
+            if np.any(most > NEAR):
+                text = (
+                    f"contacts of bodies[{self._name(place)}]: contact radius over their distance "
+                    f"{{:.2g}}; they feel one another through the body, by about {ACTS:g} of that "
+                    "of the approach (model)"
+                )
+                yield Clause(text, self._where(most > NEAR), (self._numbered(most),))
+
+    def _name(self, place: int) -> str:
+        """Return name or place of a body."""
+        return repr(self.gathering.names[place]) if self.gathering.names else str(place)
+
+    def _path(self) -> Iterator[Clause]:
+        """Yield the caution of bodies that move far meanwhile."""
+        radius = np.asarray(self.scene.pair.radius).min(axis=-1)
+        times = np.broadcast_to(self.normal.duration, self.scene.shape).max(axis=-1)
+        moved = self.speed * times / radius
+        if np.any(moved > MOVES):
+            text = (
+                "geometry: bodies move by {:.2g} of the least radius meanwhile, and normals and "
+                "contacts stay fixed (model)"
+            )
+            yield Clause(text, self._where(moved > MOVES), (self._numbered(moved),))
+
+    def _weights(self) -> Iterator[Clause]:
+        """Yield the caution of a force that no loaded contact carries."""
+        touches, places = self.gathering.touches, self.gathering.places
+        times = np.broadcast_to(self.normal.duration, self.scene.shape).max(axis=-1)
+        held = {
+            place for touch, pair in zip(touches, places, strict=True) if touch.loaded
+            for place in pair
+        }  # fmt: skip
+        assembly = self.gathering.assembly
+        for place, body in enumerate(self.gathering.bodies):
+            if place in held or not body.force.any():
+                continue
+            force = np.linalg.norm(assembly.flat(body.force, 3), axis=-1)
+            share = force / assembly.flat(body.shape.mass) * times / self.speed
+            if np.any(share > WEIGHT):
+                text = (
+                    f"force on bodies[{self._name(place)}]: g T/v1 = {{:.2g}}, and no contact that "
+                    "carries it is loaded: Touch(..., loaded=True) where the body lies (model)"
+                )
+                yield Clause(text, self._where(share > WEIGHT), (self._numbered(share),))
+
+    def _turning(self) -> Iterator[Clause]:
+        """Yield the caution of spin about a normal, whose friction the springs leave out."""
+        for k, encounter in enumerate(self.gathering.assembly.met):
+            normal = np.stack(
+                [np.broadcast_to(n, self.scene.shape[:1]) for n in encounter.unit_normal()]
+            )
+            spin = (encounter.spin - encounter.target_spin) * normal.T
+            about = np.abs(spin.sum(axis=-1)) * np.asarray(self.scene.pair.radius)[:, k]
+            turns = about > TURNING * self.speed
+            if turns.any():
+                text = (
+                    f"spin about the normal of touches[{k}]: its friction is left out, rim speed "
+                    "R omega = {:.2g} of v1 (model)"
+                )
+                yield Clause(text, self._where(turns), (self._numbered(about / self.speed),))
+
+    def _of_laws(self) -> Iterator[Clause]:
+        """Yield the doubts of the laws about each contact; the same of several are one."""
+        said: dict[str, list[int]] = {}
+        central = self.scene.central
+        for k, encounter in enumerate(self.gathering.assembly.met):
+            alone = central.take((slice(None), k))._with(encounter=encounter)  # type: ignore[arg-type]
+            normal = self.normal.take((slice(None), k))  # type: ignore[arg-type]
+            laws = self.laws.normal, self.laws.tangential
+            told = [text for law in laws for text in ask(law, law.cautions, alone, normal)]
+            told += NormalLaw.cautions(self.laws.normal, alone, normal)
+            for text in dict.fromkeys(told):
+                said.setdefault(text, []).append(k)
+        for text, numbers in said.items():
+            yield self._everywhere(f"{_named(numbers)}: {text}")
+
+
+def _named(numbers: list[int]) -> str:
+    """Return contacts in words."""
+    if not numbers:
+        return "none"
+    if len(numbers) > 3:
+        return f"touches[{numbers[0]}] and {len(numbers) - 1} more"
+    return ", ".join(f"touches[{k}]" for k in numbers)

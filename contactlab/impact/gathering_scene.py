@@ -1,0 +1,284 @@
+"""The contacts of a gathering as one system: frames, W, the scene, and bodies after impulses."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+import attrs
+import numpy as np
+
+from contactlab.impact.bodies import Pair
+from contactlab.impact.body_contact import (
+    Frame,
+    Reach,
+    coupling_of,
+    elastic_numbers,
+    frame,
+    sides,
+    turn_body,
+)
+from contactlab.impact.encounter import Encounter
+from contactlab.impact.links import Links, energy_of
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import first_of, refuse
+from contactlab.numeric.types import Array, Real
+from contactlab.numeric.vectors import components, cross, dot, join_components
+
+#: Contacts of one gathering from which W is kept by its blocks that are not zero.
+SPARSE = 100
+#: Most memory of the inverse masses of a batch.
+MOST_BYTES = 4e9
+#: Largest approach over the largest speed at a contact up to which nothing approaches.
+RESTS = 1e-9
+#: Numbers of a pair that follow from two materials and the gap; those that only ellipses have.
+ELASTIC = ("radius", "effective_modulus", "effective_shear_modulus", "dundurs_beta")
+OF_ELLIPSES = ("cross_stiffness_ratio", "axis_ratio")
+
+
+class _Given(Protocol):
+    """A gathering, which imports this module: bodies, and the contacts between them."""
+
+    @property
+    def bodies(self) -> tuple[Any, ...]: ...
+    @property
+    def touches(self) -> tuple[Any, ...]: ...
+    @property
+    def places(self) -> tuple[tuple[int, int | None], ...]: ...
+    @property
+    def shape(self) -> tuple[int, ...]: ...
+    def alone(self, contact: int) -> Encounter: ...
+
+
+class Assembly:
+    """The contacts of a batch of gatherings, over one flat axis of ``count`` gatherings.
+
+    Attributes
+    ----------
+    gathering : Gathering
+    count : int
+    frames : list of Frame
+        Of each contact, arrays of shape (count,).
+    reaches : list of dict
+        Of each body, by the number of the contact: its axes, arm and sense.
+    """
+
+    def __init__(self, gathering: _Given) -> None:
+        self.gathering = gathering
+        self.count = math.prod(gathering.shape)
+        self._wide = gathering.shape or (1,)
+        self.met = [self._flat_encounter(k) for k in range(len(gathering.touches))]
+        self.frames: list[Frame] = []
+        self.reaches: list[dict[int, Reach]] = [{} for _ in gathering.bodies]
+        for k, encounter in enumerate(self.met):
+            normal = encounter.unit_normal()
+            bodies = sides(encounter, normal)
+            try:
+                found = frame(encounter, bodies, normal)
+            except ValueError as error:
+                raise ValueError(f"touches[{k}]: {error}") from None
+            self.frames.append(found)
+            for name, _, arm, sense in bodies:
+                place: Any = gathering.places[k][1 if name else 0]
+                self.reaches[place][k] = Reach(found.axes, arm, sense)
+
+    def _flat_encounter(self, contact: int) -> Encounter:
+        """Return the encounter of a contact in each of the gatherings."""
+        alone = self.gathering.alone(contact)
+        velocity = np.broadcast_to(alone.velocity, (*self._wide, 3))
+        spread = attrs.evolve(alone, velocity=velocity)
+        return spread.take(np.full(self._wide, True)) if len(self._wide) > 1 else spread
+
+    def flat(self, value: Real, *trailing: int) -> Array:
+        """Return what each gathering has, shape (count, *trailing)."""
+        whole = np.broadcast_to(value, (*self.gathering.shape, *trailing))
+        return np.array(whole, dtype=np.asarray(value).dtype).reshape(self.count, *trailing)
+
+    def of_contacts(self, entry: str) -> Array:
+        """Return an entry of every contact, shape (count, C)."""
+        touches = self.gathering.touches
+        return np.stack([self.flat(getattr(touch, entry)) for touch in touches], axis=-1)
+
+    def of_bodies(self, entry: str) -> Array:
+        """Return vectors of every body, shape (count, N, 3)."""
+        bodies = self.gathering.bodies
+        return np.stack([self.flat(getattr(body, entry), 3) for body in bodies], axis=1)
+
+    @property
+    def axes(self) -> Array:
+        """n, t1 and t2 of each contact as rows, shape (count, C, 3, 3)."""
+        shape = (self.count,)
+        return np.stack([join_components(each.axes, shape) for each in self.frames], axis=1)
+
+    def scene(self) -> Scene:
+        """Return the scene of the contacts, or refuse one in which nothing approaches."""
+        gathering, shape = self.gathering, (self.count,)
+        velocity = np.stack([join_components(each.velocity, shape) for each in self.frames], axis=1)
+        fast = self._fastest(velocity)
+        W = self._inverse_mass()
+        own = np.stack([join_components(each.inverse_mass, shape) for each in self.frames], axis=1)
+        pull = self._pull()
+        loaded = self._loaded(pull)
+        links = Links(
+            inverse_mass=W,
+            velocity=velocity,
+            gap=self.of_contacts("gap"),
+            pull=pull,
+            loaded=loaded,
+            energy=energy_of(W, velocity),
+        )
+        numbers = self._numbers()
+        pair = Pair(
+            normal_mass=1.0 / own[..., 0, 0], tangential_mass=1.0 / own[..., 1, 1], **numbers
+        )
+        contacts = (self.count, len(gathering.touches))
+        return Scene(
+            None,
+            None,
+            self.of_contacts("friction_coefficient"),
+            np.broadcast_to(fast, contacts),
+            velocity[..., 1:],
+            pair=pair,
+            inverse_mass=own,
+            planar=False,
+            links=links,
+        )
+
+    def _fastest(self, velocity: Array) -> Array:
+        """Return v1, the largest rate of approach, shape (count, 1)."""
+        fast = velocity[..., 0].max(axis=-1, keepdims=True)
+        least = RESTS * np.abs(velocity).max(axis=(-1, -2))[..., None]
+        if (slow := ~(fast > least)).any():
+            where = np.argwhere(slow[:, 0].reshape(self.gathering.shape))
+            rule = f"nothing approaches{first_of(where)}: the largest rate of approach is in m/s"
+            remedy = "give velocities by which at least one contact closes, or turn its normal"
+            raise refuse("touches", float(fast[slow][0]), rule, remedy)
+        return np.asarray(fast)
+
+    def _numbers(self) -> dict[str, Array]:
+        """Return the entries of ``Pair`` that materials and gaps give, shape (count, C)."""
+        found = [
+            elastic_numbers(met, each.gap) for met, each in zip(self.met, self.frames, strict=True)
+        ]
+        names = [*ELASTIC, *(name for name in OF_ELLIPSES if any(name in one for one in found))]
+        columns = {name: [one.get(name, 1.0) for one in found] for name in names}
+        wide = {
+            name: [np.broadcast_to(each, (self.count,)) for each in column]
+            for name, column in columns.items()
+        }
+        return {name: np.stack(column, axis=-1) for name, column in wide.items()}
+
+    def _inverse_mass(self) -> Any:
+        """Return W, dense for few contacts and batches, else sparse."""
+        contacts = len(self.frames)
+        blocks: dict[tuple[int, int], Any] = {
+            (k, k): join_components(each.inverse_mass, (self.count,))
+            for k, each in enumerate(self.frames)
+        }
+        for body, reaches in zip(self.met_bodies(), self.reaches, strict=True):
+            for (one, first), (other, second) in _pairs(reaches):
+                block = join_components(coupling_of(body, first, second), (self.count,))
+                blocks[one, other] = blocks.get((one, other), 0.0) + block
+        if self.count > 1 or contacts < SPARSE:
+            self._check_memory()
+            W = np.zeros((self.count, contacts, 3, contacts, 3))
+            for (one, other), block in blocks.items():
+                W[:, one, :, other] = block
+                if one != other:
+                    W[:, other, :, one] = np.swapaxes(block, -1, -2)
+            return W.reshape(self.count, 3 * contacts, 3 * contacts)
+        return _sparse({place: block[0] for place, block in blocks.items()}, contacts)
+
+    def _check_memory(self) -> None:
+        """Refuse a batch whose inverse masses fill the memory."""
+        needed = 8.0 * self.count * (3 * len(self.frames)) ** 2
+        if needed > MOST_BYTES:
+            rule = f"{self.count} gatherings of {len(self.frames)} contacts take {needed:.2g} bytes"
+            raise refuse("shape", self.gathering.shape, rule, "give fewer at a time")
+
+    def met_bodies(self) -> list[Any]:
+        """Return every body as the encounters of its contacts have it, flat."""
+        found: list[Any] = [body.shape for body in self.gathering.bodies]
+        for k, (first, second) in enumerate(self.gathering.places):
+            found[first] = self.met[k].body
+            if second is not None:
+                found[second] = self.met[k].target
+        return found
+
+    def _pull(self) -> Array:
+        """Return the accelerations of approach and slip by constant forces, (count, C, 3)."""
+        pull = np.zeros((self.count, len(self.frames), 3))
+        for body, held, reaches in zip(
+            self.met_bodies(), self.gathering.bodies, self.reaches, strict=True
+        ):
+            if not held.force.any():
+                continue
+            force = components(self.flat(held.force, 3))
+            for k, reach in reaches.items():
+                for row, axis in enumerate(reach.axes):
+                    pull[:, k, row] += reach.sense * dot(axis, force) / body.mass
+        return pull
+
+    def _loaded(self, pull: Array) -> Array:
+        """Return which contacts carry the forces, or refuse forces that press none of them."""
+        loaded = self.of_contacts("loaded")
+        for k in np.flatnonzero(loaded.any(axis=0)).tolist():
+            places = [place for place in self.gathering.places[k] if place is not None]
+            if not any(self.gathering.bodies[place].force.any() for place in places):
+                rule = "needs a force that presses the contact"
+                remedy = "give Body(force=[0, 0, -m g]), or leave loaded out"
+                raise refuse(f"touches[{k}].loaded", True, rule, remedy)
+            if not np.all(pull[:, k, 0] > 0.0):
+                rule = "the force lifts the contact"
+                raise refuse(
+                    f"touches[{k}].loaded", True, rule, "turn force or normal, or leave it out"
+                )
+        return loaded
+
+    def after(self, impulse: Array, time: Real) -> tuple[Array, Array]:
+        """Return velocities and spins after impulses on the second bodies, and constant forces.
+
+        ``impulse`` is in N s along the axes, (count, C, 3), ``time`` that of the forces in s,
+        (count,).
+        """
+        velocity, spin = self.of_bodies("velocity"), self.of_bodies("spin")
+        pushes = [
+            [sum(p * axis[j] for p, axis in zip(components(impulse[:, k]), each.axes, strict=True))
+             for j in range(3)]
+            for k, each in enumerate(self.frames)
+        ]  # fmt: skip
+        for place, (body, reaches) in enumerate(zip(self.met_bodies(), self.reaches, strict=True)):
+            held = components(self.flat(self.gathering.bodies[place].force, 3))
+            whole: list[Any] = [each * time for each in held]
+            moment: list[Any] = [0.0, 0.0, 0.0]
+            for k, reach in reaches.items():
+                push = [-reach.sense * each for each in pushes[k]]
+                whole = [one + more for one, more in zip(whole, push, strict=True)]
+                turn = cross(reach.arm, push)
+                moment = [one + more for one, more in zip(moment, turn, strict=True)]
+            velocity[:, place] += join_components(
+                [each / body.mass for each in whole], (self.count,)
+            )
+            (turned,) = turn_body(body, moment)
+            spin[:, place] += join_components(turned, (self.count,))
+        return velocity, spin
+
+
+def _pairs(reaches: dict[int, Reach]) -> Sequence[tuple[tuple[int, Reach], tuple[int, Reach]]]:
+    """Return every two different contacts of a body, in order."""
+    each = sorted(reaches.items(), key=lambda item: item[0])
+    return [(one, other) for i, one in enumerate(each) for other in each[i + 1 :]]
+
+
+def _sparse(blocks: dict[tuple[int, int], Array], contacts: int) -> Any:
+    """Return W of one gathering from its blocks that are not zero."""
+    from scipy import sparse  # only of many contacts
+
+    places = np.array([*blocks, *((d, c) for c, d in blocks if c != d)])
+    values = np.array([*blocks.values(), *(b.T for (c, d), b in blocks.items() if c != d)])
+    rows, columns = np.broadcast_arrays(
+        3 * places[:, :1, None] + np.arange(3)[:, None], 3 * places[:, 1:, None] + np.arange(3)
+    )
+    size = (3 * contacts, 3 * contacts)
+    return sparse.csr_array((values.ravel(), (rows.ravel(), columns.ravel())), shape=size)
