@@ -29,8 +29,8 @@ from contactlab.registration.names import PAGE, short_name
 USE = "Use"
 GROUPS = {
     USE: (
-        "getting-started", "choosing", "command-line", "any-two-bodies", "load-paths",
-        "many-machines", "engines", "for-a-paper",
+        "getting-started", "choosing", "command-line", "any-two-bodies",
+        "several-contacts", "load-paths", "many-machines", "engines", "for-a-paper",
     ),
     "Trust": ("how-far-to-trust", "plans-and-statuses", "units-and-signs"),
     "Extend": ("laws", "extending"),
@@ -45,7 +45,7 @@ PARTS = {
     "theory": (
         "theory-impact", "theory-springs", "theory-methods", "theory-coupling",
         "theory-normal-laws", "theory-more-laws", "theory-loss", "theory-elliptic", "theory-spin",
-        "beyond-the-paper", "theory-references",
+        "theory-contacts", "beyond-the-paper", "theory-references",
     ),
 }  # fmt: skip
 

@@ -63,6 +63,10 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
 def execute(arguments: argparse.Namespace) -> int:
     """Run and report; the status is 1 if an impact failed."""
     file, scene, simulation = inputs(arguments)
+    if file is not None and file.gathering is not None:
+        from contactlab.cli.gathering import run  # few files need it
+
+        return run(arguments, file)
     for name in ("history", "stick_slip"):
         if getattr(arguments, name) and scene.shape:
             option = name.replace("_", "-")

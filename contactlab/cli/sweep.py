@@ -85,6 +85,10 @@ def execute(arguments: argparse.Namespace) -> int:
     """Run the sweep and report; the status is 1 if an impact failed."""
     file = read(arguments)
     check_alone(arguments)
+    if file is not None and file.gathering is not None:
+        from contactlab.cli.gathering import sweep  # few files need it
+
+        return sweep(arguments, file)
     if file and not file.scene.shape:
         raise ValueError(f"{arguments.scene}: holds a single impact; use contactlab run")
     if _is_folder(arguments.out):

@@ -107,7 +107,8 @@ def _present(table: Table, keys: tuple[str, ...]) -> dict[str, Any]:
     return _numbers(table, tuple(key for key in keys if table.has(key)))
 
 
-def _material(table: Table) -> Material:
+def read_material(table: Table) -> Material:
+    """Return the material of a table."""
     material = table.table("material", known=(*MATERIAL_KEYS, PROPERTIES))
     material.require("poisson_ratio", "for example 0.3")
     if material.has("shear_modulus") == material.has("young_modulus"):
@@ -132,7 +133,7 @@ def _material(table: Table) -> Material:
 def _sphere(table: Table) -> Sphere:
     """Return a sphere; its mass needs a value of its own or a density."""
     numbers = _numbers(table, ("radius",)) | _present(table, ("mass", "gyration_ratio"))
-    material = _material(table)
+    material = read_material(table)
     if material.density is None and not table.has("mass"):
         raise ValueError(
             f"{table.path}: mass is unknown; give {table.at('mass')} in kg, "
@@ -151,7 +152,7 @@ def _target(root: Table) -> Sphere | HalfSpace:
     if kind is not None and not (isinstance(kind, str) and kind in kinds):
         raise refuse("target.kind", kind, 'must be "half-space", "sphere" or "body"')
     table = Table(raw, "target", known=kinds.get(str(kind), ()))
-    return HalfSpace(_material(table)) if kind == "half-space" else _sphere(table)
+    return HalfSpace(read_material(table)) if kind == "half-space" else _sphere(table)
 
 
 def _is_rigid(target: object) -> bool:
@@ -174,7 +175,7 @@ def _bodies(root: Table, impact: Table) -> tuple[list[Any], dict[str, Any]]:
         elif name == "target" and not _is_rigid(content):
             bodies.append(_target(root))
         else:
-            body, contact = rigid_body(content, name, sense * outward, _material)
+            body, contact = rigid_body(content, name, sense * outward, read_material)
             bodies.append(body)
             if contact is not None:
                 if impact.has(key):

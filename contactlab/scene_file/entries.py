@@ -125,9 +125,11 @@ def with_materials(tables: Mapping[str, object]) -> dict[str, object]:
     return completed
 
 
-def named_materials(tables: Mapping[str, object]) -> tuple[str, ...]:
-    """Return the names of materials in the tables of bodies, each once."""
-    sections = (tables.get(name) for name in BODY_SECTIONS)
+def named_materials(
+    tables: Mapping[str, object], of: Iterable[str] = BODY_SECTIONS
+) -> tuple[str, ...]:
+    """Return the names of materials in the tables ``of`` bodies, each once."""
+    sections = (tables.get(name) for name in of)
     bodies = [section for section in sections if isinstance(section, Mapping)]
     names = [body["material"] for body in bodies if isinstance(body.get("material"), str)]
     return tuple(dict.fromkeys(names))

@@ -14,6 +14,7 @@ import numpy as np
 
 from contactlab.impact import batches
 from contactlab.impact.encounter import Encounter
+from contactlab.impact.gathering import Gathering
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import real, refuse
 from contactlab.numeric.types import Numbers, Real
@@ -35,9 +36,11 @@ from contactlab.scene_file.quantities import read_units
 from contactlab.scene_file.sweep import Sweep, read_sweep
 from contactlab.scene_file.table import Table
 
+#: Sections of a file of several contacts at once.
+OF_GATHERINGS = ("bodies", "touches")
 SECTIONS = (
     "about", "sphere", "body", "target", "impact", "nondimensional",
-    "sweep", "simulation", "measured",
+    "sweep", "simulation", "measured", *OF_GATHERINGS,
 )  # fmt: skip
 #: Deepest nesting of tables and lists.
 DEEPEST = 20
@@ -61,6 +64,8 @@ class SceneFile:
         From ``[simulation]``.
     encounter : Encounter or None
         Encounter in space if the file gives vectors; ``scene`` lies in its plane of friction.
+    gathering : Gathering or None
+        Several contacts at once; ``scene`` is that of its contacts, which ``collide`` answers.
     measured : tuple of Measured
     materials : tuple of str
         Names of the materials that the file takes from the collection.
@@ -77,6 +82,7 @@ class SceneFile:
     varied: Mapping[str, Real]
     laws: LawChoice = attrs.field(factory=LawChoice)
     encounter: Encounter | None = None
+    gathering: Gathering | None = None
     measured: tuple[Measured, ...] = ()
     materials: tuple[str, ...] = ()
     defaulted: tuple[str, ...] = ()
@@ -104,6 +110,11 @@ class SceneFile:
         ``scene_at(angle_deg=[5, 10])`` is a batch of two; entries of equal length vary
         together. A dotted entry is written ``**{"sphere.radius": [...]}``.
         """
+        if self.gathering is not None:
+            from contactlab.scene_file.gathering import read_gathering, swept_path
+
+            varied = {swept_path(name): real(name, values) for name, values in entries.items()}
+            return read_gathering(self.tables, varied).scene
         return _scene_with(self.tables, entries)[0]
 
 
@@ -144,6 +155,8 @@ def read_scene(
         document = read_units(document)
         root = Table(document, "", known=SECTIONS)
         about = Table(document.get("about", {}), "about", known=ABOUT_KEYS)
+        if any(key in document for key in OF_GATHERINGS):
+            return _of_gathering(file, root, about, entries, allow_code=allow_code)
         sweep = read_sweep(document.get("sweep", {}))
         tables = with_materials({key: root.content[key] for key in SECTIONS[1:6] if root.has(key)})
         own = tables
@@ -157,9 +170,10 @@ def read_scene(
         laws = read_laws(document.get("simulation", {}), file.parent, allow_code=allow_code)
         if of_laws := {name: each for name, each in sweep.varied.items() if is_option(name)}:
             laws = laws.set(of_laws)
+        texts: dict[str, Any] = {key: about.text(key, default="") for key in ABOUT_KEYS}
         return SceneFile(
             path=file,
-            **{key: about.text(key, default="") for key in ABOUT_KEYS},
+            **texts,
             scene=batches.over(scene, sweep.axes)
             if sweep.axes
             else batches.varying(scene, sweep.varied),
@@ -177,6 +191,37 @@ def read_scene(
         )
     except ValueError as error:
         raise ValueError(f"{file}: {error}") from error
+
+
+def _of_gathering(
+    file: Path,
+    root: Table,
+    about: Table,
+    entries: Mapping[str, Numbers] | None,
+    *,
+    allow_code: bool,
+) -> SceneFile:
+    """Return the file of several contacts at once."""
+    from contactlab.scene_file.gathering import read_gathering, swept_path  # few files need it
+
+    document = root.content
+    varied: Any = read_sweep(document.get("sweep", {}), swept_path).varied
+    if entries:
+        varied = {swept_path(name): real(name, values) for name, values in entries.items()}
+    gathering = read_gathering(document, varied)
+    bodies: Any = document["bodies"]
+    texts: dict[str, Any] = {key: about.text(key, default="") for key in ABOUT_KEYS}
+    return SceneFile(
+        path=file,
+        **texts,
+        scene=gathering.scene,
+        gathering=gathering,
+        varied=varied,
+        laws=read_laws(document.get("simulation", {}), file.parent, allow_code=allow_code),
+        measured=read_measured(document.get("measured", [])),
+        materials=named_materials(bodies, of=bodies),
+        tables=document,
+    )
 
 
 def _scene_with(

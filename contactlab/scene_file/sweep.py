@@ -6,7 +6,7 @@ the other entries, the last entry varying fastest.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -38,8 +38,8 @@ class Sweep(NamedTuple):
     axes: Mapping[str, Array]
 
 
-def read_sweep(content: object) -> Sweep:
-    """Return the entries that vary and their values."""
+def read_sweep(content: object, path_of: Callable[..., str] = entry_path) -> Sweep:
+    """Return the entries that vary and their values; ``path_of`` knows their names."""
     remedy = "write it under [sweep]"
     table = of_kind("sweep", content, Mapping, rule="must be a table", remedy=remedy)
     combined = table.get(PRODUCT, False)
@@ -48,7 +48,7 @@ def read_sweep(content: object) -> Sweep:
     paths: dict[str, str] = {}
     entries = {key: table[key] for key in table if key != PRODUCT}
     for name, value in flatten(entries, leaf=_is_range).items():
-        path = entry_path(name, where="sweep.")
+        path = path_of(name, where="sweep.")
         if path in paths:
             raise ValueError(f"sweep: {paths[path]} and {name} are the same entry; leave out one")
         paths[path] = name
