@@ -117,7 +117,19 @@ ball.radius = 0.02  # refused
 """
 
 
-@pytest.mark.parametrize("name", ["Encounter", "HalfSpace", "RigidBody", "Scene", "Sphere"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "Body",
+        "Encounter",
+        "Gathering",
+        "HalfSpace",
+        "RigidBody",
+        "Scene",
+        "Sphere",
+        "Touch",
+    ],
+)
 def test_the_arguments_that_a_class_states_are_those_it_takes(name):
     made = getattr(contactlab, name)
     stated = list(inspect.signature(made).parameters.values())

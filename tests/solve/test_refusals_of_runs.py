@@ -91,7 +91,8 @@ REFUSED = [
     (
         lambda: collide([3]),
         "encounter = [3]: must be an Encounter; make a single Encounter with arrays of vectors, "
-        "shape (..., 3)",
+        "shape (..., 3); bodies that touch at several contacts at once are a "
+        "Gathering(bodies, touches)",
     ),
     (
         lambda: collide(meeting(), "springs"),
