@@ -19,8 +19,8 @@ __doc__ = {doc!r}
 ORDER = (
     "one_impact", "signs", "law_swap", "sweep", "stick_slip_map", "reproduce_the_paper",
     "experiment", "fit_your_experiment", "billiards", "throw_of_billiard_balls", "superball",
-    "loss_in_shear", "granular_gas", "any_two_bodies", "toe_shot", "egg", "hysteresis",
-    "beyond_the_paper", "custom_law", "law_in_five_minutes", "sweep_on_a_cluster",
+    "loss_in_shear", "granular_gas", "any_two_bodies", "several_contacts", "toe_shot", "egg",
+    "hysteresis", "beyond_the_paper", "custom_law", "law_in_five_minutes", "sweep_on_a_cluster",
 )  # fmt: skip
 
 #: Arguments that make a script short.
