@@ -29,6 +29,7 @@ from contactlab.outcome.history import NO_HISTORY, History, NoHistory, Recorder
 from contactlab.outcome.motion import Motion, without_failures
 from contactlab.registry import composition
 from contactlab.registry.acceptance import accept
+from contactlab.registry.bound import bound, options_read
 from contactlab.registry.composition import Laws, versions
 from contactlab.runs.simulation import Simulation
 from contactlab.solve.coupled import Coupled
@@ -305,7 +306,8 @@ def collide_all(
 
 def way_for(gathering: Gathering, simulation: Simulation | None) -> Coupled:
     """Return the way in which a gathering is answered, or refuse laws that have no answer."""
-    way = Coupled.of(..., gathering.scene, _laws_for(gathering, simulation))
+    scene = gathering.scene
+    way = Coupled.of(..., scene, _laws_for(gathering, simulation, scene))
     for law in way.laws.capability.refusing:
         accept(law, way.scene.central)
     return way
@@ -370,7 +372,7 @@ def _flat(value: Real) -> Any:
     return value if np.ndim(value) == 0 else np.reshape(value, -1)
 
 
-def _laws_for(gathering: Gathering, simulation: Simulation | None) -> Laws:
+def _laws_for(gathering: Gathering, simulation: Simulation | None, scene: Scene) -> Laws:
     """Return the laws of a gathering: those of a simulation, or those of its restitutions."""
     e = gathering.assembly.of_contacts("restitution")
     if simulation is not None:
@@ -380,7 +382,18 @@ def _laws_for(gathering: Gathering, simulation: Simulation | None) -> Laws:
             remedy = "leave out simulation, or restitution of the contacts"
             value = gathering.touches[k].restitution
             raise refuse(f"touches[{k}].restitution", value, rule, remedy)
-        return simulation.laws
+        laws = simulation.laws
+        used, whole = bound(laws, scene.central)
+        reads = any(each.material for law in laws for each in options_read(type(law)))
+        told = any(
+            body.material.properties
+            for met in gathering.assembly.met
+            for body in (met.body, met.target)
+        )
+        if used is not laws or whole._options or (reads and told):
+            rule = "has options of each impact, or of materials, and contacts have none"
+            raise refuse("simulation", simulation, rule, "give each option as one number")
+        return laws
     if np.all(e == 1.0):
         return composition.compose(None, None, None).changed(named=frozenset())
     normal = composition.law("normal", composition.RESTITUTION["normal"], restitution=ByIndex(e))

@@ -12,7 +12,7 @@ import numpy as np
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.gathering import Gathering
-from contactlab.numeric.taken import ByIndex
+from contactlab.numeric.taken import ByIndex, of_taken
 from contactlab.numeric.types import Array, Mask
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import Clause, Clauses, Plan, Words
@@ -206,6 +206,8 @@ class _Words:
         yield from self._weights()
         yield from self._turning()
         yield from self._of_laws()
+        for text in of_taken(self.laws.normal, self.laws.tangential):
+            yield self._everywhere(text)
 
     def _gaps(self, plan: GatheringPlan) -> Iterator[Clause]:
         """Yield the caution of a micron, which a batch is too dear to be asked for."""

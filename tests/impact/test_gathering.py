@@ -10,6 +10,7 @@ from contactlab import (
     Encounter,
     Gathering,
     HalfSpace,
+    Material,
     RigidBody,
     Simulation,
     Sphere,
@@ -21,6 +22,11 @@ from contactlab.impact import shapes
 from tests.collisions.gathered import STEEL, laws, row, three_balls
 
 BALL, WALL = Sphere(0.01, STEEL), HalfSpace(STEEL)
+RELAXING = Sphere(
+    0.01,
+    Material(young_modulus=1e9, poisson_ratio=0.3, density=1e3,
+             properties={"relaxation_time (s)": 1e-6}),
+)  # fmt: skip
 MOVES, RESTS = Body(BALL, velocity=[1, 0, 0]), Body(BALL)
 X = [1, 0, 0]
 
@@ -133,6 +139,18 @@ REFUSED = {
         lambda: shapes.box(sides=[0.1, 0.1, 0.1], corner_radius=0.01, material=STEEL,
                            normal=[0, 0, -1]), "flat_box"),
     "a run": (lambda: Simulation().run(row(3)), "collide(gathering"),
+    "a time of each impact": (
+        lambda: collide(row(3), Simulation(
+            normal=create("normal.viscoelastic", relaxation_time=[1e-6, 2e-6]),
+            tangential="springs", integrator="symplectic")),
+        "one number",
+    ),
+    "a property of a material": (
+        lambda: collide(two(Touch(0, 1, 0.1, normal=X), bodies=(Body(RELAXING, velocity=X), RESTS)),
+                        Simulation(normal="viscoelastic", tangential="springs",
+                                   integrator="symplectic")),
+        "of materials",
+    ),
     "an array for a law": (
         lambda: create("normal.viscoelastic", restitution=[0.9, 0.8]), "restitution",
     ),
@@ -240,3 +258,9 @@ def test_a_rod_on_its_side_has_two_ends():
     np.testing.assert_allclose(gaps, [0.0, 0.18 * np.sin(np.radians(0.01))], atol=1e-12)
     _, contacts, _ = shapes.flat_rod(**made, axis=turned(1.0, 1) @ [1, 0, 0], reach=1e-3)
     assert len(contacts) == 1
+
+
+def test_a_restitution_that_nobody_gave_is_told():
+    simulation = Simulation(normal="viscoelastic", tangential="springs", integrator="symplectic")
+    assert any("restitution = 0.9 was taken by default" in text
+               for text in collide(row(2), simulation).cautions)  # fmt: skip
