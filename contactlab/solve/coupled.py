@@ -9,6 +9,7 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import faults, judges
+from contactlab.contracts.law import resolution_of
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
@@ -196,7 +197,7 @@ class Coupled(Way):
         if self.scene.links is None:
             return self.at_a_time
         law: Any = self.laws.tangential
-        springs = getattr(law, law.resolution or "", 1)
+        springs = 1 if law.resolution is None else resolution_of(law) or 1
         return max(1.0, IN_CACHE // (self.scene.shape[-1] * max(springs, 1)))
 
     def how(self) -> str:

@@ -320,6 +320,7 @@ def test_a_rigid_body_of_history_and_dict():
     columns = hit.history.normal_force
     assert columns.shape == (len(hit.history.time), 2)
     np.testing.assert_allclose(columns.max(axis=0), hit.maximum_force)
+    assert hit.velocity.tobytes() == collide(cushion(), laws(12, 50)).velocity.tobytes()
     told = hit.to_dict()
     np.testing.assert_array_equal(told["velocity"], hit.velocity)
     assert told["bodies"] == ["ball"]
