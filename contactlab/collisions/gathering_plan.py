@@ -135,7 +135,7 @@ class _Words:
         """Return a clause about all gatherings."""
         return Clause(text, np.ones(self.gathering.shape, dtype=bool), values or None)
 
-    def _numbered(self, numbers: Array) -> Any:
+    def _numbered(self, numbers: Array) -> Real:
         """Return numbers of gatherings in the batch shape, one as a float."""
         shaped = np.asarray(numbers, dtype=float).reshape(self.gathering.shape)
         return shaped if shaped.ndim else float(shaped)
