@@ -12,11 +12,11 @@ import numpy as np
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.gathering import Gathering
-from contactlab.numeric.taken import ByIndex, of_taken
+from contactlab.numeric.taken import ByIndex
 from contactlab.numeric.types import Array, Mask
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import Clause, Clauses, Plan, Words
-from contactlab.registry.law_words import in_words, name_of
+from contactlab.registry.law_words import in_words, name_of, of_taken
 from contactlab.solve.coupled import Coupled
 from contactlab.solve.way import ask
 
@@ -135,7 +135,7 @@ class _Words:
         """Return a clause about all gatherings."""
         return Clause(text, np.ones(self.gathering.shape, dtype=bool), values or None)
 
-    def _numbered(self, numbers: Array) -> Real:
+    def _numbered(self, numbers: Array) -> Any:
         """Return numbers of gatherings in the batch shape, one as a float."""
         shaped = np.asarray(numbers, dtype=float).reshape(self.gathering.shape)
         return shaped if shaped.ndim else float(shaped)

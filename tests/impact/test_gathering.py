@@ -262,5 +262,5 @@ def test_a_rod_on_its_side_has_two_ends():
 
 def test_a_restitution_that_nobody_gave_is_told():
     simulation = Simulation(normal="viscoelastic", tangential="springs", integrator="symplectic")
-    assert any("restitution = 0.9 was taken by default" in text
+    assert any("no restitution given, using 0.9" in text
                for text in collide(row(2), simulation).cautions)  # fmt: skip
