@@ -37,7 +37,7 @@ def test_a_file_may_give_vectors(tmp_path):
         ("normal = [0, 0, -1]", "", "impact.normal: is missing"),
         ("normal = [0, 0, -1]", "normal = [0, 0, 1]", "bodies separate"),
         ("spin = [0, -20, 0]", "spin = 20", "impact.spin"),
-        ("spin = [0, -20, 0]", "speed = 20", "has vectors, and speed too"),
+        ("spin = [0, -20, 0]", "speed = 20", "leave them out, or speed"),
         ("spin = [0, -20, 0]", "target_spin = [0, 1, 0]", "impact.target_spin"),
         ("velocity = [0.5, 0, -1]", "velocities = [0.5, 0, -1]", "did you mean 'velocity'"),
         ("[impact]", "[sweep]\nspin = [1, 2, 3]\n[impact]", "impact.spin"),
