@@ -253,7 +253,7 @@ def test_two_way_coupling_needs_the_friction_coefficient():
 
 
 def test_two_way_coupling_needs_elastic_surfaces():
-    with pytest.raises(ValueError, match="elastic_hertz"):
+    with pytest.raises(ValueError, match="elastic Hertz"):
         simulation("normal.linear", coupling="two_way")
 
 

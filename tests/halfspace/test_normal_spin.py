@@ -201,7 +201,7 @@ def test_a_batch_with_and_without_spin_is_its_impacts():
     assert whole.w2[3] == pytest.approx(1.0, abs=1e-6)
     said = [str(one) for one in whole.plan.computed if "about the normal" in str(one)]
     assert said == [
-        "spin about the normal (4 of 5 impacts): friction of slip and of spin is one",
+        "spin about the normal (4 of 5 impacts): slip and spin share the friction",
     ]
 
 
