@@ -19,7 +19,7 @@ from contactlab.contracts import (
     TangentialLaw,
     WholeImpactTangentialLaw,
 )
-from contactlab.contracts.law import claims, requirements
+from contactlab.contracts.law import claims, requirements, resolution_of
 from contactlab.contracts.tangential import shares_loss
 from contactlab.impact.error_model import range_of
 from contactlab.impact.hertz import rigid_body_rebound
@@ -180,7 +180,7 @@ def finer(normal: NormalLaw, scene: Scene, law: TangentialLaw) -> float | None:
     """Return the change by a law of whole impacts at twice its resolution, in m/s; None if none."""
     assert law.resolution is not None
     try:
-        fine = with_parameters(law, {law.resolution: 2 * getattr(law, law.resolution)})
+        fine = with_parameters(law, {law.resolution: 2 * resolution_of(law)})
     except ValueError:  # the law does not accept the finer value
         return None
     result = Simulation(normal=normal, tangential=fine).run(scene)

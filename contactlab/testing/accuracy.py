@@ -7,7 +7,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.contracts import ClosedFormNormalLaw, Integrator
+from contactlab.contracts import ClosedFormNormalLaw, Integrator, resolution_of
 from contactlab.runs.simulation import Simulation
 from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing.check import apply_if, check, hold, within
@@ -31,7 +31,7 @@ BOOKS = 0.03
 @check(Integrator)
 def order(integrator: Integrator) -> None:
     """The error of a smooth law falls with the steps at the declared order (Integrator, 4)."""
-    steps = getattr(integrator, integrator.resolution or "", None)
+    steps = resolution_of(integrator)
     apply_if(isinstance(steps, int), "The integrator has no count of steps.")
     for simulation in fitting(integrator, (PressedSpring(),), "normal.hertz"):
         exact = _exact(simulation, 2.0)
@@ -59,7 +59,7 @@ def finer_is_better(integrator: Integrator) -> None:
         within(error, integrator.accuracy or 0.05, f"psi2 is {error:.1e} off the exact solution.")
         if integrator.resolution is None or integrator.accuracy is not None:
             continue
-        value = getattr(integrator, integrator.resolution)
+        value: Any = resolution_of(integrator)
         better = 4 * value if isinstance(value, int) else value / 16.0
         finer = at_resolution(integrator, better)
         change = marched_impact(
@@ -116,7 +116,7 @@ def books_by(integrator: Integrator) -> None:
             within(
                 imbalance, BOOKS, f"psi1 = {psi1}: {imbalance:.1%} of the energy is unaccounted."
             )
-        steps = getattr(integrator, integrator.resolution or "", None)
+        steps = resolution_of(integrator)
         if isinstance(steps, int):
             worst = max(_imbalance(simulation, psi1) for psi1 in (0.5, 1.2, 2.0))
             finer = attrs.evolve(simulation, integrator=at_resolution(integrator, 8 * steps))

@@ -9,7 +9,14 @@ from typing import Any, TypeVar
 import attrs
 import numpy as np
 
-from contactlab.contracts import ClosedFormNormalLaw, Integrator, Law, TangentialLaw, claims
+from contactlab.contracts import (
+    ClosedFormNormalLaw,
+    Integrator,
+    Law,
+    TangentialLaw,
+    claims,
+    resolution_of,
+)
 from contactlab.impact.error_model import psi_magnitude
 from contactlab.impact.scene import Scene
 from contactlab.runs.simulation import Simulation
@@ -95,7 +102,7 @@ def _finer(law: SameLaw) -> SameLaw:
     """Return a law or integrator of finer resolution; the same if it has none."""
     if law.resolution is None:
         return law
-    value = getattr(law, law.resolution)
+    value: Any = resolution_of(law)
     for factor in (FINER, 2):
         finer = factor * value if isinstance(value, int) else value / TIGHTER
         try:
@@ -143,7 +150,7 @@ def resolution_told(integrator: Integrator) -> None:
         impact = scene(2.0, SOLID)
         normal = normal_motion(simulation.normal, impact)
         stated = float(np.max(integrator.resolution_for(impact, normal, simulation.tangential)))
-        value = type(getattr(integrator, integrator.resolution))(stated)
+        value = type(resolution_of(integrator))(stated)
         asked = at_resolution(integrator, value)
         change = marched_impact(simulation, 2.0).slip_velocity_change
         as_stated = attrs.evolve(simulation, integrator=asked)

@@ -40,7 +40,12 @@ BASES: dict[str, type[Law]] = {
     "integrator": Integrator,
 }
 #: Words that no check tests, by the contract of the laws that offer them.
-UNTESTED = {"similar": NormalLaw, "plastic": NormalLaw, "shares_loss": TangentialLaw}
+UNTESTED = {
+    "similar": NormalLaw,
+    "plastic": NormalLaw,
+    "shares_loss": TangentialLaw,
+    "several_contacts": Integrator,
+}
 
 #: Words with the method that each promises.
 PROMISED: tuple[tuple[str, Any, str], ...] = (
