@@ -11,7 +11,7 @@ kind              hook                         returns
 ``shapes``        ``contactlab_shapes()``       a list of ``Shape``
 ``cases``         ``contactlab_cases()``        an iterable of ``Case``
 ``checks``        ``contactlab_checks()``       a list of functions that return a ``Finding``
-``measurements``  ``contactlab_measurements()`` a list of ``Source``
+``measurements``  ``contactlab_measurements()`` a list of ``Source`` or ``Slopes``
 ``cautions``      ``contactlab_cautions()``     a list of sentences, for a scene and laws
 ``options``       ``contactlab_options()``      nothing: adds options to a command's parser
 ================= ============================ ==============================================
@@ -30,11 +30,11 @@ if TYPE_CHECKING:
     from contactlab.impact.shapes import Shape
     from contactlab.outcome.columns import Column
     from contactlab.registration.hooks import hookimpl
-    from contactlab.study.evidence import Source
+    from contactlab.study.evidence import Slopes, Source
     from contactlab.study.stability_cases import Case
     from contactlab.study.validation import Finding
 
-__all__ = ["Case", "Column", "Entry", "Finding", "Shape", "Source", "hookimpl"]
+__all__ = ["Case", "Column", "Entry", "Finding", "Shape", "Slopes", "Source", "hookimpl"]
 
 __getattr__, __dir__ = imported_on_use(
     __name__,
@@ -44,6 +44,7 @@ __getattr__, __dir__ = imported_on_use(
         "Entry": "impact.material",
         "Finding": "study.validation",
         "Shape": "impact.shapes",
+        "Slopes": "study.evidence",
         "Source": "study.evidence",
         "hookimpl": "registration.hooks",
     },

@@ -175,12 +175,13 @@ def _finding(item: Any) -> str:
 
 
 def _measured(item: Any) -> str:
-    from contactlab.study.evidence import Source
+    from contactlab.scene_file import SceneFile
+    from contactlab.study.evidence import Slopes, Source
 
-    if not isinstance(item, Source):
-        return f"is {type(item).__name__}, no Source"
+    if not isinstance(item, Source | Slopes):
+        return f"is {type(item).__name__}, no Source and no Slopes"
     file = item.read()
-    if not file.measured:
+    if isinstance(file, SceneFile) and not file.measured:
         return "has no measured values"
     return "" if file.citation else "has no citation"
 

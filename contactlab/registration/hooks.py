@@ -119,7 +119,7 @@ def contactlab_checks() -> Iterable[Any] | None:
 
 @_specification
 def contactlab_measurements() -> Iterable[Any] | None:
-    """Return ``contactlab.study.evidence.Source`` objects: measured impacts, and bounds of laws."""
+    """Return ``Source`` and ``Slopes`` objects of ``contactlab.study.evidence``: measured sets."""
 
 
 @_specification

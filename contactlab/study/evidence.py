@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from abc import ABC
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from importlib import resources
 from pathlib import Path
 
@@ -18,12 +20,13 @@ from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import SceneFile, read_scene
 from contactlab.study.agreement import Agreement, LawRun
 from contactlab.study.comparison import Comparison
+from contactlab.study.slopes import SlopeFile, read_slopes
 from contactlab.study.validation import Finding
 
 
 @attrs.frozen(kw_only=True)
-class Source:
-    """A file of measured or computed rebounds, the normal laws to run, and bounds.
+class MeasuredSet(ABC):
+    """A file of measured or computed numbers beside which laws are set.
 
     Attributes
     ----------
@@ -32,26 +35,49 @@ class Source:
     kind : str
         Where the numbers are from: "experiment", "finite elements" or "other codes".
     path : Path, optional
-        A scene file with measured values; by default that in ``contactlab/study/measured``.
+        The file; by default that of the name in ``contactlab/study/measured``.
+    """
+
+    name: str
+    kind: str
+    path: Path | None = None
+
+    def _place(self) -> AbstractContextManager[Path]:
+        if self.path is not None:
+            return nullcontext(self.path)
+        place = resources.files("contactlab").joinpath("study", "measured", f"{self.name}.toml")
+        return resources.as_file(place)
+
+
+@attrs.frozen(kw_only=True)
+class Source(MeasuredSet):
+    """A file of measured or computed rebounds, the normal laws to run, and bounds.
+
+    Attributes
+    ----------
     normals : mapping of str to mapping
         Options of the normal laws, by name.
     bounds : mapping
         Bound of the rms difference by quantity and law: ``{("psi2", "fronts"): 0.06}``.
     """
 
-    name: str
-    kind: str
-    path: Path | None = None
     normals: Mapping[str, Mapping[str, object]] = attrs.field(factory=lambda: {DEFAULT_NORMAL: {}})
     bounds: Mapping[tuple[str, str], float] = attrs.field(factory=dict)
 
     def read(self) -> SceneFile:
-        """Return the contents of the file."""
-        if self.path is not None:
-            return read_scene(self.path)
-        place = resources.files("contactlab").joinpath("study", "measured", f"{self.name}.toml")
-        with resources.as_file(place) as path:
+        """Return the contents of the scene file."""
+        with self._place() as path:
             return read_scene(path)
+
+
+@attrs.frozen(kw_only=True)
+class Slopes(MeasuredSet):
+    """A file of measured slopes of psi2 over psi1, for ``contactlab validate --measured``."""
+
+    def read(self) -> SlopeFile:
+        """Return the contents of the file; see ``contactlab.study.slopes.read_slopes``."""
+        with self._place() as path:
+            return read_slopes(path)
 
 
 E_T = "tangential_restitution"
@@ -80,6 +106,10 @@ SOURCES = (
     Source(name="codes-test4-oxide", kind="other codes", bounds={(E_T, "mindlin_cap"): 0.006}),
     Source(name="codes-test4-alloy", kind="other codes", bounds={(E_T, "mindlin_cap"): 0.006}),
     Source(name="codes-mfix", kind="other codes", bounds={(E_T, "mindlin_cap"): 0.006}),
+)
+SLOPES = tuple(
+    Slopes(name=name, kind="experiment")
+    for name in ("small-spheres", "glass-3mm", "eight-balls", "cross2010")
 )
 
 
@@ -140,20 +170,26 @@ def gather(
     progress : callable, optional
         Called as ``progress(done, total)`` after each source.
     """
-    sources = by_name("measurements", Source, lambda source: source.name).values()
+    sources = [item for item in measured_sets() if isinstance(item, Source)]
     for done, source in enumerate(sources, start=1):
-        yield _evidence(source, curves=curves)
+        yield evidence_of(source, curves=curves)
         if progress is not None:
             progress(done, len(sources))
 
 
+def measured_sets() -> list[MeasuredSet]:
+    """Return the measured sets of contactlab and of plug-ins."""
+    return list(by_name("measurements", MeasuredSet, lambda item: item.name).values())
+
+
 @hookimpl
-def contactlab_measurements() -> tuple[Source, ...]:
-    """Return contactlab's own sources."""
-    return SOURCES
+def contactlab_measurements() -> tuple[MeasuredSet, ...]:
+    """Return contactlab's own measured sets."""
+    return (*SOURCES, *SLOPES)
 
 
-def _evidence(source: Source, *, curves: bool) -> Evidence:
+def evidence_of(source: Source, *, curves: bool = False) -> Evidence:
+    """Return a source, and the results of every law that fits."""
     file = source.read()
     simulations, left_out = simulations_over(source.normals)
     agreements = []

@@ -56,7 +56,7 @@ def test_validate_keeps_checks_and_sources(run, monkeypatch, done, sources):
     monkeypatch.setattr(
         MANAGER, "brought", lambda kind, **kw: told if kind == "checks" else brought(kind, **kw)
     )
-    monkeypatch.setattr(evidence, "_evidence", interrupting(evidence._evidence, sources))
+    monkeypatch.setattr(evidence, "evidence_of", interrupting(evidence.evidence_of, sources))
     ran = run("validate")
     assert ran.status == 130
     assert ran.out.endswith("not complete: interrupted\n")

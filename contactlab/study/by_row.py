@@ -1,0 +1,170 @@
+"""Every law beside every row of a measured set: rms, rows within the error, chi²."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+import attrs
+import numpy as np
+
+from contactlab.impact.scene import Scene
+from contactlab.numeric.types import Array
+from contactlab.outcome.tables import heading, number
+from contactlab.registry.composition import DEFAULT_NORMAL
+from contactlab.runs.simulation import Simulation
+from contactlab.study.agreement import Agreement
+from contactlab.study.evidence import Slopes, Source, evidence_of, measured_sets, simulations_over
+from contactlab.study.slopes import Row, slope
+
+#: Normal laws of every set; those with a loss take the restitution of each row.
+NORMALS = (DEFAULT_NORMAL, "tsuji", "viscoelastic")
+
+
+@attrs.frozen(kw_only=True, eq=False)
+class ByRow:
+    """One measured quantity of a set, row by row, and what each law gives.
+
+    Attributes
+    ----------
+    name, kind, title : str
+    words : tuple of str
+        Citation, how it was measured, licence and notes, as far as they are told.
+    quantity : str
+        Heading of the measured quantity, with its unit.
+    rows : tuple of str
+        Names of the rows.
+    values, errors : array, shape (n,)
+        Measured values and half-widths; 0 or NaN where none is told.
+    laws : mapping of str to array, shape (n,)
+        Values by law; NaN where the law fails.
+    """
+
+    name: str
+    kind: str
+    title: str
+    words: tuple[str, ...]
+    quantity: str
+    rows: tuple[str, ...]
+    values: Array
+    errors: Array
+    laws: Mapping[str, Array]
+
+    @property
+    def ordered(self) -> list[str]:
+        """Names of the laws by rms; laws that fail come last."""
+        rms = {law: self.rms(law) for law in self.laws}
+        return sorted(rms, key=lambda law: (np.isnan(rms[law]), rms[law]))
+
+    def off(self, law: str) -> Array:
+        """Return predicted less measured values, shape (n,)."""
+        return self.laws[law] - self.values
+
+    def rms(self, law: str) -> float:
+        """Return the rms of ``off``; NaN if the law fails in a row."""
+        return float(np.sqrt(np.mean(self.off(law) ** 2)))
+
+    def within(self, law: str) -> int:
+        """Return the number of rows whose error covers the law."""
+        return int(np.sum(np.abs(self.off(law)) <= self.errors, where=self.errors > 0.0))
+
+    def chi2(self, law: str) -> float:
+        """Return the mean of (off/error)² over rows with an error; NaN if none has one."""
+        told = self.errors > 0.0
+        return (
+            float(np.mean((self.off(law)[told] / self.errors[told]) ** 2)) if told.any() else np.nan
+        )
+
+    def worst(self, law: str) -> str:
+        """Return the row that is furthest off, over its error where all have one."""
+        off = np.abs(self.off(law))
+        off = off / self.errors if (self.errors > 0.0).all() else off
+        place = int(np.argmax(np.nan_to_num(off, nan=np.inf)))
+        found, told = (
+            number(float(each), digits=3) for each in (self.laws[law][place], self.values[place])
+        )
+        return f"{self.rows[place]}: {found} for {told}"
+
+
+def by_row(progress: Callable[[int, int], object] | None = None) -> Iterator[ByRow]:
+    """Iterate over the measured quantities of all sets, slopes first.
+
+    ``progress(done, total)`` follows each set.
+    """
+    sets = sorted(measured_sets(), key=lambda item: not isinstance(item, Slopes))
+    for done, item in enumerate(sets, start=1):
+        if isinstance(item, Slopes):
+            yield _slopes(item)
+        elif isinstance(item, Source):
+            yield from _series(item)
+        if progress is not None:
+            progress(done, len(sets))
+
+
+def slopes_of_laws(rows: Sequence[Row]) -> dict[str, Array]:
+    """Return beta0 of every law in each row by name, shape (n,), as experimenters take it.
+
+    The line of slip throughout is that of the law's own restitution.
+    """
+    found: dict[str, Array] = {}
+    for restitution in dict.fromkeys(row.restitution for row in rows):
+        mine = [place for place, row in enumerate(rows) if row.restitution == restitution]
+        psi1 = np.concatenate([rows[place].psi1 for place in mine])
+        sizes = [rows[place].psi1.size for place in mine]
+        chi = np.repeat([rows[place].chi for place in mine], sizes)
+        scene = Scene.nondimensional(psi1=psi1, chi=chi)
+        ends = np.cumsum(sizes)[:-1]
+        for law, simulation in _laws(restitution):
+            values = found.setdefault(law, np.full(len(rows), np.nan))
+            result = simulation.sweep(scene)
+            psi2 = np.broadcast_to(result.psi2, psi1.shape)
+            e = np.broadcast_to(result.normal_restitution, psi1.shape)
+            parts = (np.split(each, ends) for each in (psi1, psi2, 2.0 * (1.0 + e) * chi))
+            for place, at, after, crossing in zip(mine, *parts, strict=True):
+                values[place] = slope(at, after, float(crossing[0]))[0]
+    return found
+
+
+def _laws(restitution: float) -> Iterator[tuple[str, Simulation]]:
+    """Iterate over tangential laws under each normal law; a restitution of 1 or more is elastic."""
+    for normal in NORMALS:
+        elastic = normal == DEFAULT_NORMAL or restitution >= 1.0
+        options = {DEFAULT_NORMAL: {}} if elastic else {normal: {"restitution": restitution}}
+        for name, simulation in simulations_over(options)[0].items():
+            law = name.partition(",")[0]
+            yield law if normal == DEFAULT_NORMAL else f"{law}, {normal}", simulation
+
+
+def _slopes(item: Slopes) -> ByRow:
+    file = item.read()
+    return ByRow(
+        name=item.name,
+        kind=item.kind,
+        title=file.title,
+        words=(file.citation, file.how, f"Licence: {file.licence}.", file.notes),
+        quantity="beta0",
+        rows=tuple(row.name for row in file.rows),
+        values=np.array([row.beta0 for row in file.rows]),
+        errors=np.array([row.error for row in file.rows]),
+        laws=slopes_of_laws(file.rows),
+    )
+
+
+def _series(item: Source) -> Iterator[ByRow]:
+    one = evidence_of(item)
+    for agreement in one.comparison.agreements:
+        yield _agreement(item, agreement, one.file.title, one.file.citation)
+
+
+def _agreement(item: Source, agreement: Agreement, title: str, citation: str) -> ByRow:
+    measured, known = agreement.measured, agreement.defined
+    return ByRow(
+        name=item.name,
+        kind=item.kind,
+        title=title,
+        words=(citation.strip(),),
+        quantity=heading(measured.quantity, agreement.unit),
+        rows=tuple(f"{measured.against} {x:.4g}" for x in measured.x[known]),
+        values=measured.values[known],
+        errors=measured.error[known],
+        laws={law: values[known] for law, values in agreement.predicted.items()},
+    )
