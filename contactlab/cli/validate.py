@@ -4,6 +4,7 @@ Examples
 --------
   contactlab validate
   contactlab validate --out pictures
+  contactlab validate --measured --out pictures
   contactlab validate --json
 """
 
@@ -17,6 +18,7 @@ from typing import Any
 import attrs
 
 from contactlab.cli import arguments as shared
+from contactlab.cli import measured
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.tables import heading
 from contactlab.outcome.text_table import WIDTH, table
@@ -42,18 +44,25 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         metavar="DIR",
         help="draw a picture of each source in this folder",
     )
+    parser.add_argument(
+        "--measured",
+        action="store_true",
+        help="set every law beside every row of the measured sets instead",
+    )
     shared.add_json(parser, "the tables")
     shared.add_progress(parser)
     return shared.check_outputs_first(execute)
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Validate and report; the status is 1 if a bound is not met."""
+    """Validate and report; the status is 1 if a bound is not met; ``--measured`` has no bounds."""
     folder: Path | None = arguments.out
     if folder is not None:
         if not folder.parent.is_dir():
             raise ValueError(f"--out {folder}: there is no folder {folder.parent}")
         shared.make_folder("--out", folder)
+    if arguments.measured:
+        return measured.execute(arguments)
     findings: list[Finding] = []
     gathered: list[Evidence] = []
     interrupted = False
