@@ -14,7 +14,7 @@ from contactlab.registry.composition import DEFAULT_NORMAL
 from contactlab.runs.simulation import Simulation
 from contactlab.study.agreement import Agreement
 from contactlab.study.evidence import Slopes, Source, evidence_of, measured_sets, simulations_over
-from contactlab.study.slopes import Row, slope
+from contactlab.study.slopes import Row
 
 #: Normal laws of every set; those with a loss take the restitution of each row.
 NORMALS = (DEFAULT_NORMAL, "tsuji", "viscoelastic")
@@ -106,32 +106,40 @@ def slopes_of_laws(rows: Sequence[Row]) -> dict[str, Array]:
     The line of slip throughout is that of the law's own restitution.
     """
     found: dict[str, Array] = {}
-    for restitution in dict.fromkeys(row.restitution for row in rows):
-        mine = [place for place, row in enumerate(rows) if row.restitution == restitution]
-        psi1 = np.concatenate([rows[place].psi1 for place in mine])
-        sizes = [rows[place].psi1.size for place in mine]
-        chi = np.repeat([rows[place].chi for place in mine], sizes)
-        scene = Scene.nondimensional(psi1=psi1, chi=chi)
-        ends = np.cumsum(sizes)[:-1]
-        for law, simulation in _laws(restitution):
-            values = found.setdefault(law, np.full(len(rows), np.nan))
-            result = simulation.sweep(scene)
-            psi2 = np.broadcast_to(result.psi2, psi1.shape)
-            e = np.broadcast_to(result.normal_restitution, psi1.shape)
-            parts = (np.split(each, ends) for each in (psi1, psi2, 2.0 * (1.0 + e) * chi))
-            for place, at, after, crossing in zip(mine, *parts, strict=True):
-                values[place] = slope(at, after, float(crossing[0]))[0]
+    for normal in NORMALS:
+        elastic = [normal == DEFAULT_NORMAL or row.restitution >= 1.0 for row in rows]
+        losses = [
+            None if each else row.restitution for each, row in zip(elastic, rows, strict=True)
+        ]
+        for loss in dict.fromkeys(losses):
+            mine = [place for place, each in enumerate(losses) if each == loss]
+            for law, simulation in _laws(normal, loss):
+                values = found.setdefault(law, np.full(len(rows), np.nan))
+                values[mine] = _slopes_of(simulation, [rows[place] for place in mine])
     return found
 
 
-def _laws(restitution: float) -> Iterator[tuple[str, Simulation]]:
-    """Iterate over tangential laws under each normal law; a restitution of 1 or more is elastic."""
-    for normal in NORMALS:
-        elastic = normal == DEFAULT_NORMAL or restitution >= 1.0
-        options = {DEFAULT_NORMAL: {}} if elastic else {normal: {"restitution": restitution}}
-        for name, simulation in simulations_over(options)[0].items():
-            law = name.partition(",")[0]
-            yield law if normal == DEFAULT_NORMAL else f"{law}, {normal}", simulation
+def _slopes_of(simulation: Simulation, rows: Sequence[Row]) -> list[float]:
+    """Return the slope of one law in each row; rows of one psi1 and chi are run once."""
+    apart = {(row.chi, row.psi1.tobytes()): row for row in rows}
+    psi1 = np.concatenate([row.psi1 for row in apart.values()])
+    sizes = [row.psi1.size for row in apart.values()]
+    chi = np.repeat([row.chi for row in apart.values()], sizes)
+    result = simulation.sweep(Scene.nondimensional(psi1=psi1, chi=chi))
+    psi2 = np.split(np.broadcast_to(result.psi2, psi1.shape), np.cumsum(sizes)[:-1])
+    e = float(np.ravel(result.normal_restitution)[0])
+    slopes = {
+        key: row.slope_of(after, e) for (key, row), after in zip(apart.items(), psi2, strict=True)
+    }
+    return [slopes[row.chi, row.psi1.tobytes()] for row in rows]
+
+
+def _laws(normal: str, loss: float | None) -> Iterator[tuple[str, Simulation]]:
+    """Iterate over tangential laws under a normal law with a restitution; elastic without one."""
+    options = {DEFAULT_NORMAL: {}} if loss is None else {normal: {"restitution": loss}}
+    for name, simulation in simulations_over(options)[0].items():
+        law = name.partition(",")[0]
+        yield law if normal == DEFAULT_NORMAL else f"{law}, {normal}", simulation
 
 
 def _slopes(item: Slopes) -> ByRow:

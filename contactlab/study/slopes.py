@@ -13,8 +13,9 @@ from contactlab.numeric.types import Array
 from contactlab.outcome.files import content
 from contactlab.scene_file.table import Table
 
-#: Values of psi1 at which laws are asked, evenly spaced up to 4 chi, where elastic spheres slide.
-POINTS = 120
+#: Values of psi1 at which laws are asked, up to 4 chi, where elastic spheres slide throughout, and
+#: between which lines are drawn: a slope moves by 0.001 at most.
+POINTS, FINE = 32, 800
 ABOUT_KEYS = ("title", "citation", "licence", "how", "notes")
 BODY_KEYS = (
     "body", "target", "radius", "gyration_ratio", "poisson_ratio", "shear_modulus",
@@ -42,7 +43,9 @@ class Row:
     beta0, error : float
         Slope -psi2/psi1 and its half-width.
     psi1 : array, shape (n,)
-        Increasing.
+        Increasing; evenly spaced if the impacts are not told.
+    told : bool
+        True if psi1 are those of the impacts.
     """
 
     name: str
@@ -51,6 +54,15 @@ class Row:
     beta0: float
     error: float
     psi1: Array
+    told: bool = False
+
+    def slope_of(self, psi2: Array, restitution: float) -> float:
+        """Return beta0 of a law with its own restitution, from its psi2 at ``psi1``."""
+        psi1 = self.psi1
+        if not self.told:
+            fine = psi1[-1] * np.arange(1, FINE + 1) / FINE
+            psi1, psi2 = fine, np.interp(fine, [0.0, *psi1], [0.0, *psi2])
+        return slope(psi1, psi2, 2.0 * (1.0 + restitution) * self.chi)[0]
 
 
 @attrs.frozen(kw_only=True, eq=False)
@@ -141,7 +153,13 @@ def _collisions(table: Table) -> Row:
     order = np.argsort(psi1)
     beta0, error = slope(psi1[order], psi2[order], 2.0 * (1.0 + e) * chi)
     return Row(
-        name=_name(table), restitution=e, chi=chi, beta0=beta0, error=error, psi1=psi1[order]
+        name=_name(table),
+        restitution=e,
+        chi=chi,
+        beta0=beta0,
+        error=error,
+        psi1=psi1[order],
+        told=True,
     )
 
 
