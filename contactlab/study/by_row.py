@@ -111,11 +111,14 @@ def slopes_of_laws(rows: Sequence[Row]) -> dict[str, Array]:
         losses = [
             None if each else row.restitution for each, row in zip(elastic, rows, strict=True)
         ]
-        for loss in dict.fromkeys(losses):
-            mine = [place for place, each in enumerate(losses) if each == loss]
-            for law, simulation in _laws(normal, loss):
-                values = found.setdefault(law, np.full(len(rows), np.nan))
-                values[mine] = _slopes_of(simulation, [rows[place] for place in mine])
+        made = {loss: _laws(normal, loss) for loss in dict.fromkeys(losses)}
+        for law in next(iter(made.values())):
+            if any(law not in simulations for simulations in made.values()):
+                continue  # does not fit every row
+            found[law] = np.empty(len(rows))
+            for loss, simulations in made.items():
+                mine = [place for place, each in enumerate(losses) if each == loss]
+                found[law][mine] = _slopes_of(simulations[law], [rows[place] for place in mine])
     return found
 
 
@@ -134,12 +137,12 @@ def _slopes_of(simulation: Simulation, rows: Sequence[Row]) -> list[float]:
     return [slopes[row.chi, row.psi1.tobytes()] for row in rows]
 
 
-def _laws(normal: str, loss: float | None) -> Iterator[tuple[str, Simulation]]:
-    """Iterate over tangential laws under a normal law with a restitution; elastic without one."""
+def _laws(normal: str, loss: float | None) -> dict[str, Simulation]:
+    """Return tangential laws under a normal law with a restitution; elastic without one."""
     options = {DEFAULT_NORMAL: {}} if loss is None else {normal: {"restitution": loss}}
-    for name, simulation in simulations_over(options)[0].items():
-        law = name.partition(",")[0]
-        yield law if normal == DEFAULT_NORMAL else f"{law}, {normal}", simulation
+    beside = "" if normal == DEFAULT_NORMAL else f", {normal}"
+    simulations = simulations_over(options)[0]
+    return {name.partition(",")[0] + beside: item for name, item in simulations.items()}
 
 
 def _slopes(item: Slopes) -> ByRow:

@@ -71,11 +71,12 @@ def _deep(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
 
 
 def _metal(scene: Scene) -> tuple[str, ...]:
-    """Return the caution of a restitution of metals."""
+    """Return the caution of a restitution of metals; numbers of ``validate --measured``."""
     stiff = np.min(np.asarray(scene.pair.effective_modulus)) >= 0.5 * METAL
     if not stiff:
         return ()
     return (
-        "model: metals lose energy by yield, not in shear. No measurement of e_T of metals below "
-        "e = 1 was found.",
+        "model: metals lose energy by yield, not in shear. One loss still met both pairs with a "
+        "metal: e_T of glass on aluminium is 0.31 ± 0.06 measured, 0.31 by the law, of acetate on "
+        "aluminium 0.39 ± 0.07 and 0.39. Chrome steel, 0.54 ± 0.05, is above any elastic sphere's.",
     )
