@@ -8,6 +8,7 @@ import pytest
 import contactlab
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
 from contactlab.cli.guide import text
+from contactlab.study.evidence import SLOPES
 
 PAGE = text("theory-loss")
 ROW = re.compile(
@@ -40,6 +41,12 @@ def one_loss(e, share):
         normal=contactlab.create("normal.viscoelastic", restitution=e),
         tangential=contactlab.create("tangential.springs", shear_loss=share),
     )
+
+
+def test_the_measured_set_is_the_table_of_the_guide():
+    (balls,) = (one for one in SLOPES if one.name == "eight-balls")
+    rows = [(row.restitution, row.beta0) for row in balls.read().rows]
+    assert rows == [(float(row[1]), float(row[2])) for row in ROW.findall(PAGE)]
 
 
 @pytest.mark.slow
