@@ -22,6 +22,8 @@ BODY_KEYS = (
     "target_poisson_ratio", "target_shear_modulus", "restitution", "restitution_error",
     "friction_coefficient", "friction_error",
 )  # fmt: skip
+#: Numbers that no analysis needs.
+DESCRIBED = ("radius", "restitution_error", "friction_coefficient", "friction_error")
 PAIR_KEYS = (*BODY_KEYS, "beta0", "beta0_error")
 SPEED_KEYS = ("normal_speed", "slip_velocity", "rebound_normal_speed", "rebound_slip_velocity")
 SPEEDS = "give the speeds of all collisions as lists, in m/s"
@@ -81,7 +83,8 @@ def read_slopes(path: str | Path) -> SlopeFile:
     """Return the measured slopes of a TOML file, with ``[[pairs]]`` or a table ``[collisions]``.
 
     A pair tells its slope ``beta0`` = -psi2/psi1 and ``beta0_error``; collisions tell speeds in
-    m/s, from which the slope follows. Bodies without a target are a pair of equals.
+    m/s, from which the slope follows. Bodies without a target are a pair of equals; lengths are in
+    m and moduli in Pa.
 
     Raises
     ------
@@ -180,6 +183,9 @@ def _reach(table: Table) -> float:
 
 
 def _name(table: Table) -> str:
+    """Return body and target; numbers that only describe them must be numbers too."""
+    for key in DESCRIBED:
+        _number(table, key, default=0.0)
     body = table.text("body", remedy="name the body")
     target = table.text("target", default=body)
     return body if target == body else f"{body} on {target}"

@@ -52,7 +52,7 @@ def test_one_loss_is_nearest_to_small_spheres(run, few, laws):
 
 def test_tables_and_the_picture(run, few, tmp_path):
     few(("fronts", "mindlin_cap"))
-    ran = run("validate", "--measured", "--figures", tmp_path / "pictures")
+    ran = run("validate", "--measured", "--out", tmp_path / "pictures")
     assert ran.status == 0
     assert "11" in ran.out
     assert "second hand" in ran.out

@@ -98,7 +98,8 @@ def test_no_elastic_sphere_of_steel_comes_back_as_chrome_steel_did():
     [
         (PAIR, "pairs[0].poisson_ratio: is missing"),
         (PAIR + "poisson_ratio = 0.6", "poisson_ratio = 0.6: must lie in"),
-        (PAIR + "poisson_ratio = 0.3\nmu = 0.1", "pairs[0].mu: is not a known key"),
+        (PAIR + "poisson_ratio = 0.3\nsize = 0.1", "pairs[0].size: unknown key"),
+        (PAIR + "poisson_ratio = 0.3\nradius = 'big'", "radius = 'big': must be"),
         (PAIR.replace("0.4", "-1") + "poisson_ratio = 0.3", "beta0 = -1: must be greater than -1"),
         (PAIR.replace("0.1", "0") + "poisson_ratio = 0.3", "beta0_error = 0: must be positive"),
         (PAIR.replace("0.9", "'x'") + "poisson_ratio = 0.3", "restitution = 'x': must be"),
