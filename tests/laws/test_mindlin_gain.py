@@ -48,7 +48,7 @@ def told(form, normal):
     """The percentages of the caution about energy from nothing."""
     simulation = Simulation(normal=normal, tangential=contactlab.create(CAP, form=form))
     sentences = [str(one) for one in simulation.plan(scene(0.5, 1.0)).cautions]
-    (sentence,) = [one for one in sentences if "energy from nothing" in one]
+    (sentence,) = [one for one in sentences if "can create energy" in one]
     return [float(number) / 100.0 for number in re.findall(r"([\d.]+) %", sentence)]
 
 
