@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from contactlab.figures.files import Panels, save
 from contactlab.outcome.style import QUIET, law_style, verbatim
@@ -46,7 +46,7 @@ def draw_slopes(path: Path, sets: Sequence[ByRow]) -> None:
     save(path, draw, rows=len(sets), heights=heights, wide=True)
 
 
-def _panel(axes: Any, one: ByRow) -> None:
+def _panel(axes: Axes, one: ByRow) -> None:
     order = np.argsort(one.values)
     places = np.arange(len(order))
     for number, (law, words) in enumerate(DRAWN.items()):
