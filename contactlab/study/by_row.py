@@ -13,11 +13,15 @@ from contactlab.outcome.tables import heading, number
 from contactlab.registry.composition import DEFAULT_NORMAL
 from contactlab.runs.simulation import Simulation
 from contactlab.study.agreement import Agreement
-from contactlab.study.evidence import Slopes, Source, evidence_of, measured_sets, simulations_over
+from contactlab.study.evidence import (
+    NORMALS,
+    Slopes,
+    Source,
+    evidence_of,
+    measured_sets,
+    simulations_over,
+)
 from contactlab.study.slopes import Row
-
-#: Normal laws of every set; those with a loss take the restitution of each row.
-NORMALS = (DEFAULT_NORMAL, "tsuji", "viscoelastic")
 
 
 @attrs.frozen(kw_only=True, eq=False)

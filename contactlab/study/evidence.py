@@ -81,12 +81,14 @@ class Slopes(MeasuredSet):
 
 
 E_T = "tangential_restitution"
+#: Normal laws of measured sets; those with a loss take the restitution that was measured.
+NORMALS = (DEFAULT_NORMAL, "tsuji", "viscoelastic")
 
 
 def _damp(restitution: float) -> dict[str, dict[str, float]]:
     """Return normal laws: elastic, and damped to the loss that was measured."""
     loss = {"restitution": restitution}
-    return {DEFAULT_NORMAL: {}, "tsuji": loss, "viscoelastic": loss}
+    return {DEFAULT_NORMAL: {}, **dict.fromkeys(NORMALS[1:], loss)}
 
 
 #: Springs share the loss of these normal laws; under them annuli lose in pressure alone.

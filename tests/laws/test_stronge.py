@@ -157,7 +157,9 @@ def test_restitution_under_adhesion_is_that_of_the_motion(normal, speed):
     load = simulation.normal_motion(scene).total_load_impulse
     ratio = np.max(load) / (scene.pair.normal_mass * speed * (1.0 + e))
     assert ratio > 1.004
-    assert any(f"up to {ratio:.3g} times that of the spring" in str(text) for text in result.plan.cautions)
+    assert any(
+        f"up to {ratio:.3g} times that of the spring" in str(text) for text in result.plan.cautions
+    )
 
 
 def test_no_caution_of_a_pull_where_the_normal_law_has_none():
