@@ -50,6 +50,7 @@ def test_one_loss_is_nearest_to_small_spheres(run, few, laws):
     assert next(iter(one["laws"])).startswith("springs, ")  # under either law with a loss
 
 
+@pytest.mark.slow
 def test_tables_and_the_picture(run, few, tmp_path):
     few(("fronts", "mindlin_cap"))
     ran = run("validate", "--measured", "--out", tmp_path / "pictures")

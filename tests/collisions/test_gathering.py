@@ -103,6 +103,7 @@ def test_a_ball_meets_cushion_and_cloth_extrapolated():
     np.testing.assert_allclose(found, after, atol=EXTRAPOLATED)
 
 
+@pytest.mark.slow
 def test_the_cloth_carries_the_weight():
     hit = collide(cushion(loaded=True))
     np.testing.assert_allclose(hit.velocity[0], [0.74328, -0.89884, 0.14000], atol=USUAL)
@@ -118,6 +119,7 @@ def test_a_stiff_cloth_is_nearly_that_of_rigid_theory():
     np.testing.assert_allclose(hit.spin[0], [-8.7, 27.9, 23.4], atol=0.05)
 
 
+@pytest.mark.slow
 def test_a_ball_falls_on_two_that_lie():
     hit = collide(three_balls())
     assert hit["big"].velocity[2] == pytest.approx(0.904907, abs=USUAL)

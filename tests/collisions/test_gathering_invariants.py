@@ -315,6 +315,7 @@ def test_a_chain_of_many_contacts_is_sparse_and_like_a_short_one():
     assert many.energy.start == pytest.approx(own * 109 / 110, rel=1e-7)
 
 
+@pytest.mark.slow
 def test_a_rigid_body_of_history_and_dict():
     hit = collide(cushion(), laws(12, 50), history=True)
     columns = hit.history.normal_force
@@ -330,6 +331,7 @@ def test_a_rigid_body_of_history_and_dict():
     assert set(told["energy"]) >= {"start", "end", "imbalance"}
 
 
+@pytest.mark.slow
 def test_a_micron_of_gap_is_told():
     hit = collide(row(5))
     assert hit.plan.per_micron == pytest.approx(0.0209, abs=2e-4)

@@ -236,6 +236,7 @@ def test_parts_of_a_batch_keep_their_numbers(law, alone, part):
     assert result.psi2 == pytest.approx(alone[0][part], abs=SOLVED)
 
 
+@pytest.mark.slow
 def test_a_permuted_batch_of_the_same_shape_keeps_its_numbers(law, alone):
     whole = simulated(law).run(scene(angle_deg=ANGLES)).scene
     order = np.array([2, 0, 3, 1])
@@ -247,6 +248,7 @@ def test_a_permuted_batch_of_the_same_shape_keeps_its_numbers(law, alone):
     )
 
 
+@pytest.mark.slow
 def test_chunks_workers_and_stores_are_cut_along_it(law, alone, tmp_path):
     impacts, simulation = scene(angle_deg=ANGLES), simulated(law)
     with ThreadPoolExecutor(2) as pool:
