@@ -118,7 +118,8 @@ def test_answers_without_a_reference_are_not_counted_as_compared(run, monkeypatc
 def test_the_picture_has_a_curve_a_law_under_its_usual_integrator(run, tmp_path, monkeypatch):
     drawn = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
-    ran = run(*COMMAND, "--tangential", "linear_spring", "--figure", tmp_path / "m.png")
+    laws = ("--tangential", "springs,linear_spring")
+    ran = run(*COMMAND[:2], *laws, "--figure", tmp_path / "m.png")
     assert ran.status == 0
     (axes,) = drawn[0].axes
     assert {"springs", "linear spring"} <= {text.get_text() for text in axes.texts}
