@@ -48,7 +48,7 @@ def test_a_caution_that_both_laws_have_is_told_once():
     columns = measured(run, "tangential_restitution", "normal_restitution")
     names = ["friction_coefficient", "restitution"]
     found = fit(columns, attrs.evolve(unlike, friction_coefficient=0.2), parameters=names)
-    assert [text[:13] for text in found.cautions].count("unlike bodies") == 1
+    assert ["unlike bodies" in text for text in found.cautions].count(True) == 1
     assert len(set(found.cautions)) == len(found.cautions)
 
 

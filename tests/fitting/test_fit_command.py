@@ -117,7 +117,7 @@ def test_cautions_are_told_of_every_law(run):
     content = json.loads(run(*options, "--json").out)
     exact, coulomb = (one["fit"]["cautions"] for one in content["ranking"])
     assert content["cautions"] == exact
-    assert any("moves friction_coefficient by up to" in text for text in exact)
+    assert any("friction_coefficient by up to" in text for text in exact)
     text = run(*options).out
     assert all(f"caution: {one}" in text for one in exact)
     assert all(text.count(one) == 1 for one in [*exact, *coulomb])
@@ -145,7 +145,7 @@ def test_the_notes_lead_from_a_csv_of_soft_data_to_its_friction(run, tmp_path):
     command += ("--column", "vn (m/s)=-rebound_normal_velocity (m/s)")
     assert "fit restitution too: that of normal=viscoelastic" in run(*command).err
     both = run(*command, "--fit", "friction_coefficient,restitution").out
-    assert "fit shear_loss too, or slip_restitution of walton" in both
+    assert "Fit shear_loss" in both
     names = "friction_coefficient,restitution,slip_restitution"
     ran = run(
         *command, "--fit", names, "--normal", "tsuji,hertz", "--tangential", "walton", "--json"
