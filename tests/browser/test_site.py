@@ -145,7 +145,9 @@ def test_notebooks_open_and_run(site, tmp_path):
     [
         ("gyration", set()),
         ("robot", {"Any two bodies"}),
-        ("batch", {"Getting started"}),
+        ("batch", {"Any two bodies"}),
+        ("annulus", set()),
+        ("pluggy", set()),
         ("golf", {"Any two bodies", "A golf ball hit by the toe and the heel of a driver"}),
     ],
 )
