@@ -64,10 +64,10 @@ class Capability(NamedTuple):
             tangential_claims=claims(tangential),
             shares_loss=shares_loss(tangential, normal),
             refusing=tuple(filter(may_refuse, laws)),
-            unnamed=tuple(law for law in laws if law.resolution and _of(law) is None),
+            unnamed=tuple(filter(_leaves_resolution, laws)),
         )
 
 
-def _of(law: Law) -> object:
-    """Return the resolution of a law as it was named, or None."""
-    return getattr(law, law.resolution or "", None)
+def _leaves_resolution(law: Law) -> bool:
+    """Return whether a law has a resolution, and nobody named it."""
+    return law.resolution is not None and getattr(law, law.resolution, law) is None

@@ -203,7 +203,8 @@ def test_at_every_corner_of_the_rebound(bounced):
     few = np.abs(psi1) < 1e3  # beyond, the velocity has no digits for the change
     bound = np.where(chi > 2.5, 6e-3, 1e-6)
     assert (np.abs(psi1 + change - expected) <= bound * np.maximum(np.abs(psi1), 1.0))[few].all()
-    turned = after[:, 5] * rows[:, 2] / radius  # the impulse of friction, whatever the velocity
+    # the impulse of friction, whatever the velocity: I w/R with I = m (K R)^2
+    turned = after[:, 5] * rows[:, 1] * rows[:, 2] ** 2 * radius
     assert np.abs(turned[~few] * 2.0 * chi[~few] / (friction * approach)
                   ) == pytest.approx(4.0 * chi[~few], rel=1e-12)  # fmt: skip
 
