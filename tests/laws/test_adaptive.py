@@ -13,7 +13,7 @@ from contactlab import Scene, Simulation, Status
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 from contactlab.impact.hertz import rigid_body_rebound
 from tests.laws.law_files import EXAMPLES, of_file
-from tests.laws.normal_laws import LinearSpring
+from tests.laws.normal_laws import LinearSpring, in_si
 from tests.laws.outside_laws import RescaledSpring
 
 pytestmark = pytest.mark.slow
@@ -155,7 +155,7 @@ class Elastic(SteppedTangentialLaw):
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
 def test_duration_and_restitution_do_not_depend_on_the_tolerance(tolerance):
     sim = Simulation(normal=LinearSpring(), tangential="coulomb", integrator=adaptive(tolerance))
-    result = sim.run(scene(7.0)).check()
+    result = sim.run(in_si(scene(7.0))).check()
     assert result.motion.duration == pytest.approx(math.pi, rel=1e-8)
     assert result.normal_restitution == pytest.approx(1.0, rel=1e-8)
 
@@ -167,7 +167,7 @@ def test_error_follows_the_tolerance():
         law = Elastic(stiffness_in_newton_per_metre=1.7)
         sim = Simulation(normal=LinearSpring(), tangential=law, integrator=adaptive(tolerance))
         exact = 1.2 * math.cos(math.sqrt(1.7 * 2 * CHI) * math.pi)
-        errors.append(abs(sim.run(scene()).check().psi2 - exact))
+        errors.append(abs(sim.run(in_si(scene())).check().psi2 - exact))
     assert all(error < 3 * tolerance for error, tolerance in zip(errors, tolerances, strict=True))
     slope = np.polyfit(np.log(tolerances), np.log(errors), 1)[0]
     assert slope == pytest.approx(1.0, abs=0.3)
@@ -175,7 +175,7 @@ def test_error_follows_the_tolerance():
 
 def test_states_that_a_law_was_given_are_not_changed():
     law = Elastic(stiffness_in_newton_per_metre=2.0)
-    Simulation(normal=LinearSpring(), tangential=law, integrator=adaptive(1e-3)).run(scene())
+    Simulation(normal=LinearSpring(), tangential=law, integrator=adaptive(1e-3)).run(in_si(scene()))
     assert len(law.seen) > 100
     assert all(float(state[0]) == held for state, held in law.seen)
 
