@@ -64,6 +64,7 @@ def test_where_steps_are_raised_it_is_what_was_taken_that_is_doubled():
     assert error / 3.0 < result.psi2_error_estimate < 3.0 * error
 
 
+@pytest.mark.slow
 def test_a_batch_is_estimated_as_its_impacts_are_alone():
     laws = {"tangential": "springs", "integrator": "symplectic"}
     scene = Scene.nondimensional(psi1=np.array([0.3, 1.2, 9.0, 0.3]), chi=np.array([1e3, 1, 1, 50]))
