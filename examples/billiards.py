@@ -10,6 +10,7 @@ about the vertical: the line on a ball turns with it.
 import argparse
 from collections.abc import Iterator
 from itertools import combinations
+from typing import Any
 
 import matplotlib
 
@@ -86,7 +87,8 @@ def play(collisions: int) -> Iterator[Event]:
         velocity, spin = velocity.copy(), spin.copy()
         normal = place[other] - place[one] if other >= 0 else np.zeros(2)
         target: Sphere | HalfSpace = BALL
-        friction, struck = BALLS_FRICTION, {}
+        friction = BALLS_FRICTION
+        struck: dict[str, Any] = {}
         if other < 0:
             target, friction = CUSHION, CUSHION_FRICTION
             normal[-1 - other] = np.sign(velocity[one, -1 - other])
