@@ -16,8 +16,8 @@ INSTALLED = "reads sources that are not in an installed package"
 
 
 def extra(module):
-    """Return a mark that skips a test where an optional package is missing."""
-    return pytest.mark.skipif(find_spec(module) is None, reason=f"needs the extra {module}")
+    """Return a mark that skips a test where an extra, or a folder of plugins, is missing."""
+    return pytest.mark.skipif(find_spec(module) is None, reason=f"needs {module}")
 
 
 needs_sources = pytest.mark.skipif(not (ROOT / "contactlab").is_dir(), reason=INSTALLED)

@@ -13,6 +13,7 @@ from contactlab.registry.citations import DOI, YEAR, bibtex, references
 from contactlab.registry.registry import REGISTRY
 from tests.cli.conftest import EXAMPLES
 from tests.longer import longer
+from tests.present import extra
 
 
 class Balanced(html.parser.HTMLParser):
@@ -166,6 +167,8 @@ def test_a_default_law_that_does_not_fit_the_normal_law_is_left_out(reported, da
     assert "fronts" not in text
 
 
+needs_fits = extra("contactlab_fit")  # which reads tables of impacts
+
 DROPS = (
     "[sphere]\nradius = 0.01\nmaterial = 'steel'\n[target]\nkind = 'half-space'\n"
     "material = 'steel'\n[impact]\nspeed = 2.0\nfriction_coefficient = 0.1\n"
@@ -186,6 +189,7 @@ def test_a_report_of_slip_that_turns_leaves_out_laws_without_an_answer(reported,
     assert "fronts (" not in page
 
 
+@needs_fits
 def test_impacts_of_a_table_stand_beside_the_laws(reported, tmp_path):
     """Gross slip at 45 degrees has e_t = 1 - 2 mu = 0.8: 0.75 is 0.05 off, and 1.0 is 0.2."""
     (tmp_path / "drops.toml").write_text(DROPS + SWEPT, encoding="utf-8")
@@ -196,6 +200,7 @@ def test_impacts_of_a_table_stand_beside_the_laws(reported, tmp_path):
     assert re.search(r"<td>coulomb</td>\s*<td class=\"number\">[\d.]+</td>\s*<td[^>]*>0.2<", text)
 
 
+@needs_fits
 @pytest.mark.parametrize(
     ("scene", "rows", "words"),
     [
@@ -212,6 +217,7 @@ def test_impacts_that_are_not_those_of_the_scene_are_refused(run, tmp_path, scen
     assert words in ran.err
 
 
+@needs_fits
 @pytest.mark.slow
 @pytest.mark.parametrize("rows", ["45,2,0.8\n", "45,2,0.8\n45,2,0.9\n"])
 def test_one_impact_and_equal_impacts_are_reported(reported, tmp_path, rows):
