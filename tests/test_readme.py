@@ -25,7 +25,7 @@ from contactlab.cli.main import main
 from contactlab.impact.hertz import peak_pressure
 from contactlab.registry.registry import REGISTRY
 from contactlab.testing import Verdict, examine
-from tests.present import ROOT, needs_sources
+from tests.present import ROOT, extra, needs_sources
 
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 EXAMPLES = ROOT / "examples"
@@ -158,6 +158,7 @@ def test_the_moving_picture_is_small():
     assert (ROOT / "examples" / "pictures" / "impact.gif").stat().st_size < 1_500_000
 
 
+@extra("contactlab_halfspace")
 def test_the_table_of_errors_names_every_law():
     """But for the one that makes no force, and laws of other distributions."""
     table = LAWS.partition("## Error against run time")[2].partition("\n## ")[0]

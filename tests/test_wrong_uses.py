@@ -9,6 +9,7 @@ import pytest
 
 from contactlab.cli.main import main
 from contactlab.scene_file import read_scene
+from tests.present import of_commands
 
 SETUP = """
 import numpy as np
@@ -302,7 +303,9 @@ contact = [0.003, 0, -0.01]
 """
 
 
-@pytest.mark.parametrize(("typed", "word", "mended"), COMMANDS)
+@pytest.mark.parametrize(
+    ("typed", "word", "mended"), [row for row in COMMANDS if of_commands(row[2])]
+)
 def test_on_the_command_line(tmp_path, monkeypatch, capsys, typed, word, mended):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "s.toml").write_text(SCENE)

@@ -18,6 +18,7 @@ from contactlab.cli.main import main
 from contactlab.outcome.columns import QUANTITIES
 from contactlab_fit import fit, read_measurements
 from tests.longer import longer
+from tests.present import of_commands
 
 STEEL = Material.named("steel")
 BALL, OTHER = Sphere(0.01, STEEL), Sphere(0.025, STEEL, mass=0.04)
@@ -217,7 +218,7 @@ FIRST = {
 OF_THE_ROD = "normal = [0, 0, -1]\nalong = [1, 0, 0]\n"
 
 
-@pytest.mark.parametrize("command", ["fit", "compare", "report"])
+@pytest.mark.parametrize("command", of_commands("fit", "compare", "report"))
 @pytest.mark.parametrize("body", FIRST)
 def test_a_half_space_does_not_spin_at_any_door_of_measurements(tmp_path, capsys, body, command):
     """Under a ball this was refused, under a rod it was passed over."""

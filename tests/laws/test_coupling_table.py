@@ -5,6 +5,7 @@ import pytest
 
 from contactlab import Scene
 from contactlab.impact.coupling import coupling_shift, nodes
+from tests.present import extra
 
 pytest.importorskip("table_builders", reason="table_builders is not in the wheel")
 
@@ -43,6 +44,7 @@ def test_the_axes_are_those_of_the_builder():
     assert (nodes().size[1:, :, :, -1] > 0.0).all()
 
 
+@extra("contactlab_halfspace")
 @pytest.mark.slow
 def test_at_a_node_the_table_is_the_solution():
     fresh = np.abs(shift(np.array([1.0, 3.0]), 1.44, 0.5, (0.5,)))
@@ -50,10 +52,12 @@ def test_at_a_node_the_table_is_the_solution():
     assert table == pytest.approx(fresh, abs=2e-4)
 
 
+@extra("contactlab_halfspace")
 def test_between_nodes():
     check(np.array([0.6, 4.5]), np.array([1.3, 1.5]), np.array([0.2, 0.4]), (0.7,))
 
 
+@extra("contactlab_halfspace")
 @pytest.mark.slow
 def test_between_nodes_at_random():
     random = np.random.default_rng(3)
