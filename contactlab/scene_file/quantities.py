@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.units import CONVERSIONS, SAME_UNITS, convertible
+from contactlab.numeric.units import CONVERSIONS, SAME_UNITS, convertible, factor
 from contactlab.scene_file.entries import BODY_SECTIONS, UNITS
 
 #: A number and what follows it.
@@ -47,12 +47,12 @@ def _read(value: object, path: str, own: str, table: object) -> object:
     if unit is None:
         remedy = f"write {written[1]} without quotes" + (f" in {own}" if own != "1" else "")
         raise refuse(path, value, "must be a number, or a number and its unit", remedy)
-    if unit != own and (unit, own) not in CONVERSIONS:
+    if (times := factor(unit, own)) is None:
         known = any(unit in pair for pair in CONVERSIONS) or unit in UNITS.values()
         rule = f"{unit} is " + ("the unit of another quantity" if known else "not known here")
         plain = "write a plain number" if own == "1" else f"give it in {convertible(own)}"
         raise refuse(path, value, rule, plain)
-    return number * CONVERSIONS.get((unit, own), 1.0)
+    return number * times
 
 
 def _unit(key: str, table: Mapping[str, object]) -> str:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from contactlab.impact.scene import entry_unit
 from contactlab.numeric.names import nearest
-from contactlab.numeric.units import CONVERSIONS, SAME_UNITS
+from contactlab.numeric.units import CONVERSIONS, SAME_UNITS, factor
 from contactlab.outcome.columns import QUANTITIES, foreign
 from contactlab.outcome.files import content
 from contactlab.registry.bound import options_read
@@ -155,10 +155,10 @@ def name_and_unit(text: str) -> tuple[bool, str, str]:
 
 def _factor(text: str, name: str, unit: str, own: str) -> float:
     """Return the factor from the unit of a heading to the unit of the named quantity."""
-    if unit == own or (not unit and (own == "1" or name.endswith("_deg"))):
+    if not unit and (own == "1" or name.endswith("_deg")):
         return 1.0
-    if (unit, own) in CONVERSIONS:
-        return CONVERSIONS[unit, own]
+    if (times := factor(unit, own)) is not None:
+        return times
     convertible = "".join(f", or ({unit})" for unit, to in CONVERSIONS if to == own)
     reason = "has no unit" if not unit else f"is in {unit}, which is not known here"
     raise ValueError(f"heading {text!r}: {reason}; write '{name} ({own})'{convertible}")

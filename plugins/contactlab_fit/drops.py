@@ -11,7 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from contactlab.numeric.types import Array
-from contactlab.numeric.units import CONVERSIONS, convertible
+from contactlab.numeric.units import convertible, factor
 from contactlab_fit.csv_columns import name_and_unit
 
 #: Standard gravity in m/s²; on the ground it differs from it by up to 0.3 %.
@@ -49,12 +49,12 @@ def find_drops(headings: Mapping[str, str]) -> dict[str, tuple[str, float]]:
         if name not in DROPS:
             continue
         own = DROPS[name]
-        if unit != own and (unit, own) not in CONVERSIONS:
+        if (times := factor(unit, own)) is None:
             reason = f"{unit} is no unit of it" if unit else "has no unit"
             raise ValueError(f"heading {text!r}: {reason}; give it in {convertible(own)}")
         if name in found:
             raise ValueError(f"heading {text!r}: {name} is there twice")
-        found[name] = text, CONVERSIONS.get((unit, own), 1.0)
+        found[name] = text, times
     if found and set(found) not in ({DROP, BOUNCE}, {TAP}):
         rule = "drops have drop_height and bounce_height, or the times t_bounce alone"
         raise ValueError(f"{rule}; had: {', '.join(found)}")

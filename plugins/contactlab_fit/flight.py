@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from contactlab.numeric.checks import POSITIVE, real, refuse
 from contactlab.numeric.types import Array, Real
-from contactlab.numeric.units import CONVERSIONS
+from contactlab.numeric.units import CONVERSIONS, factor
 from contactlab_fit.csv_columns import (
     NUMBER,
     name_and_unit,
@@ -173,15 +173,14 @@ def _film(
         if own == "m" and unit in PIXELS:
             film[name] = sign * column_of(text, values, gaps=True)
             continue
-        if unit != own and (unit, own) not in CONVERSIONS:
+        if (times := factor(unit, own)) is None:
             known = ", ".join(f"({each})" for each, to in CONVERSIONS if to == own)
             reason = f"is in {unit}, which is not known here" if unit else "has no unit"
             more = ", (px)" if own == "m" else ""
             raise ValueError(
                 f"heading {text!r}: {reason}; write '{name} ({own})', or {known}{more}"
             )
-        numbers = column_of(text, values, gaps=True)
-        film[name] = sign * CONVERSIONS.get((unit, own), 1.0) * numbers
+        film[name] = sign * times * column_of(text, values, gaps=True)
     for name in ("t", "x", "y"):
         if name not in film:
             raise ValueError(
