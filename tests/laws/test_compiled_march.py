@@ -225,7 +225,7 @@ def test_what_fails_has_the_status_and_the_sentence_of_python(both):
 @needs_library
 def test_impacts_that_last_too_long_are_told_as_by_python(both, monkeypatch):
     """Were they given up after a half of the approach without friction."""
-    monkeypatch.setattr("contactlab_laws.march.coupled.LONGEST", 0.5)
+    monkeypatch.setattr("contactlab_laws.march.coupled_steps.LONGEST", 0.5)
     scene = Scene.nondimensional(psi1=[0.5, 1.0], chi=[1.3, 2.0], lam=[0.1, 0.3], rho=0.5)
     for given in (scene, scene.take(1)):
         one, other = both(lambda given=given: simulation(1.0, 4, 60).run(given))

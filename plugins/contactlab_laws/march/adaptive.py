@@ -25,7 +25,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Rule, quantity
 from contactlab.numeric.types import Array
-from contactlab_laws.march import coupled
+from contactlab_laws.march import coupled, coupled_steps
 from contactlab_laws.march.division import midpoints
 from contactlab_laws.march.fixed import (
     MOST_STEPS,
@@ -123,7 +123,7 @@ class Adaptive(CoupledIntegrator):
         The tolerance is that of the velocities over the greatest of them at first touch.
         """
         assert isinstance(tangential, CausalTangentialLaw)
-        needed = coupled.needed_steps(scene, normal, tangential)
+        needed = coupled_steps.needed_steps(scene, normal, tangential)
         count = np.where(needed <= MOST_STEPS, np.maximum(needed, FIRST), np.inf)
         refused = Status.TOO_FEW_STEPS, refusals(FIRST, needed)
         before = coupled.march_coupled(scene, normal, tangential, count, None, refused, usual=USUAL)

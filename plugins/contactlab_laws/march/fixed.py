@@ -31,7 +31,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import chosen, every, for_share
 from contactlab.numeric.checks import count, flag
 from contactlab.numeric.types import Real
-from contactlab_laws.march import coupled
+from contactlab_laws.march import coupled, coupled_steps
 from contactlab_laws.march.division import LARGEST_LEAD, LARGEST_PHASE_STEP, resolving
 from contactlab_laws.march.march import march
 
@@ -54,7 +54,7 @@ def needed_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene | None =
     assert isinstance(law, SteppedTangentialLaw)
     if scene is not None and scene.inverse_mass is not None:
         assert isinstance(law, CausalTangentialLaw)
-        return np.maximum(coupled.needed_steps(scene, normal, law), float(LEAST_STEPS))
+        return np.maximum(coupled_steps.needed_steps(scene, normal, law), float(LEAST_STEPS))
     scene = normal.scene
     stiffness: Any = judges.stiffness_of(law, scene, normal)
     if not scene.shape and isinstance(stiffness, float):
@@ -154,7 +154,7 @@ class FixedSteps(CoupledIntegrator):
             taken = self._taken(needed)
         else:
             assert isinstance(tangential, CausalTangentialLaw)
-            needed = coupled.needed_steps(scene, normal, tangential)
+            needed = coupled_steps.needed_steps(scene, normal, tangential)
             taken = self._take_coupled(needed)
         declared = tangential.errors(scene, normal, taken)
         if every(followed := np.less_equal(needed, taken) & np.isfinite(taken)):
@@ -218,7 +218,7 @@ class FixedSteps(CoupledIntegrator):
     ) -> TangentialMotion:
         """Return the motion, ``steps`` counted on the approach without friction."""
         assert isinstance(tangential, CausalTangentialLaw)
-        needed = coupled.needed_steps(scene, normal, tangential)
+        needed = coupled_steps.needed_steps(scene, normal, tangential)
         taken = self._take_coupled(needed)
         refused = Status.TOO_FEW_STEPS, refusals(self._steps, needed)
         return coupled.march_coupled(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,8 +25,11 @@ from contactlab.numeric.arrays import flat, spread_object
 from contactlab.numeric.types import Array, Real
 from contactlab_laws.compiled import library
 from contactlab_laws.jaeger.partial_slip import Scales
-from contactlab_laws.march.coupled import DEEPEST, TOO_DEEP, Division, tell_too_long
+from contactlab_laws.march.coupled_steps import DEEPEST, TOO_DEEP, Division, tell_too_long
 from contactlab_laws.springs import viscous
+
+if TYPE_CHECKING:
+    from contactlab_laws.springs.law import Springs
 
 #: Numbers of a contact, of an end, of a step of a known motion, and of an impact along it.
 CONTACT, END, SAMPLE, IMPACT = 16, 17, 7, 7
@@ -45,7 +48,7 @@ AT_A_TIME = 1e6
 ROUNDING = 4e-13
 
 
-def knows(law: Law, normal: Law | None, integrator: Law | None = None) -> bool:
+def knows(law: Law, normal: Law | None, integrator: Law | None = None) -> TypeGuard[Springs]:
     """Return whether a march of these laws is compiled; None stands for any normal law.
 
     Laws that are derived from them may answer otherwise.
@@ -68,9 +71,6 @@ def march(
     """Return the motion of ``march_coupled``; None where Python has to follow an impact."""
     if (found := library()) is None or not knows(law, normal.law):
         return None
-    from contactlab_laws.springs.law import Springs  # which imports this module
-
-    assert isinstance(law, Springs)
     shape, axes, springs = scene.shape, 1 if scene.planar else 2, law.even_springs()
     items, loss = math.prod(shape), shares_loss(law, normal.law)
     if not loss and "elastic_hertz" not in normal.claims:

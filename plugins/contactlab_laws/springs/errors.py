@@ -17,7 +17,7 @@ from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import plain
 from contactlab.numeric.types import Real
-from contactlab_laws.march.coupled import deepest
+from contactlab_laws.march.coupled_steps import deepest
 
 #: Error of psi2 by springs, over x/n².
 BY_SPRINGS = 0.46
