@@ -212,7 +212,7 @@ def _laws(scene: Scene, normal: object, tangential: object) -> tuple[Any, Any, S
     of_kind("tangential", second, SteppedTangentialLaw, rule=rule, remedy="use springs or annulus")
     if (complaint := composition.misfit(first, second)) is not None:
         raise ValueError(complaint)
-    first, second, scene = bound_laws(first, second, scene)
+    (first, second), scene = bound_laws((first, second), scene)
     for law in (first, second):
         accept(law, scene)
     if (rate := unfollowed_rate(first, scene)) is not None:

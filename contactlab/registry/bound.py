@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple, Protocol
 
@@ -83,7 +83,7 @@ def bound(laws: Laws, scene: Scene) -> tuple[Laws, Scene]:
     """
     if not _read_any(type(laws.normal), type(laws.tangential), type(laws.integrator)):
         return laws, scene
-    *used, scene = bound_laws(*laws, scene)
+    used, scene = bound_laws(laws, scene)
     pairs = zip(laws.by_kind().items(), used, strict=True)
     changed = {kind: own for (kind, law), own in pairs if own is not law}
     return laws.changed(**changed) if changed else laws, scene
@@ -95,13 +95,9 @@ def _read_any(*classes: type[Law]) -> bool:
     return any(options_read(each) for each in classes)
 
 
-def bound_laws(*given: Any) -> tuple[Any, ...]:
-    """Return some laws and the scene, which is the last, as ``bound`` does."""
-    laws: tuple[Law, ...] = given[:-1]
-    scene: Scene = given[-1]
-    if not any(options_read(type(law)) for law in laws):
-        return given
-    used: list[Law] = []
+def bound_laws(laws: Iterable[Law], scene: Scene) -> tuple[list[Any], Scene]:
+    """Return some laws and the scene as ``bound`` does."""
+    used: list[Any] = []
     numbers = dict(scene._options)
     for law in laws:
         one, own = bound_law(law, scene)
@@ -109,7 +105,7 @@ def bound_laws(*given: Any) -> tuple[Any, ...]:
         numbers |= own
     if numbers:
         scene = scene._with(_options=Named(numbers))
-    return (*used, scene)
+    return used, scene
 
 
 def bound_law(law: Law, scene: Scene) -> tuple[Law, dict[str, Any]]:
