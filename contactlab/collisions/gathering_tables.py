@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -27,26 +28,26 @@ Rows = tuple[list[str], list[list[Any]]]
 def bodies_table(hit: GatheringResult) -> Rows:
     """Return headings and one row for each body of each gathering."""
     names = [*hit.gathering.names] or [str(k) for k in range(len(hit.gathering.bodies))]
-    columns = {
-        f"{name}_{axis}_{_plain(unit)}": getattr(hit, name)[..., k]
-        for name, unit in VECTORS_OF_BODIES
-        for k, axis in enumerate(AXES)
-    }
-    return _rows(hit, "body", names, columns)
+    return _rows(hit, "body", names, _components(hit, VECTORS_OF_BODIES))
 
 
 def contacts_table(hit: GatheringResult) -> Rows:
     """Return headings and one row for each contact of each gathering."""
-    columns = {
-        f"{name}_{axis}_{_plain(unit)}": getattr(hit, name)[..., k]
-        for name, unit in VECTORS_OF_CONTACTS
-        for k, axis in enumerate(AXES)
-    }
+    columns = _components(hit, VECTORS_OF_CONTACTS)
     for name, unit in OF_CONTACTS:
         heading = name if unit == "1" else f"{name}_{_plain(unit)}"
         columns[heading] = getattr(hit, name)
     touches = [f"touches[{k}]" for k in range(len(hit.gathering.touches))]
     return _rows(hit, "contact", touches, columns)
+
+
+def _components(hit: GatheringResult, vectors: Iterable[tuple[str, str]]) -> dict[str, Array]:
+    """Return the components of vectors, of names and units, by heading."""
+    return {
+        f"{name}_{axis}_{_plain(unit)}": getattr(hit, name)[..., k]
+        for name, unit in vectors
+        for k, axis in enumerate(AXES)
+    }
 
 
 def _plain(unit: str) -> str:
