@@ -295,13 +295,13 @@ class Simulation:
 
         started = time.perf_counter()
         options: dict[str, Any] = {"chunk": chunk, "executor": executor}
+        options["return_partial"] = return_partial
         if isinstance(scenes, str | Path) or hasattr(scenes, "scene"):
             remedy = "give its .scene" if hasattr(scenes, "scene") else FOR_FILES
             raise refuse("scenes", scenes, "must be a Scene, or a sequence of them", remedy)
         if into is not None:
             with follow(progress, "impacts") as count:
-                options |= {"progress": count, "return_partial": return_partial}
-                return self._into(into, keep, scenes, options)
+                return self._into(into, keep, scenes, {"progress": count, **options})
         if isinstance(scenes, GridParts):
             rule = "is a grid in parts, which needs a folder"
             raise refuse("scenes", scenes, rule, "give into=folder, or Scene.grid")
@@ -310,8 +310,7 @@ class Simulation:
         laws, batch = bound(self.laws, batch)
         ways = solve.accept_scene(laws, batch)
         with follow(progress, "impacts") as count:
-            options |= {"progress": count, "return_partial": return_partial}
-            columns, motion = swept(laws, batch, keep=keep, **options)
+            columns, motion = swept(laws, batch, keep=keep, progress=count, **options)
         return _result(ways, batch, plan_of(laws, batch, columns, motion), motion, started)
 
     def _into(
