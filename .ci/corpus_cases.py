@@ -28,7 +28,7 @@ TANGENTIAL = [
     ("mindlin_deresiewicz", {}), ("mindlin_deresiewicz", {"components": 32}),
     ("springs", {"springs": 8}), ("springs", {"springs": 8, "grid": "doubling"}),
     ("stronge", {}), ("stronge", {"stiffness_ratio": 0.9}),
-    ("walton", {"slip_restitution": 0.3}), ("mindlin_cap", {"form": "increment_rescaled"}),
+    ("walton", {"beta0": 0.3}), ("mindlin_cap", {"form": "increment_rescaled"}),
     ("frictionless", {}), ("coulomb", {}),
 ]  # fmt: skip
 INTEGRATORS = [
@@ -176,7 +176,7 @@ def fits():
     thrown = cl.Scene.at_angle(BALL, cl.HalfSpace(GLASS), 0.1, speed=2.0, angle_deg=30.0)
     walton = cl.Simulation(tangential="walton")
     parameters = {"friction_coefficient": None, "stiffness_ratio": None}
-    parameters["tangential.slip_restitution"] = walton
+    parameters["tangential.beta0"] = walton
     for (name, laws), only in itertools.product(parameters.items(), (None, [[*data][2]])):
         how = {"parameters": [name], "simulation": laws, "quantities": only, "bootstrap": 8}
         yield f"fit {name} {only}", functools.partial(cl.fit, data, thrown, **how)

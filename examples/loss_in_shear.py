@@ -42,7 +42,7 @@ def draw(axes: Axes) -> None:
         lines += axes.plot(psi1, values, **law_style(number))
     axes.axhline(0.0, color="grey", lw=0.8, zorder=0)
     axes.set(xlabel=r"angle of incidence $\psi_1$ (scaled)", xlim=(0.0, 5.0))
-    axes.set_ylabel(r"tangential restitution $e_T = -\psi_2/\psi_1$")
+    axes.set_ylabel(r"slip restitution $\beta_0 = -\psi_2/\psi_1$")
     axes.set_title(f"Normal restitution {RESTITUTION} for the two that lose")
     name_curves(axes, lines, list(curves))
 

@@ -164,7 +164,7 @@ def rebound(
         table psi2 holds
         to 5e-5 up to chi = 2, and to 1.5e-4 up to 3. Below chi = 0.3 springs give psi2 to 5e-5,
         above 3 to 3e-4 sqrt(chi/3). Impacts that slip throughout, psi1 >= max(1, 2 chi (1 + e) -
-        e), and those of e = 0, are exact. A plan of ``collide`` states how far e_T =
+        e), and those of e = 0, are exact. A plan of ``collide`` states how far beta0 =
         -psi2/psi1 is trusted (model error).
 
     Returns

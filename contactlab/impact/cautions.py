@@ -20,7 +20,7 @@ FIRST_YIELD = 1.6
 GPA = 1e9
 #: Above this ratio of contact radius to R the theory of half-spaces is doubtful (theory §8).
 DOUBTFUL_SIZE_RATIO = 0.1
-#: Growth of e_T of deep contacts over C² = z/R, and the deepest of the 13 bounces of a superball
+#: Growth of beta0 of deep contacts over C² = z/R, and the deepest of the 13 bounces of a superball
 #: from which it is (theory §15; ``study/measured/superball.toml``).
 DEEPER, DEEPEST = (0.8, 2.0), 0.175
 #: What a caution says in place of a size beyond its measurements.
@@ -52,9 +52,9 @@ def large_contact(ratio: float) -> tuple[str, ...]:
     if not ratio > DOUBTFUL_SIZE_RATIO:
         return ()
     low, high = (rate * ratio * ratio for rate in DEEPER)
-    here = f"For balls e_T is then {low:.2g} to {high:.2g} higher."
+    here = f"For balls beta0 is then {low:.2g} to {high:.2g} higher."
     if ratio * ratio > DEEPEST:
-        here = f"Its effect on e_T is {OUTSIDE}."
+        here = f"Its effect on beta0 is {OUTSIDE}."
     return (
         f"model: large contact, a/R = {ratio:.3g}. The theory holds below about "
         f"{DOUBTFUL_SIZE_RATIO}. {here}",

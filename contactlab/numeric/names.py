@@ -30,11 +30,12 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
     "normal_spin": ("spin",), "side_spin": ("normal_spin", "spin"), "english": ("spin",),
     "w1": ("spin",), "chi_w": ("spin_inertia",), "chi_t": ("spin_inertia",),
     "e": ("restitution", "normal_restitution"), "restitution": ("normal_restitution",),
-    "e_n": ("normal_restitution",), "e_t": ("tangential_restitution",),
-    "et": ("tangential_restitution",), "t": ("time",), "T": ("duration",),
+    "e_n": ("normal_restitution",), "e_t": ("tangential_restitution", "beta0"),
+    "et": ("tangential_restitution", "beta0"), "e_T": ("beta0",), "slip_restitution": ("beta0",),
+    "t": ("time",), "T": ("duration",),
     "force": ("normal_force", "tangential_force"),
     "F": ("tangential_force",), "P": ("normal_force",), "work": ("friction_work",),
-    "beta0": ("slip_restitution", "beta"), "kappa": ("stiffness_ratio",),
+    "kappa": ("stiffness_ratio",),
     "shear_modulus_ratio": ("stiffness_ratio",),
     "rebound_velocity": ("rebound_tangential_velocity", "rebound_normal_velocity", "velocity"),
     "final_velocity": ("rebound_tangential_velocity", "rebound_normal_velocity", "velocity"),
@@ -56,7 +57,11 @@ SHAPES = {
     "sphere": "contactlab.Sphere",
 }  # fmt: skip
 #: Remarks on a suggested name whose quantity is another.
-REMARKS = {"diameter": ", half the diameter", "d": ", half the diameter"}
+REMARKS = {
+    "diameter": ", half the diameter", "d": ", half the diameter",
+    "slip_restitution": ", which is -slip_restitution in results, and the same number in walton",
+    "e_T": ", which is -psi2/psi1",
+}  # fmt: skip
 
 
 def nearest(name: str, known: Iterable[str], *, alike: float = 0.5) -> str:
@@ -77,7 +82,7 @@ def nearest(name: str, known: Iterable[str], *, alike: float = 0.5) -> str:
         if "." not in plain:
             names = {each.rpartition(".")[2]: full for each, full in names.items()} | names
         meant = [names[each] for each in difflib.get_close_matches(plain, names, 1, alike)]
-    remark = REMARKS.get(plain, "")
+    remark = REMARKS.get(plain.rpartition(".")[2], "")
     return f"did you mean {' or '.join(map(repr, meant[:2]))}{remark}? " if meant else ""
 
 

@@ -154,7 +154,7 @@ COLUMNS = (
     Column("compressions", "1", "compressions", of_scenes="bodies"),
     Column("normal_restitution", "1", "normal_restitution"),
     Column("tangential_restitution", "1", "tangential_restitution", of_scenes="spheres"),
-    Column("slip_restitution", "1", "slip_restitution"),
+    Column("beta0", "1", "beta0"),
     Column("incidence_angle", "rad", "incidence_angle", of_scenes="spheres"),
     Column("rebound_angle", "rad", "rebound_angle", of_scenes="spheres"),
     Column("local_rebound_angle", "rad", "local_rebound_angle"),

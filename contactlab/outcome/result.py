@@ -295,12 +295,12 @@ class ImpactResult(Answer, Generic[Each]):
         return None if after is None else _ratio(after, before)
 
     @property
-    def slip_restitution(self) -> Each:
-        """Slip velocity after over before (psi2/psi1), along the slip; NaN where zero before."""
+    def beta0(self) -> Each:
+        """-psi2/psi1: minus the slip velocity after over before, along the slip; NaN where zero."""
         scene = self.scene
         slips = self.rebound_slip_velocity, scene.slip_velocity
         after, before = (kinetics.along_slip(scene, slip) for slip in slips)
-        return _ratio(after, before)
+        return _ratio(0.0 - after, before)  # no -0
 
     @property
     def incidence_angle(self) -> Each:

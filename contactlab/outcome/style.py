@@ -67,7 +67,7 @@ SYMBOLS = {
     "chi": r"inertia ratio $\chi$",
     "tangential_restitution": r"tangential restitution $e_t$",
     "normal_restitution": r"normal restitution $e$",
-    "slip_restitution": r"local restitution $\psi_2/\psi_1$",
+    "beta0": r"slip restitution $\beta_0 = -\psi_2/\psi_1$",
     "angle_deg": "angle of incidence from the normal",
     "incidence_angle_deg": "angle of incidence from the normal",
     "rebound_angle_deg": "rebound angle from the normal",

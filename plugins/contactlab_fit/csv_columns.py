@@ -20,7 +20,7 @@ from contactlab.scene_file.entries import ENTRIES, PROPERTY, is_option
 
 #: Quantities of a rebound that can be measured.
 MEASURABLE = (
-    "normal_restitution", "tangential_restitution", "slip_restitution", "rebound_angle_deg",
+    "normal_restitution", "tangential_restitution", "beta0", "rebound_angle_deg",
     "local_rebound_angle_deg", "rebound_angle", "local_rebound_angle", "rebound_speed",
     "rebound_normal_velocity", "rebound_tangential_velocity", "rebound_slip_velocity",
     "rebound_spin", "contact_time", "psi2",

@@ -40,6 +40,7 @@ WHOLE = {
     r"back_?spin|(total_)?spin_rate": "-rebound_spin",
     r"e|e_?n|cor|(coefficient_of_)?restitution": "normal_restitution",
     r"e_?t|tangential_cor": "tangential_restitution",
+    r"slip_restitution": "-beta0",
     r"t_?c|contact_(time|duration)|duration": "contact_time",
     r"ball_speed": "rebound_speed",
     r"launch_angle": "rebound_angle_deg",

@@ -9,6 +9,7 @@ import attrs
 import numpy as np
 
 from contactlab.numeric.checks import check_place, real, refuse
+from contactlab.numeric.names import nearest
 from contactlab.numeric.types import Array
 from contactlab.scene_file import SceneFile
 from contactlab_fit.csv_columns import (
@@ -77,9 +78,8 @@ class Measurements:
             return self
         for name in quantities:
             if name not in self.measured:
-                raise refuse(
-                    "quantities", name, "was not measured", f"had: {', '.join(self.measured)}"
-                )
+                had = f"{nearest(name, self.measured)}had: {', '.join(self.measured)}"
+                raise refuse("quantities", name, "was not measured", had)
         measured = {name: self.measured[name] for name in quantities}
         rows = np.any([np.isfinite(values) for values in measured.values()], axis=0)
         return attrs.evolve(

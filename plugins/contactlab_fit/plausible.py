@@ -29,7 +29,7 @@ RADIUS = (1e-6, 0.5)
 #: Angles below this, in degrees, may be in radians.
 RADIANS = 1.58
 #: Possible restitutions with a margin for scatter, and the share outside that is reported.
-BOUNDS, SHARE = {"normal_restitution": (-0.1, 1.1), "slip_restitution": (-1.1, 1.1)}, 1 / 3
+BOUNDS, SHARE = {"normal_restitution": (-0.1, 1.1), "beta0": (-1.1, 1.1)}, 1 / 3
 #: A mean restitution lies above or below 1 if scatter makes that with less than this chance.
 DOUBT = 0.01
 #: Additional bounds without spin before the impact.

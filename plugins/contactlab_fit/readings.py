@@ -44,10 +44,14 @@ TURNED = " (--column HEADING=-{} turns it)"
 TAKEN_FOR = {
     "rebound_angle_deg": "local_rebound_angle_deg",
     "rebound_angle": "local_rebound_angle",
-    "tangential_restitution": "slip_restitution",
     "rebound_tangential_velocity": "rebound_slip_velocity",
 }
 TAKEN_FOR |= {local: centre for centre, local in TAKEN_FOR.items()}
+#: Restitutions that are easily exchanged, each with what its numbers then are: name, sign, words.
+RESTITUTIONS = {
+    "tangential_restitution": (("beta0", 1.0, "beta0"), ("beta0", -1.0, "psi2/psi1, -beta0")),
+    "beta0": (("tangential_restitution", 1.0, "tangential_restitution"),),
+}
 
 
 class Reading(NamedTuple):
@@ -140,10 +144,11 @@ def _numbers(problem: Problem) -> Iterator[Reading]:
         if unit in ("deg", "rad"):
             read = _with(problem, name, _way(name, SURFACE))
             yield Reading(f"{name} looks as if {SURFACE}", read, {})
-        twin = TAKEN_FOR.get(name)
-        if twin and twin not in measured:
-            read = _rename(problem, {name: twin})
-            yield Reading(f"{name} looks as if its numbers were those of {twin}", read, {})
+        twin = TAKEN_FOR.get(name, "")
+        for other, sign, words in RESTITUTIONS.get(name, ((twin, 1.0, twin),)):
+            if other and other not in measured:
+                read = _rename(_with(problem, name, partial(np.multiply, sign)), {name: other})
+                yield Reading(f"{name} looks as if its numbers were those of {words}", read, {})
     names = list(measured)
     for place, first in enumerate(names):
         for second in names[place + 1 :]:

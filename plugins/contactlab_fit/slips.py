@@ -44,8 +44,6 @@ WORTH_FITTING_MORE = 1e-2
 TILT = 15.0
 #: Start of the search of a restitution.
 SOME_LOSS = 0.9
-#: Restitution of the contact point, an option of tangential laws.
-SLIP_RESTITUTION = "slip_restitution"
 #: Restitutions tried in place of 1, and the difference of scores that excludes one (95 %).
 LOSSES, EXCLUDED = (0.95, 0.9, 0.85, 0.8, 0.7, 0.6, 0.5), 3.84
 #: Residuals below this share of the largest number are numerical error.
@@ -289,7 +287,7 @@ def _free_shear_loss(problem: Problem, values: Array) -> Wider:
     own = float(getattr(setup.simulation and setup.simulation.tangential, SHEAR_LOSS, 1.0))
 
     def words(shear_loss: float) -> str:
-        others = ", ".join(map(_of_law, laws_with(SLIP_RESTITUTION)))
+        others = ", ".join(map(_of_law, laws_with("beta0")))
         return (
             f"the contact point looks as if it rebounded {'less' if shear_loss > own else 'more'} "
             f"than these laws give: as with {SHEAR_LOSS} = {shear_loss:.3g} (now {own:.3g}). Fit "
@@ -319,8 +317,8 @@ def _of_the_batch(problem: Problem, values: Array) -> tuple[Problem, Array]:
 
 
 def _of_law(law: str) -> str:
-    """Return in words the slip restitution of a law."""
-    return f"{SLIP_RESTITUTION} of {short_name(law)}"
+    """Return in words beta0 of a law."""
+    return f"beta0 of {short_name(law)}"
 
 
 def _free_restitution(problem: Problem, values: Array) -> Wider:

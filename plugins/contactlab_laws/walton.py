@@ -32,7 +32,7 @@ class Walton(WholeImpactTangentialLaw):
 
     Parameters
     ----------
-    slip_restitution : float
+    beta0 : float
         beta_0: minus the slip velocity after over before, where the contact does not slide
         throughout. Measured values lie near 0.4 for glass and acetate (Foerster et al. 1994).
 
@@ -48,7 +48,7 @@ class Walton(WholeImpactTangentialLaw):
         "impact_reference": "the exact solution is that of bodies which deform tangentially",
     }
 
-    slip_restitution: float = quantity("1", rule=SHARE, default=Taken(0.4))
+    beta0: float = quantity("1", rule=SHARE, default=Taken(0.4))
 
     def books_bound(self, scene: Scene) -> Real:
         """Return the bound of rounding: the friction work follows from the impulse."""
@@ -59,7 +59,7 @@ class Walton(WholeImpactTangentialLaw):
         mass, speed = scene.pair.tangential_mass, np.abs(scene.slip_velocity)
         with np.errstate(all="ignore"):
             slipping = scene.friction_coefficient * normal.total_load_impulse / mass
-            loss = np.minimum(slipping, (1.0 + self.slip_restitution) * speed)
+            loss = np.minimum(slipping, (1.0 + self.beta0) * speed)
             # The impulse acts at the mean of the velocities before and after.
             work = mass * loss * (speed - 0.5 * loss)
         answer = WholeImpact(

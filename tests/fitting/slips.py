@@ -203,7 +203,7 @@ def slips(series=30):
             changed(measured("local_rebound_angle_deg", seed=24), "local_rebound_angle_deg",
                     lambda v: v, to=ANGLE), ANGLE),
         "restitution of slip for that of the centre": (
-            changed(measured("slip_restitution", seed=25), "slip_restitution",
+            changed(measured("beta0", seed=25), "beta0",
                     lambda v: v, to=E_T), E_T),
         "errors in percent": (
             measured(E_T, seed=26)._replace(

@@ -79,7 +79,7 @@ def test_errors_of_one_quantity_alone_are_no_errors_of_all():
     errors = np.full(len(SLIPPING), 0.002)
     data = table(1.0 - 0.1 * slope + pulls, SLIPPING, tangential_restitution_error=errors)
     assert fit(data, BODIES).reduced_chi_square is not None
-    data["slip_restitution"] = 1.0 - 0.35 * slope + pulls
+    data["beta0"] = -(1.0 - 0.35 * slope + pulls)
     assert fit(data, BODIES).reduced_chi_square is None
 
 
@@ -160,7 +160,7 @@ def test_every_quantity_of_a_rebound_says_the_same():
              "tangential_velocity (m/s)": result.scene.tangential_velocity}  # fmt: skip
     found = {
         "tangential_restitution (1)": result.tangential_restitution,
-        "slip_restitution": result.slip_restitution,
+        "beta0": result.beta0,
         "rebound_angle (deg)": np.degrees(result.rebound_angle),
         "rebound_angle (rad)": result.rebound_angle,
         "rebound_spin (rpm)": result.rebound_spin * 60.0 / (2.0 * np.pi),
@@ -188,7 +188,7 @@ def test_gaps_are_left_out():
     values = restitution(0.13)
     some = np.array(values)
     some[::3] = np.nan
-    data = table(some) | {"slip_restitution": np.where(np.isnan(some), -0.2, np.nan)}
+    data = table(some) | {"beta0": np.where(np.isnan(some), 0.2, np.nan)}
     found = fit(data, BODIES, quantities=["tangential_restitution"])
     assert found["friction_coefficient"] == pytest.approx(0.13, abs=1e-6)
     assert len(found.measurements) == np.isfinite(some).sum()

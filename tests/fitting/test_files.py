@@ -91,19 +91,19 @@ def test_columns_are_named_by_the_list_of_columns(tmp_path, headings, names):
 
 def test_a_name_in_degrees_does_not_overrule_a_heading_in_radians():
     columns = {"in [rad]": [0.5], "e": [0.9], "e_s": [0.1]}
-    names = {"in [rad]": "angle_deg", "e": "slip_restitution", "e_s": "slip_restitution_error (1)"}
+    names = {"in [rad]": "angle_deg", "e": "beta0", "e_s": "beta0_error (1)"}
     found = read_measurements(columns, columns=names)
     np.testing.assert_allclose(found.given["angle_deg"], np.degrees(0.5), rtol=1e-15)
-    assert found.errors["slip_restitution"] == 0.1
+    assert found.errors["beta0"] == 0.1
 
 
 def test_chosen_quantities_keep_their_errors_and_no_others():
-    columns = {"angle_deg": [10.0, 20.0], "slip_restitution": [0.1, 0.2]}
-    columns |= {"slip_restitution_error": [0.01, 0.02], "normal_restitution": [0.9, 0.9]}
+    columns = {"angle_deg": [10.0, 20.0], "beta0": [0.1, 0.2]}
+    columns |= {"beta0_error": [0.01, 0.02], "normal_restitution": [0.9, 0.9]}
     columns |= {"normal_restitution_error": [0.03, 0.03]}
-    chosen = read_measurements(columns).only(["slip_restitution"])
-    assert list(chosen.measured) == list(chosen.errors) == ["slip_restitution"]
-    assert chosen.errors["slip_restitution"].tolist() == [0.01, 0.02]
+    chosen = read_measurements(columns).only(["beta0"])
+    assert list(chosen.measured) == list(chosen.errors) == ["beta0"]
+    assert chosen.errors["beta0"].tolist() == [0.01, 0.02]
 
 
 def test_a_published_table_is_read_by_a_mapping(tmp_path):

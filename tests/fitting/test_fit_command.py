@@ -125,7 +125,7 @@ def test_cautions_are_told_of_every_law(run):
 
 @pytest.mark.slow
 def test_the_notes_lead_from_a_csv_of_soft_data_to_its_friction(run, tmp_path):
-    """Each command does what the words before it say; made with mu .35, e .75, e_T .1."""
+    """Each command does what the words before it say; made with mu .35, e .75, beta0 .1."""
     data, bodies = tmp_path / "soft.csv", tmp_path / "bodies.toml"
     numbers = (
         (10, 14.77, 2.38), (20, 14.10, 4.69), (30, 12.99, 6.86), (40, 11.49, 8.82),
@@ -146,7 +146,7 @@ def test_the_notes_lead_from_a_csv_of_soft_data_to_its_friction(run, tmp_path):
     assert "fit restitution too: that of normal=viscoelastic" in run(*command).err
     both = run(*command, "--fit", "friction_coefficient,restitution").out
     assert "Fit shear_loss" in both
-    names = "friction_coefficient,restitution,slip_restitution"
+    names = "friction_coefficient,restitution,beta0"
     ran = run(
         *command, "--fit", names, "--normal", "tsuji,hertz", "--tangential", "walton", "--json"
     )
@@ -154,7 +154,7 @@ def test_the_notes_lead_from_a_csv_of_soft_data_to_its_friction(run, tmp_path):
     assert (first["law"], second["law"]) == ("tsuji", "hertz")
     assert first["fit"]["parameters"]["friction_coefficient"]["value"] == pytest.approx(0.35, 0.03)
     assert list(second["fit"]["parameters"]) == [
-        "friction_coefficient", "tangential.slip_restitution"
+        "friction_coefficient", "tangential.beta0"
     ]  # fmt: skip
     assert ran.status == 0
 

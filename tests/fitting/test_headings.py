@@ -63,7 +63,7 @@ TURN = 2.0 * math.pi
         ("rebound_spin_error_rpm", "error", "rebound_spin", TURN / 60.0),
         ("rebound_spin_rpm_error", "error", "rebound_spin", TURN / 60.0),
         ("rebound_angle_error (deg)", "error", "rebound_angle_deg", 1.0),
-        ("slip_restitution_error", "error", "slip_restitution", 1.0),
+        ("beta0_error", "error", "beta0", 1.0),
         ("status", "unused", "status", 1.0),
         ("spin_error (rad/s)", "unused", "spin_error (rad/s)", 1.0),
         ("friction_work (J)", "unused", "friction_work (J)", 1.0),

@@ -11,7 +11,7 @@ from contactlab_fit import fit, rank
 from tests.fitting.impacts import BODIES, STEEL, table
 from tests.longer import longer
 
-#: A nylon ball on steel at 20 m/s, made with mu .35, e .75 and e_T .1.
+#: A nylon ball on steel at 20 m/s, made with mu .35, e .75 and beta0 .1.
 SOFT = {
     "angle_deg": np.array([10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 68.0, 74.0]),
     "speed (m/s)": np.full(8, 20.0),
@@ -135,16 +135,16 @@ def test_laws_fit_what_they_have_over_the_same_numbers():
         "walton": Simulation(normal="tsuji", tangential="walton"),
         "coulomb": Simulation(normal="tsuji", tangential="coulomb"),
     }
-    ranked = rank(SOFT, BALL, laws, parameters=[MU, E, "slip_restitution"])
+    ranked = rank(SOFT, BALL, laws, parameters=[MU, E, "beta0"])
     assert [one.name for one in ranked] == ["walton", "coulomb", "hertz"]
     walton, coulomb, hertz = ranked
-    assert walton.fit["tangential.slip_restitution"] == pytest.approx(0.1, abs=0.002)
+    assert walton.fit["tangential.beta0"] == pytest.approx(0.1, abs=0.002)
     assert walton.fit[MU] == pytest.approx(0.35, rel=0.01)
     assert list(coulomb.fit.parameters) == [MU, "normal.restitution"]
     assert "do not determine friction_coefficient" in hertz.refusal
     # AIC over all numbers: where a quantity is left out, its scatter is that about e = 1
     fitted = rank(SOFT, BALL, {"walton": Simulation(tangential="walton"), "lossy": laws["walton"]},
-                  parameters=[MU, "slip_restitution", E])  # fmt: skip
+                  parameters=[MU, "beta0", E])  # fmt: skip
     first, second = fitted
     assert first.name == "lossy"
     normal = 20.0 * np.cos(np.radians(SOFT["angle_deg"]))

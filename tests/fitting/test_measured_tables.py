@@ -28,19 +28,19 @@ def bodies(tmp_path):
 
 
 def table(**columns):
-    return read_measurements({"angle_deg": ANGLES, "slip_restitution": [0.1, 0.2, 0.3]} | columns)
+    return read_measurements({"angle_deg": ANGLES, "beta0": [0.1, 0.2, 0.3]} | columns)
 
 
 def test_columns_that_others_determine_are_left_out():
     speeds = {"normal_speed (m/s)": [1.0], "tangential_velocity (m/s)": [0.5]}
     groups = {"psi1": [1.0], "chi": [1.4], "psi2": [0.2]}
     found = read_measurements(
-        {"angle_deg": [26.0]} | groups | speeds | {"slip_restitution": [0.1], "#": [0.0]}
+        {"angle_deg": [26.0]} | groups | speeds | {"beta0": [0.1], "#": [0.0]}
     )
     assert list(found.given) == ["normal_speed", "tangential_velocity"]
-    assert list(found.measured) == ["slip_restitution"]
+    assert list(found.measured) == ["beta0"]
     assert found.unused == ("#", "psi1", "chi", "psi2", "angle_deg")
-    found = read_measurements({"speed (m/s)": [2.0], "psi1": [1.0], "slip_restitution": [0.1]})
+    found = read_measurements({"speed (m/s)": [2.0], "psi1": [1.0], "beta0": [0.1]})
     assert (list(found.given), found.unused) == (["speed"], ("psi1",))
     found = read_measurements(groups)  # without velocities they are what was varied
     assert (list(found.given), list(found.measured), found.unused) == (
@@ -50,7 +50,7 @@ def test_columns_that_others_determine_are_left_out():
 
 def test_an_angle_beside_the_normal_speed_is_a_tangential_velocity():
     given = {"angle_deg": [45.0, -30.0], "normal_speed (m/s)": [2.0, 3.0], "psi2": [0.1, 0.2],
-             "slip_restitution": [0.1, 0.2]}  # fmt: skip
+             "beta0": [0.1, 0.2]}  # fmt: skip
     found = read_measurements(given).given
     assert list(found) == ["normal_speed", "tangential_velocity"]
     assert found["tangential_velocity"] == pytest.approx([2.0, -np.sqrt(3.0)])
@@ -64,15 +64,15 @@ def test_a_table_without_a_file_has_no_source():
 
 
 def test_impacts_with_none_of_the_chosen_quantities_are_left_out():
-    gaps = {"psi2": [np.nan, 0.2, 0.3], "slip_restitution": [0.5, np.nan, np.nan],
-            "slip_restitution_error": [0.1, 0.2, 0.3]}  # fmt: skip
+    gaps = {"psi2": [np.nan, 0.2, 0.3], "beta0": [0.5, np.nan, np.nan],
+            "beta0_error": [0.1, 0.2, 0.3]}  # fmt: skip
     found = read_measurements({"angle_deg": ANGLES} | gaps)
     chosen = found.only(["psi2"])
     assert chosen.given["angle_deg"].tolist() == [20.0, 40.0]
     assert (list(chosen.measured), dict(chosen.errors)) == (["psi2"], {})
-    both = found.only(["slip_restitution", "psi2"])
-    assert (len(both), list(both.measured)) == (3, ["slip_restitution", "psi2"])
-    words = "quantities = 'rebound_spin': was not measured; had: psi2, slip_restitution"
+    both = found.only(["beta0", "psi2"])
+    assert (len(both), list(both.measured)) == (3, ["beta0", "psi2"])
+    words = "quantities = 'rebound_spin': was not measured; had: psi2, beta0"
     with pytest.raises(ValueError, match=re.escape(words)):
         found.only(["rebound_spin"])
 
@@ -92,25 +92,25 @@ def test_series_of_a_scene_file_stand_one_below_the_other(bodies):
     head = "[[measured]]\nsource = 'x'\nagainst = 'angle_deg'\n"
     file = bodies(
         f"{head}quantity = 'psi2'\nx = [1.0, 2.0]\nvalues = [0.1, 0.2]\n"
-        f"{head}quantity = 'slip_restitution'\nx = [3.0]\nvalues = [0.5]\n"
+        f"{head}quantity = 'beta0'\nx = [3.0]\nvalues = [0.5]\n"
         f"{head}quantity = 'psi2'\nx = [4.0]\nvalues = [0.4]\n"
     )
     found = read_measurements(file)
     assert found.given["angle_deg"].tolist() == [1.0, 2.0, 3.0, 4.0]
     np.testing.assert_array_equal(found.measured["psi2"], [0.1, 0.2, np.nan, 0.4])
-    np.testing.assert_array_equal(found.measured["slip_restitution"], [np.nan, np.nan, 0.5, np.nan])
+    np.testing.assert_array_equal(found.measured["beta0"], [np.nan, np.nan, 0.5, np.nan])
     assert (found.errors, found.source, len(found)) == ({}, str(file.path), 4)
     with pytest.raises(ValueError, match=re.escape("has no [[measured]] values; give a CSV file")):
         read_measurements(bodies())
 
 
 def test_a_table_takes_the_place_of_measured_series(bodies):
-    more = {"speed (m/s)": [2.0, 2.01, 2.0], "slip_restitution_error": [0.01, 0.02, 0.03],
+    more = {"speed (m/s)": [2.0, 2.01, 2.0], "beta0_error": [0.01, 0.02, 0.03],
             "normal_restitution": [0.9, np.nan, 0.8]}  # fmt: skip
     file = with_measurements(bodies(), table(**more))
     slip, restitution = file.measured
     assert (slip.quantity, slip.against, slip.label) == (
-        "slip_restitution",
+        "beta0",
         "angle_deg",
         "measured",
     )
@@ -144,7 +144,7 @@ def test_a_table_takes_the_place_of_measured_series(bodies):
 def test_each_impact_has_the_entries_of_its_row(bodies, given, varied):
     """The abscissa is the angle, or the most spread entry; in its order the rows are a sweep."""
     count = len(next(iter(given.values())))
-    made = read_measurements(given | {"slip_restitution": np.arange(count)})
+    made = read_measurements(given | {"beta0": np.arange(count)})
     if varied is None:
         with pytest.raises(ValueError, match=r"impact.speed = .*must be"):
             with_measurements(bodies(), made)
@@ -174,7 +174,7 @@ def test_a_sweep_of_one_entry_beside_impacts_that_vary_in_two_is_refused(bodies)
     with pytest.raises(ValueError, match=words):
         with_measurements(swept, made)
     with pytest.raises(ValueError, match=r"no column describes the impact.*such as angle_deg"):
-        with_measurements(bodies(), read_measurements({"slip_restitution": [0.1, 0.2]}))
+        with_measurements(bodies(), read_measurements({"beta0": [0.1, 0.2]}))
 
 
 @pytest.mark.parametrize(("speed", "varies"), [(1.1, False), (1.11, True)])
@@ -207,7 +207,7 @@ def test_a_scene_at_another_speed_is_refused(bodies, speed, off):
 def test_the_normal_speed_of_the_scene_is_its_own(bodies):
     """2 m/s at 30 degrees: 1.732 m/s towards the target."""
     columns = {"normal_speed (m/s)": [1.0, 1.0, 1.0], "tangential_velocity (m/s)": [1.0, 2.0, 3.0]}
-    made = read_measurements(columns | {"slip_restitution": [0.1, 0.2, 0.3]})
+    made = read_measurements(columns | {"beta0": [0.1, 0.2, 0.3]})
     words = "normal_speed is 1 m/s, and 1.732 m/s in"
     with pytest.raises(ValueError, match=re.escape(words)):
         with_measurements(bodies("[sweep]\nspin = [1.0, 2.0]\n"), made)

@@ -18,7 +18,7 @@ E_T = "tangential_restitution"
 def sentences(columns, *, scene=BODIES):
     """Return the sentences on a table of steel balls; e_t is 0.7 by default."""
     count = max(np.size(values) for values in columns.values())
-    table = read_measurements({"slip_restitution": np.full(count, -0.5)} | columns)
+    table = read_measurements({"beta0": np.full(count, 0.5)} | columns)
     setup = Setup(scene_of(scene, table.given, count), None)
     names = ("friction_coefficient",) if setup.scene.sphere is not None else ()
     model = Model(setup=setup, parameters=tuple(find_parameter(name, setup) for name in names))
@@ -75,9 +75,9 @@ def test_a_scene_without_bodies_has_no_radius():
         ("normal_restitution", [-0.1, 1.1], 0),
         ("normal_restitution", [-0.11, 0.5], 1),
         ("normal_restitution", [0.5, 1.11], 1),
-        ("slip_restitution", [-1.1, 1.1], 0),
-        ("slip_restitution", [-1.11, 0.0], 1),
-        ("slip_restitution", [1.11, 2.0], 2),
+        ("beta0", [-1.1, 1.1], 0),
+        ("beta0", [-1.11, 0.0], 1),
+        ("beta0", [1.11, 2.0], 2),
         (E_T, [-0.1, 1.1], 0),
         (E_T, [1.11, 0.5], 1),
         (E_T, [9.0, 0.5, 0.5], 0),  # no more than a third
@@ -86,7 +86,7 @@ def test_a_scene_without_bodies_has_no_radius():
     ],
 )
 def test_what_no_rebound_does(name, values, outside):
-    found = sentences({"slip_restitution": [0.5] * len(values)} | {name: values})
+    found = sentences({"beta0": [0.5] * len(values)} | {name: values})
     assert len(found) == bool(outside)
     if outside:
         assert found[0].startswith(f"{name}: {outside} numbers lie outside ")

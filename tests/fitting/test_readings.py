@@ -110,8 +110,8 @@ def test_quantities_exchanged_and_taken_for_each_other():
     assert list(exchanged.problem.measured) == ["normal_restitution", "tangential_restitution"]
     np.testing.assert_array_equal([*exchanged.problem.measured.values()], [one, other])
     words = "{} looks as if its numbers were those of {}".format
-    for names in (("tangential_restitution", "slip_restitution"),
-                  ("slip_restitution", "tangential_restitution")):  # fmt: skip
+    for names in (("tangential_restitution", "beta0"),
+                  ("beta0", "tangential_restitution")):  # fmt: skip
         taken = read(POLAR | {names[0]: one})[words(*names)].problem.measured
         assert list(taken) == [names[1]]
         np.testing.assert_array_equal(taken[names[1]], one)

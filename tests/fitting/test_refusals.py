@@ -75,8 +75,8 @@ def test_a_scene_without_bodies_is_advised_by_psi1():
     psi1 = np.linspace(8.0, 10.0, 4)
     batch = Scene.nondimensional(psi1=psi1, chi=1.4412)
     laws = Simulation(tangential="walton")
-    with pytest.raises(ValueError, match=r"measure psi2 at psi1 (of|from) .*slip_restitution"):
-        fit({"psi2": laws.sweep(batch).check().psi2}, batch, parameters=["slip_restitution"],
+    with pytest.raises(ValueError, match=r"measure psi2 at psi1 (of|from) .*beta0"):
+        fit({"psi2": laws.sweep(batch).check().psi2}, batch, parameters=["beta0"],
             simulation=laws)  # fmt: skip
 
 
@@ -202,18 +202,18 @@ def test_bad_arguments(arguments, words):
         ({"speed (m/s": [1.0]}, "write a name and its unit"),
         ({"angle_deg": [5.0]}, "nothing was measured"),
         ({"speed (m/s)": [2.0], "psi2": [0.3]}, "psi2 depends on friction"),
-        ({"angle_deg": [5.0, 6.0], "slip_restitution": [0.1]}, "equal length"),
+        ({"angle_deg": [5.0, 6.0], "beta0": [0.1]}, "equal length"),
         (
-            {"angle_deg": [5.0], "slip_restitution": [0.1], "slip_restitution_error": [0.1, 0.2]},
-            "slip_restitution_error 2",
+            {"angle_deg": [5.0], "beta0": [0.1], "beta0_error": [0.1, 0.2]},
+            "beta0_error 2",
         ),
         ({"angle": [0.5], "psi2": [0.1]}, "has no unit; write 'angle (deg)', or (rad)"),
         ({"spin_rpm (rad/s)": [0.5], "psi2": [0.1]}, "spin_rpm (rad/s)=spin (rad/s)"),
-        ({"slip_restitution": [np.nan]}, "holds no number"),
-        ({"slip_restitution": [np.inf, np.nan]}, "must be finite"),
-        ({"slip_restitution": ["a"]}, "must be a list of numbers"),
-        ({"slip_restitution": [1.0], "slip_restitution_error": [0.0]}, "must be positive"),
-        ({"slip_restitution": [1.0], "psi2_error": [0.1]}, "there is no column psi2"),
+        ({"beta0": [np.nan]}, "holds no number"),
+        ({"beta0": [np.inf, np.nan]}, "must be finite"),
+        ({"beta0": ["a"]}, "must be a list of numbers"),
+        ({"beta0": [1.0], "beta0_error": [0.0]}, "must be positive"),
+        ({"beta0": [1.0], "psi2_error": [0.1]}, "there is no column psi2"),
         ({"rebound_angle (deg)": [1.0], "rebound_angle_deg": [1.0]}, "there twice"),
         ({"psi2": [[0.1]]}, "must be a list of numbers"),
         ({"psi2": []}, "must be a list of numbers"),

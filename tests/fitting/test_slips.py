@@ -29,7 +29,7 @@ CAUSES = {
     "restitution in percent": "tangential_restitution looks as if in percent",
     "rebounds a row too low": "tangential_restitution looks as if written a row too low",
     "angle of the contact point for that of the centre": "were those of local_rebound_angle_deg",
-    "restitution of slip for that of the centre": "were those of slip_restitution",
+    "restitution of slip for that of the centre": "were those of beta0",
     "protractor off by six degrees": "degrees too large, as by the zero of a protractor",
     "spin before in rpm": "spin looks as if in rpm",
     "sign of the spin before": "spin looks as if of the opposite sign",

@@ -190,7 +190,7 @@ def test_columns_beside_a_scene_of_vectors_are_refused():
     met = Encounter(
         BALL, block, 0.2, normal=[0, 0, -1], velocity=[0.3, 0, -1.0], target_contact=[0, 0, 0.1]
     )
-    data = {"speed (m/s)": [1.0, 1.0], "angle_deg": [9.0, 30.0], "slip_restitution": [0.1, 0.5]}
+    data = {"speed (m/s)": [1.0, 1.0], "angle_deg": [9.0, 30.0], "beta0": [0.1, 0.5]}
     with pytest.raises(ValueError, match="give the TOML file of the bodies, with along"):
         fit(data, met.scene)
 
@@ -228,7 +228,7 @@ def test_a_half_space_does_not_spin_at_any_door_of_measurements(tmp_path, capsys
         f"{OF_THE_ROD if body == 'rod' else ''}speed = 1.0\nangle_deg = 9.0\n"
         "friction_coefficient = 0.3\n", "utf-8",
     )  # fmt: skip
-    data.write_text("angle_deg,target_spin (rad/s),slip_restitution\n9,0,0.1\n20,30,0.3\n", "utf-8")
+    data.write_text("angle_deg,target_spin (rad/s),beta0\n9,0,0.1\n20,30,0.3\n", "utf-8")
     out = ["--out", str(tmp_path / "page.html")] if command == "report" else []
     given = [str(data), str(scene)] if command == "fit" else [str(scene), "--measured", str(data)]
     assert main([command, *given, *out]) == 2

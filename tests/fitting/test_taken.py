@@ -69,7 +69,7 @@ def test_what_stands_in_neither_table_nor_scene_is_listed(tmp_path, text, column
     data = elastic() | columns
     if "kind = 'sphere'" in text:
         del data["tangential_restitution"]
-        data["slip_restitution"] = np.linspace(-0.5, 0.5, len(ANGLES))
+        data["beta0"] = np.linspace(-0.5, 0.5, len(ANGLES))
     if "target_normal" in text:
         data["rebound_tangential_velocity (m/s)"] = (
             data.pop("tangential_restitution") * 2.0 * np.sin(np.radians(ANGLES))
@@ -96,14 +96,14 @@ def test_a_scene_in_python_has_what_is_not_the_default():
     groups = Scene.nondimensional(psi1=np.linspace(0.5, 5.0, 6), chi=1.4)
     psi2 = Simulation(tangential="coulomb").sweep(groups).psi2
     (found,) = rank({"psi2": psi2}, groups, {"walton": Simulation(tangential="walton")},
-                    parameters=["slip_restitution"])  # fmt: skip
+                    parameters=["beta0"])  # fmt: skip
     assert not found.fit or found.fit.taken == ()
 
 
 @pytest.mark.parametrize(
     ("laws", "parameters", "taken"),
     [
-        ({"tangential": "walton"}, ["friction_coefficient"], "tangential.slip_restitution = 0.4"),
+        ({"tangential": "walton"}, ["friction_coefficient"], "tangential.beta0 = 0.4"),
         *longer(({"normal": "tsuji"}, ["friction_coefficient"], "normal.restitution = 0.9")),
         ({"normal": "viscoelastic"}, ["restitution"], "tangential.shear_loss = 1"),
     ],

@@ -115,7 +115,7 @@ def test_without_friction_there_is_no_caution():
 
 
 def test_a_deep_contact_is_told_with_the_growth_of_its_error():
-    """Theory §15: each 0.1 of z/R = C² adds 0.08 to 0.2 to e_T; C by Hertz's maximum radius."""
+    """Theory §15: each 0.1 of z/R = C² adds 0.08 to 0.2 to beta0; C by Hertz's maximum radius."""
     soft = Material(young_modulus=1e7, poisson_ratio=0.45, density=1130.0)
 
     def at(speed):
@@ -200,4 +200,4 @@ def test_a_size_ends_where_its_measurements_end(laws, inside, outside, about, si
 def test_below_the_measured_restitutions_e_t_has_no_size(normal):
     law = contactlab.create(f"normal.{normal}", restitution=0.05)
     told = str(Simulation(normal=law, tangential="springs").plan(of_groups(1.4)).cautions)
-    assert "At e = 0.05 the error of e_T is outside the measured range" in told
+    assert "At e = 0.05 the error of beta0 is outside the measured range" in told

@@ -100,7 +100,7 @@ def test_a_superball_that_reverses_completely_is_a_law_of_whole_impacts():
     """Garwin's ball: v' = (3/7) v - (4/7) omega R, from momentum and energy alone (theory §2)."""
     rubber = Material.named("rubber")
     bodies, radius = (Sphere(0.025, rubber), HalfSpace(rubber)), 0.025
-    law = contactlab.create("tangential.walton", slip_restitution=1.0)
+    law = contactlab.create("tangential.walton", beta0=1.0)
     thrown = Scene(*bodies, 5.0, 3.0, 1.5, spin=20.0)
     result = Simulation(tangential=law).run(thrown).check()
     v, turning = 1.5, 20.0 * radius

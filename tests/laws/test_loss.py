@@ -299,7 +299,7 @@ def test_the_caution_has_the_size_of_the_evidence():
     )  # fmt: skip
     plan = springs(viscoelastic(0.8)).plan(ball)
     assert any(
-        "e_T" in text and "At e = 0.8" in text and "0.16" in text
+        "beta0" in text and "At e = 0.8" in text and "0.16" in text
         for text in map(str, plan.cautions)
     )
     assert any("deep contact" in text for text in map(str, plan.cautions))
@@ -308,7 +308,7 @@ def test_the_caution_has_the_size_of_the_evidence():
     )
     assert any("metals lose energy by yield" in text for text in map(str, plan.cautions))
     sliding = springs(viscoelastic(0.8)).plan(PLANAR(psi1=9.0, chi=CHI))
-    assert not any("e_T" in text for text in map(str, sliding.cautions))
+    assert not any("beta0" in text for text in map(str, sliding.cautions))
     alone = Simulation(normal=viscoelastic(0.8), tangential="annulus").plan(PLANAR(psi1=1.0, chi=1))
     assert "loss in shear: annulus has none" in map(str, alone.left_out)
     assert not any("loss in shear" in t for t in map(str, springs("hertz").plan(ball).left_out))

@@ -34,7 +34,7 @@ BY_HAND = {
     "rebound_slip_velocity": ("m/s", 3.0),
     "normal_restitution": ("1", 0.5),
     "tangential_restitution": ("1", 2.8 / 3.0),
-    "slip_restitution": ("1", 0.6),
+    "beta0": ("1", -0.6),
     "incidence_angle": ("rad", math.atan2(3.0, 2.0)),
     "rebound_angle": ("rad", math.atan2(2.8, -0.5)),
     "local_rebound_angle": ("rad", math.atan2(3.0, 1.0)),

@@ -16,7 +16,7 @@ NUMBERS = (
     "psi1", "psi2", "psi_change", "normal_velocity", "couple", "rebound_slip_velocity",
     "rebound_normal_velocity", "rebound_tangential_velocity", "rebound_speed", "rebound_spin",
     "rebound_normal_spin", "target_rebound_spin", "normal_restitution", "tangential_restitution",
-    "slip_restitution", "incidence_angle", "rebound_angle", "local_rebound_angle",
+    "beta0", "incidence_angle", "rebound_angle", "local_rebound_angle",
 )  # fmt: skip
 
 
@@ -51,7 +51,7 @@ def test_angles_and_restitutions_after_slip_throughout(side):
     assert side * result.local_rebound_angle == pytest.approx(math.pi / 4.0)
     assert result.normal_restitution == pytest.approx(1.0)
     assert result.tangential_restitution == pytest.approx(2.6 / 3.0)
-    assert result.slip_restitution == pytest.approx(2.0 / 3.4)
+    assert result.beta0 == pytest.approx(-2.0 / 3.4)
 
 
 def test_a_dissipative_rebound_leans_towards_the_surface():
@@ -126,7 +126,7 @@ def test_restitutions_of_what_did_not_move_are_no_numbers():
     scene = Scene(ball, HalfSpace(STEEL), FRICTION, SPEED, 0.0, [0.0, SPIN])
     result = Simulation(tangential="coulomb").run(scene).check()
     assert np.isnan(result.tangential_restitution).all()
-    assert np.isnan(result.slip_restitution).tolist() == [True, False]
+    assert np.isnan(result.beta0).tolist() == [True, False]
 
 
 def made(varied):

@@ -77,7 +77,7 @@ TAKEN = {
     "normal.thornton": ("yield_velocity", 0.1),
     "normal.jkr": ("work_of_adhesion", 0.05),
     "normal.dmt": ("work_of_adhesion", 0.05),
-    "tangential.walton": ("slip_restitution", 0.4),
+    "tangential.walton": ("beta0", 0.4),
 }
 
 

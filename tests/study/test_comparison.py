@@ -137,7 +137,7 @@ def test_the_numerical_error_is_estimated_or_else_declared(both):
     np.testing.assert_array_equal(found.numerical_error("smooth"), [0.01, 0.2, 0.03])
     # A band of psi2 is that error; of psi2/psi1, over psi1; of the normal restitution, none.
     np.testing.assert_allclose(found.band("psi2", "smooth"), [0.01, 0.2, 0.03])
-    np.testing.assert_allclose(found.band("slip_restitution", "smooth"), [0.02, 0.1, 0.005])
+    np.testing.assert_allclose(found.band("beta0", "smooth"), [0.02, 0.1, 0.005])
     np.testing.assert_allclose(found.band("normal_restitution", "smooth"), 0.0)
 
 

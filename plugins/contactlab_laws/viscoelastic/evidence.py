@@ -11,13 +11,13 @@ from contactlab.impact.hertz import slips_throughout
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array, Mask
 
-#: Largest change of e_T = -psi2/psi1 from half the loss in shear to twice as much, by restitution,
-#: for solid spheres and shells; below 0.9 it is at least the rms of eight measured balls.
+#: Largest change of beta0 from half the loss in shear to twice as much, by restitution, for solid
+#: spheres and shells; below 0.9 it is at least the rms of eight measured balls.
 RESTITUTIONS = (0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 1.0)
 SIZES = (0.19, 0.16, 0.16, 0.16, 0.04, 0.02, 0.0)
 #: chi of these spheres.
 CHI = (0.8, 1.8)
-#: A ball whose approach is deep gains so much e_T for each z/R, least and most, from a depth on.
+#: A ball whose approach is deep gains so much beta0 for each z/R, least and most, from a depth on.
 LEAST_GAIN, MOST_GAIN, DEEP = 1.2, 1.9, 0.02
 #: Young's modulus in Pa from which a restitution is that of a metal, which loses by yield.
 METAL = 2e10
@@ -42,17 +42,17 @@ def cautions(scene: Scene, normal: NormalMotion, *, fitted: bool) -> tuple[str, 
 
 
 def _trusted(chi: Array, e: Array, grips: Mask) -> tuple[str, ...]:
-    """Return how far e_T is trusted where it was measured, and where it was not."""
+    """Return how far beta0 is trusted where it was measured, and where it was not."""
     known = (e >= RESTITUTIONS[0]) & (chi >= CHI[0]) & (chi <= CHI[1])
     said = []
     if np.any(within := grips & known):
         least = float(np.min(e, where=within, initial=1.0))
         size = float(np.interp(least, RESTITUTIONS, SIZES))
-        said.append(f"e_T is right within {size:.2g}, by eight measured balls.")
+        said.append(f"beta0 is right within {size:.2g}, by eight measured balls.")
     if np.any(beyond := grips & ~known):
         least = float(np.min(e, where=beyond, initial=1.0))
         ends = f"e from {RESTITUTIONS[0]:g}, chi from {CHI[0]:g} to {CHI[1]:g}"
-        said.append(f"the error of e_T is {OUTSIDE} ({ends}).")
+        said.append(f"the error of beta0 is {OUTSIDE} ({ends}).")
     head = "model: assumes equal damping in compression and shear. At e ="
     return tuple(f"{head} {least:.2g} {each} If you have data, fit shear_loss." for each in said)
 
@@ -67,7 +67,7 @@ def _deep(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
     size = f"{low:.2g} to {high:.2g} higher"
     if depth > DEEPEST:
         size = OUTSIDE
-    return (f"model: deep contact, z/R = {depth:.2g}. Measured e_T is {size}.",)
+    return (f"model: deep contact, z/R = {depth:.2g}. Measured beta0 is {size}.",)
 
 
 def _metal(scene: Scene) -> tuple[str, ...]:
@@ -77,6 +77,7 @@ def _metal(scene: Scene) -> tuple[str, ...]:
         return ()
     return (
         "model: metals lose energy by yield, not in shear. One loss still met both pairs with a "
-        "metal: e_T of glass on aluminium is 0.31 ± 0.06 measured, 0.31 by the law, of acetate on "
-        "aluminium 0.39 ± 0.07 and 0.39. Chrome steel, 0.54 ± 0.05, is above any elastic sphere's.",
+        "metal: beta0 of glass on aluminium is 0.31 ± 0.06 measured, 0.31 by the law, of acetate "
+        "on aluminium 0.39 ± 0.07 and 0.39. Chrome steel, 0.54 ± 0.05, is above any elastic "
+        "sphere's.",
     )
