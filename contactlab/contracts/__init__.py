@@ -6,7 +6,7 @@ options (``quantity``, ``count``, ``choice``, ``flag``, ``restitution``), status
 
 from contactlab.contracts import faults, judges
 from contactlab.contracts.contact import NormalContact, without_tension
-from contactlab.contracts.integrator import CoupledIntegrator, Integrator
+from contactlab.contracts.integrator import CoupledIntegrator, Integrator, accuracy_of
 from contactlab.contracts.law import API_VERSION, Law, claims, resolution_of
 from contactlab.contracts.motion import (
     ClosedFormMotion,
@@ -39,6 +39,7 @@ from contactlab.contracts.tangential import (
     Errors,
     Increment,
     Resolutions,
+    ResolvingTangentialLaw,
     Sampled,
     SteppedTangentialLaw,
     Steps,
@@ -93,6 +94,7 @@ __all__ = [
     "PathTangentialLaw",
     "Real",
     "Resolutions",
+    "ResolvingTangentialLaw",
     "Rule",
     "Sample",
     "Sampled",
@@ -111,6 +113,7 @@ __all__ = [
     "UnfollowedNormalLaw",
     "WholeImpact",
     "WholeImpactTangentialLaw",
+    "accuracy_of",
     "choice",
     "claims",
     "count",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 
-from contactlab.contracts.law import Law, resolution_of
+from contactlab.contracts.law import Law, claims, resolution_of
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.tangential import Errors, TangentialLaw
 from contactlab.contracts.tangential_motion import Observer, TangentialMotion
@@ -34,11 +34,6 @@ class Integrator(Law, kind="integrator"):
     scene : Scene
         One impact or a batch.
     """
-
-    @property
-    def accuracy(self) -> float | None:
-        """Controlled error of psi2 over max(1, abs(psi1)); None if no error is controlled."""
-        return None
 
     def resolution_for(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Real:
         """Return the resolution of each impact, 0 of none; by default the option's.
@@ -96,3 +91,13 @@ class CoupledIntegrator(Integrator):
             One impact or a batch, with its inverse mass.
         observer : callable, optional
         """
+
+
+def accuracy_of(integrator: Law) -> float | None:
+    """Return the controlled error of psi2 over max(1, abs(psi1)); None if none is controlled.
+
+    Parameters
+    ----------
+    integrator : Integrator
+    """
+    return float(resolution_of(integrator)) if "controls_error" in claims(integrator) else None

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from abc import ABC
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, ClassVar
+
+import attrs
 
 from contactlab.impact.scene import Scene
 
@@ -53,13 +56,15 @@ class Law(ABC):
                                  stiff, G* along t1, and ``cross_stiffness_ratio``
        ``several_contacts``      an integrator marches the contacts of a gathering, the last axis
                                  of a scene with ``links``, together: its motion has ``contacts``
+       ``controls_error``        the ``tolerance`` of an integrator bounds the error of psi2 over
+                                 max(1, abs(psi1)) that it adds to that of the law
        ========================  ====================================================
 
     4. ``needs`` are the words of the normal law, and the classes of the other laws, beside which
        alone the law runs: a constant too. Parameters take words away from both by ``waives``.
     5. ``resolution`` names the parameter that makes answers finer, or is None: a count
-       (``steps``), finer the greater, or ``tolerance``, finer the smaller. None is one that nobody
-       named.
+       (``steps``), finer the greater, or ``tolerance``, finer the smaller. An option may be None,
+       which nobody named, and then is declared with what is ``usual``.
     6. ``expected_failures`` maps the checks of ``contactlab.testing`` that the law fails by
        its nature to the reasons.
     """
@@ -76,8 +81,6 @@ class Law(ABC):
     needs: ClassVar[Any] = frozenset()
     #: Parameter that makes answers finer.
     resolution: ClassVar[str | None] = None
-    #: What None stands for.
-    usual_resolution: ClassVar[float | None] = None
     #: Checks that it fails by its nature, with the reasons.
     expected_failures: ClassVar[Any] = MappingProxyType({})
 
@@ -146,4 +149,12 @@ def resolution_of(law: Law) -> Any:
     if law.resolution is None:
         return None
     named = getattr(law, law.resolution)
-    return law.usual_resolution if named is None else named
+    return _usual(type(law)) if named is None else named
+
+
+@lru_cache(maxsize=128)
+def _usual(law: type[Law]) -> Any:
+    """Return what the option of the resolution is usually; None if it does not say."""
+    options: Any = attrs.fields_dict(law) if attrs.has(law) else {}
+    option = options.get(law.resolution)
+    return None if option is None else option.metadata.get("usual")

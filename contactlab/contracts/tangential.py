@@ -192,19 +192,6 @@ class TangentialLaw(Law, kind="tangential"):
         """
         return Errors()
 
-    def resolutions(self, scene: Scene, normal: Law, integrator: Law) -> Resolutions | None:
-        """Return both resolutions of each impact, where nobody named them.
-
-        None, the default: they are ``usual_resolution``. Impacts with the same pair of numbers are
-        solved together, so that few pairs are best.
-
-        Parameters
-        ----------
-        normal, integrator : Law
-            The laws beside it.
-        """
-        return None
-
     def books_bound(self, scene: Scene) -> Real:
         """Return the largest imbalance of the energy books, over the energy at the start.
 
@@ -255,6 +242,22 @@ class CoupledTangentialLaw(TangentialLaw):
             Error of psi2 over max(1, psi1) that is aimed at; None for the law's own.
         observer : callable, optional
             Called with the instants of a single impact.
+        """
+
+
+class ResolvingTangentialLaw(TangentialLaw):
+    """Base of tangential laws that choose their resolution and the integrator's by the scene."""
+
+    @abstractmethod
+    def resolutions(self, scene: Scene, normal: Law, integrator: Law) -> Resolutions | None:
+        """Return both resolutions of each impact, where nobody named them; None: the usual ones.
+
+        Impacts with the same pair of numbers are solved together, so that few pairs are best.
+
+        Parameters
+        ----------
+        normal, integrator : Law
+            The laws beside it.
         """
 
 
@@ -357,11 +360,10 @@ class SteppedTangentialLaw(TangentialLaw):
         return {}
 
     def path_cautions(self) -> tuple[str, ...]:
-        """Return one sentence for each doubt about the law along a prescribed path; none here."""
-        return ()
+        """Return one sentence for each doubt about forces and ``fields`` along a path; none here.
 
-    def field_cautions(self) -> tuple[str, ...]:
-        """Return one sentence for each doubt about ``fields`` in a history; none here."""
+        Asked along a prescribed path, and where an impact's history has the fields.
+        """
         return ()
 
 

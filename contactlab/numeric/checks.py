@@ -392,7 +392,13 @@ def flag(*, default: bool) -> Any:
     return _option(bool, checked, default, range=rule)
 
 
-def count(*, default: object = attrs.NOTHING, least: int = 1, most: int = 10_000_000) -> Any:
+def count(
+    *,
+    default: object = attrs.NOTHING,
+    least: int = 1,
+    most: int = 10_000_000,
+    usual: int | None = None,
+) -> Any:
     """Return an attrs field for a checked whole number.
 
     Parameters
@@ -402,6 +408,8 @@ def count(*, default: object = attrs.NOTHING, least: int = 1, most: int = 10_000
         it is the default.
     least, most : int
         Smallest and largest accepted value.
+    usual : int, optional
+        What a default of None stands for, where nothing else is chosen.
     """
 
     def checked(name: str, value: object) -> Any:
@@ -410,4 +418,4 @@ def count(*, default: object = attrs.NOTHING, least: int = 1, most: int = 10_000
         return whole(name, value, least=least, most=most)
 
     rule = f"must be a whole number from {least} to {most}"
-    return _option(int, checked, default, range=rule, unit="1")
+    return _option(int, checked, default, range=rule, unit="1", usual=usual)

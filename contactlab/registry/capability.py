@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from contactlab.contracts.integrator import CoupledIntegrator, Integrator
-from contactlab.contracts.law import Law, claims
+from contactlab.contracts.integrator import CoupledIntegrator, Integrator, accuracy_of
+from contactlab.contracts.law import Law, claims, resolution_of
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw, UnfollowedNormalLaw
 from contactlab.contracts.path import PathTangentialLaw
 from contactlab.contracts.tangential import (
     CausalTangentialLaw,
     CoupledTangentialLaw,
+    ResolvingTangentialLaw,
     TangentialLaw,
     WholeImpactTangentialLaw,
     shares_loss,
@@ -23,8 +24,10 @@ class Capability(NamedTuple):
 
     Attributes
     ----------
-    closed, unfollowed, whole, path, causal, coupled, marcher : law or None
+    closed, unfollowed, whole, path, causal, coupled, resolving, marcher : law or None
         The law, if it is derived from that class.
+    accuracy : float or None
+        Error of psi2 over max(1, abs(psi1)) that the integrator controls.
     normal_claims, tangential_claims : frozenset of str
         Words that the laws offer, with their parameters.
     shares_loss : bool
@@ -41,7 +44,9 @@ class Capability(NamedTuple):
     path: PathTangentialLaw | None
     causal: CausalTangentialLaw | None
     coupled: CoupledTangentialLaw | None
+    resolving: ResolvingTangentialLaw | None
     marcher: CoupledIntegrator | None
+    accuracy: float | None
     normal_claims: frozenset[str]
     tangential_claims: frozenset[str]
     shares_loss: bool
@@ -59,7 +64,9 @@ class Capability(NamedTuple):
             path=tangential if isinstance(tangential, PathTangentialLaw) else None,
             causal=tangential if isinstance(tangential, CausalTangentialLaw) else None,
             coupled=tangential if isinstance(tangential, CoupledTangentialLaw) else None,
+            resolving=tangential if isinstance(tangential, ResolvingTangentialLaw) else None,
             marcher=integrator if isinstance(integrator, CoupledIntegrator) else None,
+            accuracy=accuracy_of(integrator),
             normal_claims=claims(normal),
             tangential_claims=claims(tangential),
             shares_loss=shares_loss(tangential, normal),
@@ -69,5 +76,9 @@ class Capability(NamedTuple):
 
 
 def _leaves_resolution(law: Law) -> bool:
-    """Return whether a law has a resolution, and nobody named it."""
-    return law.resolution is not None and getattr(law, law.resolution, law) is None
+    """Return whether a law has a usual resolution, and nobody named another."""
+    return (
+        law.resolution is not None
+        and getattr(law, law.resolution, law) is None
+        and resolution_of(law) is not None
+    )

@@ -33,6 +33,8 @@ def unfit(law: type[Law]) -> str | None:
         if not all(map(_word if name == "offers" else _word_or_law, words)):
             entries = "words" if name == "offers" else "words, or classes of laws"
             return f"{law.__name__}.{name} = {words!r}: must be {entries}"
+    if "controls_error" in law.offers and law.resolution != "tolerance":
+        return f"{law.__name__} offers 'controls_error': its resolution must be 'tolerance'"
     return _exchanged(law) if issubclass(law, Integrator) else None
 
 

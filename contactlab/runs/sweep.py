@@ -41,7 +41,7 @@ def block_for(laws: Laws, scene: Scene) -> int:
     # depends on the laws alone.
     able = laws.capability
     if able.path is not None:
-        return able.path.cost(scene, laws.integrator.accuracy).block
+        return able.path.cost(scene, laws.capability.accuracy).block
     known = able.closed is not None and able.whole is not None
     return WHOLE_IMPACTS if known else MARCHED
 

@@ -89,7 +89,7 @@ class Coupled(Way):
         elif law is None:
             errors = integrator.errors(scene, normal, laws.tangential)
         else:
-            errors = law.errors(scene, normal, np.inf, integrator.accuracy)
+            errors = law.errors(scene, normal, np.inf, laws.capability.accuracy)
         judged = judges.judge_errors(laws.tangential, errors, scene.shape)
         psi2, restitution = (spread(error, scene.shape) for error in judged)
         return PlanColumns(code, psi2, () if law is None else (WHOLE,), restitution)
@@ -114,7 +114,7 @@ class Coupled(Way):
         with faults.blaming(blamed):
             if whole:
                 assert able.coupled is not None
-                accuracy = laws.integrator.accuracy
+                accuracy = laws.capability.accuracy
                 answer = able.coupled.solve_coupled(scene, normal, accuracy, observer)
             else:  # other laws are stood in for
                 assert able.marcher is not None

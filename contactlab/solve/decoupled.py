@@ -63,7 +63,7 @@ class Decoupled(Way):
         scene, laws = self.scene, self.laws
         normal = normal_or_failed(laws, scene)
         try:
-            size, accuracy = psi_magnitude(scene), laws.integrator.accuracy
+            size, accuracy = psi_magnitude(scene), laws.capability.accuracy
             most = math.inf if accuracy is None else accuracy * (1.0 + ROUNDING) * size
             always = laws.capability.whole is not None
             answered = answers(

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeGuard
 
 import numpy as np
 
-from contactlab.contracts.law import claims
+from contactlab.contracts.law import Law, claims
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
@@ -126,7 +126,7 @@ def _words(
         computed += resolution
     alone = way.one_by_one(masks)
     if scene.shape and some(alone) and (path := used.capability.path) is not None:
-        cost = path.cost(way.scene.central, used.integrator.accuracy)
+        cost = path.cost(way.scene.central, used.capability.accuracy)
         if cost.one_by_one:
             computed.append(Clause(f"run time: impacts one by one, by {cost.solver}", alone))
     computed += way.remarks(masks)
@@ -178,6 +178,13 @@ class _Asked(NamedTuple):
     estimate: bool
 
 
+def _has_fields(law: Law) -> TypeGuard[SteppedTangentialLaw]:
+    """Return whether a law has arrays for a history."""
+    if not isinstance(law, SteppedTangentialLaw):
+        return False
+    return type(law).fields is not SteppedTangentialLaw.fields
+
+
 def _cautions(
     way: Way, scene: Scene, motion: Motion | None, masks: Masks, history: bool | str
 ) -> Clauses:
@@ -198,8 +205,8 @@ def _cautions(
             normal = _motion_of(laws, central, moved, masks.marched)
         remarks = laws.integrator.cautions
         of_laws += ask(laws.integrator, remarks, marched, normal, laws.tangential)
-        if history == "fields" and isinstance(laws.tangential, SteppedTangentialLaw):
-            of_laws += ask(laws.tangential, laws.tangential.field_cautions)
+        if history == "fields" and _has_fields(laws.tangential):
+            of_laws += ask(laws.tangential, laws.tangential.path_cautions)
     able = laws.capability
     for law, words in (
         (laws.normal, able.normal_claims),

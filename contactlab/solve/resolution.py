@@ -24,9 +24,10 @@ def with_resolutions(way: Way, *, as_one: bool) -> list[Way]:
     """
     laws, scene = way.laws, way.scene
     found = None
-    if len(laws.capability.unnamed) > 1:
-        with faults.blaming(laws.tangential):
-            found = laws.tangential.resolutions(scene, laws.normal, laws.integrator)
+    law = laws.capability.resolving
+    if law is not None and len(laws.capability.unnamed) > 1:
+        with faults.blaming(law):
+            found = law.resolutions(scene, laws.normal, laws.integrator)
     if found is None:
         return [way._replace(laws=_usual(laws))]
     parts, steps, _ = found
@@ -77,7 +78,7 @@ def _made(laws: Laws, resolutions: tuple[tuple[str, float], ...], reason: str) -
     changed = {}
     for kind, value in resolutions:
         law: Any = getattr(laws, kind)
-        changed[kind] = attrs.evolve(law, **{law.resolution: type(law.usual_resolution)(value)})
+        changed[kind] = attrs.evolve(law, **{law.resolution: type(resolution_of(law))(value)})
     return laws.changed(**changed, by_scene=frozenset(changed), reason=reason)
 
 

@@ -160,7 +160,7 @@ class Way(Entries, ABC):
             )
             return PlanColumns.nothing(scene.shape), nothing
         # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
-        bound = prepared.books_bound + WORK_ACCURACY * (laws.integrator.accuracy or 0.0)
+        bound = prepared.books_bound + WORK_ACCURACY * (laws.capability.accuracy or 0.0)
         normal, _, columns, _ = prepared
         bare = self.both or type(normal) is UnfollowedMotion  # isinstance is slow
         error = columns.restitution_error

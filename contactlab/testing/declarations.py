@@ -62,7 +62,7 @@ def drift(integrator: Integrator) -> None:
 
 @check(TangentialLaw)
 def books_bound_told(law: TangentialLaw) -> None:
-    """The bound of the energy books is a number >= 0 for each impact (TangentialLaw, 7)."""
+    """The bound of the energy books is a number >= 0 for each impact."""
     for impact in (scene(ANGLES[1], CHI), scene(np.array(ANGLES), CHI)):
         bound = np.asarray(law.books_bound(impact), dtype=np.float64)
         good = bound.shape in ((), impact.shape) and (bound >= 0.0).all()
@@ -71,7 +71,7 @@ def books_bound_told(law: TangentialLaw) -> None:
 
 @check(NormalLaw)
 def dissipation(law: NormalLaw) -> None:
-    """The declared dissipation is the loss of an impact without friction (NormalLaw, 7)."""
+    """The declared dissipation is the loss of an impact without friction."""
     for impact in (scene(ANGLES[1], CHI), scene(np.array(ANGLES), CHI)):
         motion = normal_motion(law, impact)
         declared = np.asarray(law.dissipation(motion), dtype=np.float64)
@@ -89,7 +89,7 @@ def dissipation(law: NormalLaw) -> None:
 
 @check(Law)
 def partners(law: Law) -> None:
-    """Scenes are refused by a sentence, or not at all (Law, 8)."""
+    """Scenes are refused by a sentence, or not at all."""
     for impact in (scene(ANGLES[1], CHI), Scene.nondimensional(psi1=1.0, chi=CHI)):
         try:
             law.accept(impact)

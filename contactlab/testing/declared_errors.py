@@ -14,6 +14,7 @@ from contactlab.contracts import (
     Integrator,
     Law,
     TangentialLaw,
+    accuracy_of,
     claims,
     resolution_of,
 )
@@ -75,10 +76,10 @@ def _declare(way: Way, impact: Scene) -> float:
         whole = whole_answers(way.law, normal)
         return float(np.asarray(whole[0].psi2_error)) if whole else math.nan
     steps = way.integrator.resolution_for(impact, normal, way.law)
-    if way.integrator.accuracy is None:
+    if (controlled := accuracy_of(way.integrator)) is None:
         return float(np.asarray(way.law.errors(impact, normal, steps).psi2))
     own = float(np.asarray(way.law.errors(impact, normal, math.inf).psi2))
-    return own + way.integrator.accuracy * float(np.asarray(psi_magnitude(impact)))
+    return own + controlled * float(np.asarray(psi_magnitude(impact)))
 
 
 def _better(way: Way, impact: Scene) -> tuple[float | None, str]:
@@ -143,7 +144,7 @@ def motion_accuracy(law: ClosedFormNormalLaw) -> None:
 
 @check(Integrator)
 def resolution_told(integrator: Integrator) -> None:
-    """An impact run at the value of ``resolution_for`` ends the same (Integrator, 8)."""
+    """An impact run at the value of ``resolution_for`` ends the same."""
     if not integrator.resolution:
         raise NotApplicableError("The integrator has no resolution.")
     for simulation in sound(integrator):

@@ -65,7 +65,7 @@ def known_words(contract: type[Law]) -> frozenset[str]:
 
 @check(Law)
 def contract(law: Law) -> None:
-    """Needs, offers, what parameters waive, and resolution are valid (contract of Law, 2 to 5)."""
+    """Needs, offers, what parameters waive, and resolution are valid (contract of Law, 3 to 5)."""
     base = BASES[law_kind(law)]
     hold((complaint := unfit(type(law))) is None, f"{complaint}.")
     hold(not law.needs or base is not NormalLaw, "A normal law needs nothing.")
@@ -150,7 +150,7 @@ def expected_failures(law: Law) -> None:
 
 @check(Law)
 def parameters(law: Law) -> None:
-    """Each parameter refuses non-finite values and other types, with its name (Law, 5)."""
+    """Each parameter refuses non-finite values and other types, with its name (Law, 1)."""
     for name, value in _parameters(law):
         for wrong in _wrong(value):
             try:

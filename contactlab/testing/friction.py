@@ -32,7 +32,7 @@ PAID = 1e-6
 
 @check(SteppedTangentialLaw)
 def odd_in_slip(law: SteppedTangentialLaw) -> None:
-    """Reversing every displacement reverses every force (TangentialLaw, 2)."""
+    """Reversing every displacement reverses every force (TangentialLaw, 1)."""
     bench = Bench.of()
     for seed in SEEDS:
         path = wandering(seed)
@@ -99,7 +99,7 @@ def separation(law: SteppedTangentialLaw) -> None:
 
 @check(SteppedTangentialLaw, nature=GROWS)
 def normal_load_alone(law: SteppedTangentialLaw) -> None:
-    """A change of normal load alone makes no tangential force (stepped contract, 4)."""
+    """A change of normal load alone makes no tangential force (stepped contract, 2)."""
     bench = Bench.of()
     force = drive(law, bench, straight((0.0, 1.0), (0.0, 0.2), (0.0, 0.6))).force
     hold(np.all(force == 0.0), f"Pressing alone makes F = {worst(force):.2g} mu P_max.")

@@ -138,7 +138,7 @@ def impact_coulomb_limit(law: TangentialLaw) -> None:
 
 @check(TangentialLaw)
 def impact_central(law: TangentialLaw) -> None:
-    """A central impact makes no tangential force (TangentialLaw, 2)."""
+    """A central impact makes no tangential force (TangentialLaw, 1)."""
     for way in ways_of_bodies(law):
         for chi in CHI:
             change, _, work = meet(way, 0.0, chi)
@@ -172,7 +172,7 @@ def impact_repeatable(law: TangentialLaw | Integrator) -> None:
 
 @check(TangentialLaw, Integrator)
 def impact_batch(law: TangentialLaw | Integrator) -> None:
-    """A batch of impacts of unlike bodies ends as each impact does alone (Integrator, 5)."""
+    """A batch of impacts of unlike bodies ends as each impact does alone (Integrator, 3)."""
     psi1 = np.array([[-2.0, 0.0, 0.3], [1.2, 5.0, 40.0]])
     chi = np.array([[0.4, 1.0, 1.5], [1.5, 3.0, 3.0]])
     friction = np.linspace(0.1, 0.7, psi1.size).reshape(psi1.shape)

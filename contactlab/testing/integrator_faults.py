@@ -35,7 +35,7 @@ def faults_reported(integrator: Integrator) -> None:
 
 @check(Integrator)
 def faults_named(integrator: Integrator) -> None:
-    """The detail names a law that raises, at the start or later (Integrator, 1)."""
+    """The detail names a law that raises, at the start or later (Integrator, 2)."""
     faulty = (
         FailingSpring(raises=True),
         FailingSpring(raises=True, at=0),

@@ -40,7 +40,7 @@ def march_alone(
 
 @check(Integrator)
 def ends_well(integrator: Integrator) -> None:
-    """An impact under a sound law ends with success and finite numbers (Integrator, 1)."""
+    """An impact under a sound law ends with success and finite numbers (Integrator, 2)."""
     for simulation in sound(integrator):
         motion = marched_impact(simulation, 2.0)
         hold(
@@ -67,7 +67,7 @@ def slip_velocity(psi1: float) -> float:
 
 @check(Integrator)
 def observer_changes_nothing(integrator: Integrator) -> None:
-    """An observer is called at increasing times, and changes no result (Integrator, 3)."""
+    """An observer is called at increasing times, and changes no result (Integrator, 2)."""
     for simulation in sound(integrator):
         recorder = Recorder((), with_fields=True)
         alone = marched_impact(simulation, 2.0)

@@ -93,7 +93,7 @@ def contacts(law: NormalLaw) -> None:
 
 @check(NormalLaw)
 def contacts_batch(law: NormalLaw) -> None:
-    """A batch of unlike bodies gives the same as each contact alone (NormalLaw, 3)."""
+    """A batch of unlike bodies gives the same as each contact alone (NormalLaw, 2)."""
     for quantity in DIFFERENT:
         impact, approach, rate = strokes(given=vary(quantity))
         words = f"of a batch that differs in {quantity} only"
@@ -120,7 +120,7 @@ def _alike(law: NormalLaw, impacts: Scene, approach: Array, rate: Array, words: 
 
 @check(NormalLaw)
 def contacts_pure(law: NormalLaw) -> None:
-    """``respond`` changes neither the state passed to it nor the law (NormalLaw, 2)."""
+    """``respond`` changes neither the state passed to it nor the law (NormalLaw, 1)."""
     impact, approach, rate = strokes()
     kept_law, state = copy.deepcopy(law), law.start(impact)
     for depth, speed in zip(approach.tolist(), rate.tolist(), strict=True):
@@ -136,7 +136,7 @@ def contacts_pure(law: NormalLaw) -> None:
 
 @check(NormalLaw)
 def contacts_read_only(law: NormalLaw) -> None:
-    """The law does not write into its arguments (Law, 7)."""
+    """The law does not write into its arguments (Law, 1)."""
     impacts, approach, rate = strokes(bodies=bodies(3))
     hold_read_only(lambda: respond(law, impacts, approach, rate), impacts)
 
@@ -159,7 +159,7 @@ def contacts_units(law: NormalLaw) -> None:
 
 @check(NormalLaw)
 def contacts_non_finite(law: NormalLaw) -> None:
-    """NaN as approach or rate gives NaN, never "no contact" (NormalLaw, 4)."""
+    """NaN as approach or rate gives NaN, never "no contact" (NormalLaw, 2)."""
     impact, approach, rate = strokes()
     batch = strokes(bodies=bodies(2))[0]
     depth, speed = float(approach[STEPS]), float(rate[0])

@@ -129,7 +129,7 @@ def hertzian_pressure(law: NormalLaw) -> None:
 
 @check(NormalLaw, word=("viscous", True))
 def viscous(law: NormalLaw) -> None:
-    """A viscous law has Hertz's radius and force at rest, and more in approach (NormalLaw, 8)."""
+    """A viscous law has Hertz's radius and force at rest, and more in approach (Law, 3)."""
     impact, approach, _ = strokes()
     depths = np.linspace(0.02, 1.0, STEPS) * float(approach.max())
     exact = np.sqrt(impact.pair.radius * depths)

@@ -150,7 +150,7 @@ def ends_unloaded(law: NormalLaw) -> None:
 
 @check(NormalLaw)
 def motion_batch(law: NormalLaw) -> None:
-    """A batch of unlike bodies moves as each pair does alone (Integrator, 5)."""
+    """A batch of unlike bodies moves as each pair does alone (Integrator, 3)."""
     impact = scene(0.0, 1.0, bodies=bodies(4))
     limits.begin("the normal motion of a batch")
     together = normal_motion(law, impact)

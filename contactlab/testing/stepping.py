@@ -57,7 +57,7 @@ def answers(law: SteppedTangentialLaw) -> None:
 
 @check(SteppedTangentialLaw)
 def batch(law: SteppedTangentialLaw) -> None:
-    """A batch of unlike bodies gives the same as each contact alone (Integrator, 5)."""
+    """A batch of unlike bodies gives the same as each contact alone (Integrator, 3)."""
     short = wandering(2, knots=4, steps=8)
     for quantity in QUANTITIES:
         various = Bench.along(normal_motion(REGISTRY.create("normal.hertz"), vary(quantity)))
@@ -83,7 +83,7 @@ def _alike(law: SteppedTangentialLaw, whole: Bench, paths: list[Path], words: st
 
 @check(SteppedTangentialLaw)
 def pure(law: SteppedTangentialLaw) -> None:
-    """``advance`` changes neither the state passed to it nor the law (stepped contract, 2)."""
+    """``advance`` changes neither the state passed to it nor the law (stepped contract, 1)."""
     law_before = copy.deepcopy(law)
     _pure(law, (), knots=6)
     _pure(law, (3,), knots=3)
@@ -115,7 +115,7 @@ def _pure(law: SteppedTangentialLaw, shape: tuple[int, ...], *, knots: int) -> N
 
 @check(SteppedTangentialLaw)
 def read_only(law: SteppedTangentialLaw) -> None:
-    """The law does not write into its arguments (Law, 7)."""
+    """The law does not write into its arguments (Law, 1)."""
     bench = Bench.of((3,))
     path = _spread(wandering(9, knots=5, steps=6), (3,))
     hold_read_only(lambda: drive(law, bench, path), bench.scene)
@@ -146,7 +146,7 @@ def repeatable(law: SteppedTangentialLaw) -> None:
 
 @check(SteppedTangentialLaw)
 def fields(law: SteppedTangentialLaw) -> None:
-    """``fields`` returns arrays by name and changes no state (stepped contract, 5)."""
+    """``fields`` returns arrays by name and changes no state."""
     bench = Bench.of()
     state = drive(law, bench, straight((0.0, 0.7), (0.3, 0.7), steps=8)).state
     kept = copy.deepcopy(state)

@@ -22,6 +22,7 @@ from contactlab.contracts import (
     TangentialMotion,
     WholeImpact,
     WholeImpactTangentialLaw,
+    accuracy_of,
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
@@ -80,7 +81,7 @@ class Way(NamedTuple):
         """Whether the way adds no error of steps; a law with a resolution has steps of its own."""
         if self.integrator is None:
             return self.law.resolution is None
-        return bool(self.integrator.accuracy)
+        return bool(accuracy_of(self.integrator))
 
     def run(self, impact: Scene, recorder: Observer | None = None) -> Solved:
         """Return the answer for the impacts of a scene.
@@ -271,4 +272,4 @@ def bound_error(way: Way) -> float:
     """Return the bound of the error of psi, by the law and by the integrator."""
     if way.integrator is None:
         return ROUNDING
-    return slack(way.law, 0.0) + (way.integrator.accuracy or INTEGRATION)
+    return slack(way.law, 0.0) + (accuracy_of(way.integrator) or INTEGRATION)

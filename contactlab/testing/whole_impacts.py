@@ -64,7 +64,7 @@ def answered_impacts(law: TangentialLaw) -> Iterator[AnsweredImpact]:
 
 @check(TangentialLaw)
 def whole_impacts(law: TangentialLaw) -> None:
-    """A whole-impact answer agrees with the march of the same law (Law, 4).
+    """A whole-impact answer agrees with the march of the same law (TangentialLaw, 3).
 
     The change of slip velocity, the energy lost and the course are compared.
     """

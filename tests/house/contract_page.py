@@ -18,9 +18,9 @@ returns stand in `contactlab` too.
 """
 CLASSES = (
     "Law", "NormalLaw", "ClosedFormNormalLaw", "UnfollowedNormalLaw", "TangentialLaw",
-    "WholeImpactTangentialLaw",
     "SteppedTangentialLaw", "CausalTangentialLaw", "AllStepsTangentialLaw", "PathTangentialLaw",
-    "CoupledTangentialLaw", "Integrator", "CoupledIntegrator",
+    "WholeImpactTangentialLaw", "CoupledTangentialLaw", "ResolvingTangentialLaw", "Integrator",
+    "CoupledIntegrator",
 )  # fmt: skip
 VALUES = (
     "NormalContact", "NormalMotion", "NormalSample", "Increment", "TangentialResponse",

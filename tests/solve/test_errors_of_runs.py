@@ -28,9 +28,10 @@ SYMPLECTIC = type(contactlab.create("integrator.symplectic"))
 class Sure(SYMPLECTIC):
     """Fixed steps that declare an accuracy."""
 
-    @property
-    def accuracy(self):
-        return 1e-3
+    offers = frozenset({"controls_error"})
+    resolution = "tolerance"
+    tolerance = 1e-3
+    _steps = 200
 
 
 @pytest.mark.parametrize("psi1", [6.0, [6.0, 6.0]])

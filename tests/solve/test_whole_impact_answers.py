@@ -121,9 +121,10 @@ class Rough(SteppedTangentialLaw):
 class Accurate(type(Simulation(tangential="springs").integrator)):
     """An integrator that keeps psi2 to 1e-3."""
 
-    @property
-    def accuracy(self):
-        return 1e-3
+    offers = frozenset({"controls_error"})
+    resolution = "tolerance"
+    tolerance = 1e-3
+    _steps = 200
 
 
 @pytest.mark.parametrize("batch", [False, True])

@@ -31,6 +31,17 @@ class ClaimsAndExpects(Sound):
     expected_failures: ClassVar[dict] = {"cattaneo_mindlin": "one spring for the whole contact"}
 
 
+class ClaimsAccuracy(STEPS):
+    offers: ClassVar[frozenset] = STEPS.offers | {"controls_error"}
+    resolution: ClassVar[str] = "tolerance"
+    tolerance = 1e-9
+    _steps = 200
+
+
+class ControlsBySteps(STEPS):
+    offers: ClassVar[frozenset] = STEPS.offers | {"controls_error"}
+
+
 @attrs.frozen(kw_only=True)
 class RefusesNamelessly(Sound):
     """A parameter that is refused without its name."""
@@ -412,9 +423,8 @@ BROKEN = [
              force=3.0 * dashpot * np.maximum(rate, 0.0)),
          "rebounds", "An impact does not end: "),
     ),
-    *broken(STEPS, "accuracy",
-        ("ClaimsAccuracy", 1e-9, "finer_is_better", "off the exact solution"),
-    ),
+    (ClaimsAccuracy, "controls_error", "off the exact solution"),
+    (ControlsBySteps, "contract", "its resolution must be 'tolerance'"),
     *broken(Steps, "alter",
         ("GivesUp",
          lambda motion, scene: motion if scene.shape else attrs.evolve(

@@ -83,16 +83,11 @@ class Annulus(PartialSlip, AllStepsTangentialLaw):
         return (*super().cautions(scene, normal), *own)
 
     def path_cautions(self) -> tuple[str, ...]:
-        """Return the caution that the force at gross slip is that of the annuli, not mu N."""
+        """Return the cautions of the force at gross slip, and of false spots in the map."""
         most = 0.1 / self.annuli
         return (
             f"numerical error: the force of {self.annuli} annuli may exceed mu N by up to "
             f"{most:.1g} of mu N; more annuli reduce this.",
-        )
-
-    def field_cautions(self) -> tuple[str, ...]:
-        """Return the caution that maps of stick and slip have false spots, with their extent."""
-        return (
             "stick and slip of annuli: false while few annuli are in contact, up to a quarter of "
             "the impact (numerical error; psi2 is right). springs and fronts show none.",
         )

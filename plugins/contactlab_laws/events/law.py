@@ -44,15 +44,11 @@ class Events(Integrator):
     """
 
     api_version: ClassVar[int] = 2
+    offers: ClassVar[frozenset[str]] = frozenset({"controls_error"})
     resolution: ClassVar[str | None] = "tolerance"
     needs: ClassVar[frozenset[type]] = frozenset({PathTangentialLaw, ClosedFormNormalLaw})
 
     tolerance: float = quantity("1", rule=TOLERANCES, default=1e-9)
-
-    @property
-    def accuracy(self) -> float:
-        """The error aimed at."""
-        return self.tolerance
 
     def errors(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Errors:
         """Return the tolerance, and what the law declares for itself."""

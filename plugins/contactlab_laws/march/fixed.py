@@ -123,10 +123,9 @@ class FixedSteps(CoupledIntegrator):
 
     resolution: ClassVar[str | None] = "steps"
     offers: ClassVar[frozenset[str]] = frozenset({"several_contacts"})
-    usual_resolution: ClassVar[float | None] = 200
     needs: ClassVar[frozenset[type]] = frozenset({SteppedTangentialLaw})
 
-    steps: int | None = count(default=None, most=MOST_STEPS)
+    steps: int | None = count(default=None, usual=200, most=MOST_STEPS)
     refine: bool = flag(default=True)
 
     @abstractmethod

@@ -17,6 +17,7 @@ from contactlab.contracts import (
     NormalContact,
     NormalMotion,
     Resolutions,
+    ResolvingTangentialLaw,
     Steps,
     TangentialLaw,
     TangentialResponse,
@@ -49,7 +50,7 @@ SHEAR_LOSS = Rule(lambda value: (value >= 0.0) & (value <= 8.0), "must be one nu
 
 
 @attrs.frozen(kw_only=True)
-class Springs(ProfileLaw, CausalTangentialLaw):
+class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
     """Mindlin's partial slip as a bundle of independent springs.
 
     The spring at distance r from the centre touches while r < b. Its displacement w grows with
@@ -92,9 +93,8 @@ class Springs(ProfileLaw, CausalTangentialLaw):
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = ProfileLaw.offers | {"vectors", "shares_loss"}
     resolution: ClassVar[str | None] = "springs"
-    usual_resolution: ClassVar[float | None] = 50
 
-    springs: int | None = count(default=None, most=100_000)
+    springs: int | None = count(default=None, usual=50, most=100_000)
     grid: str = choice("largest", "doubling", default="largest")
     shear_loss: float = quantity("1", rule=SHEAR_LOSS, default=1.0)
     table: bool = flag(default=False)
