@@ -49,7 +49,6 @@ from contactlab.study.scores import (
     candidates,
     describe_scores,
     scores,
-    to_dict,
     write_csv,
 )
 
@@ -110,7 +109,7 @@ def execute(arguments: argparse.Namespace) -> int:
     scored = arguments.all and bool(file.scene.shape)
 
     def content() -> dict[str, object]:
-        whole = to_dict(comparison, quantities) | {"title": file.title}
+        whole = comparison.to_dict(quantities) | {"title": file.title}
         whole["complete"] = not comparison.interrupted
         if scored:
             whole["scores"] = json_value(scores(comparison, compared))

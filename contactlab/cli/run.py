@@ -142,9 +142,9 @@ def report(
 ) -> int:
     """Print JSON if ``as_json``, report failures on stderr, and return the exit status."""
     if as_json:
-        content = export.to_dict(result) | {"varied": json_value(varied)}
+        content = result.to_dict() | {"varied": json_value(varied)}
         if collision is not None:
-            content["collision"] = collision.to_dict()
+            content["collision"] = collision.vectors()
         shared.print_json(content)
     for sentence in error_cautions(result) if as_json else ():
         print(f"contactlab: caution: {sentence}", file=sys.stderr)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import Any, Generic
+from typing import TYPE_CHECKING, Any, Generic
 
 import attrs
 import numpy as np
@@ -25,16 +25,28 @@ from contactlab.numeric.names import attributes_told
 from contactlab.numeric.types import Array, Each, Labelled, Mask, Numbers, Real
 from contactlab.numeric.vectors import NOTHING, components, cross, join_components
 from contactlab.outcome.answer import Answer
+from contactlab.outcome.columns import components as parts_of
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.energy import EnergyLedger, books
 from contactlab.outcome.plan import Plan, PlanColumns
 from contactlab.outcome.result import ImpactResult
+from contactlab.outcome.sheet import Sheet, along_axes, batch_axes, names_of
 from contactlab.runs.simulation import Simulation
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from contactlab.outcome.style import Width
 
 #: Vectors after a collision, name and unit.
 VECTORS_AFTER = (
     ("velocity", "m/s"), ("spin", "rad/s"), ("target_velocity", "m/s"), ("target_spin", "rad/s"),
     ("impulse", "N s"), ("contact_velocity", "m/s"), ("target_contact_velocity", "m/s"),
+)  # fmt: skip
+#: Numbers after a collision, by name and unit.
+NUMBERS_AFTER = (
+    ("normal_velocity", "m/s"), ("slip_velocity_change", "m/s"), ("friction_work", "J"),
+    ("collided", ""),
 )  # fmt: skip
 
 
@@ -329,9 +341,46 @@ class Collision(Answer, Generic[Each]):
         """Cautions of the plan."""
         return [*map(str, self.plan.cautions)]
 
-    def to_dict(self) -> dict[str, Any]:
+    def vectors(self) -> dict[str, Any]:
         """Return the vectors of both bodies after the collision as plain lists."""
         return {name: json_value(np.asarray(getattr(self, name))) for name, _ in VECTORS_AFTER}
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return vectors and numbers as plain lists, with energy, status and plan."""
+        numbers = {name: json_value(getattr(self, name)) for name, _ in NUMBERS_AFTER}
+        told = {
+            "status": json_value(self.status),
+            "energy": self.energy.to_dict(),
+            "laws": self._laws(),
+            "plan": self.plan.to_dict(),
+        }
+        return self.vectors() | numbers | told
+
+    def _laws(self) -> dict[str, str]:
+        """Return the names of the laws, or of the function that answered in their place."""
+        return {"normal": "contactlab.rebound"} if self.known is None else {**self.known.laws}
+
+    def _sheet(self) -> Sheet:
+        shape = self.encounter.shape
+        found: dict[str, Any] = {}
+        units = {"status": ""}
+        for name, unit in (*VECTORS_AFTER, *NUMBERS_AFTER):
+            vectors = (name, unit) in VECTORS_AFTER
+            value = np.asarray(getattr(self, name))
+            parts = along_axes(name, value) if vectors else dict(parts_of(name, value, shape))
+            found |= parts
+            units |= dict.fromkeys(parts, unit)
+        found["status"] = names_of(self.status, shape)
+        return Sheet(found, units, batch_axes(shape, "encounter"), shape, self._laws(), "encounter")
+
+    def _draw(self, axes: Axes | None, x: str | None, y: str | None, width: Width | None) -> Axes:
+        """Draw one column over another, for a batch by default psi2 over psi1."""
+        if not self.encounter.shape:
+            remedy = "for its forces: simulation.run(encounter.scene, history=True).plot()"
+            raise refuse("collision", self, "is a single one, which has no curve", remedy)
+        if x is None and y is None:
+            return self.result.plot(axes=axes, width=width)
+        return super()._draw(axes, x, y, width)
 
 
 def _columns(encounter: Encounter, met: Mask, *quantities: Real) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import attrs
 import numpy as np
@@ -22,17 +22,23 @@ from contactlab.numeric.names import attributes_told
 from contactlab.numeric.taken import ByIndex
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.answer import Answer, statuses_told
-from contactlab.outcome.columns import json_value
+from contactlab.outcome.columns import components, json_value
 from contactlab.outcome.energy import EnergyLedger
 from contactlab.outcome.gathering_energy import gathering_ledger
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory, Recorder
 from contactlab.outcome.motion import Motion, without_failures
+from contactlab.outcome.sheet import Sheet, along_axes, batch_axes, names_of
 from contactlab.registry import composition
 from contactlab.registry.acceptance import accept
 from contactlab.registry.bound import bound, options_read
 from contactlab.registry.composition import Laws, versions
 from contactlab.runs.simulation import Simulation
 from contactlab.solve.coupled import Coupled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from contactlab.outcome.style import Width
 
 #: Numbers of a result for each contact, by name and unit.
 OF_CONTACTS = (
@@ -275,7 +281,67 @@ class GatheringResult(Answer):
         told: dict[str, Any] = {name: json_value(getattr(self, name)) for name, _ in names}
         if self.gathering.names:
             told["bodies"] = [*self.gathering.names]
-        return told | {"energy": self.energy.to_dict()}
+        told |= {"status": json_value(self.status), "laws": dict(self.laws)}
+        return told | {"energy": self.energy.to_dict(), "plan": self.plan.to_dict()}
+
+    def _sheet(self, rows: str = "bodies") -> Sheet:
+        """Return one row for each body, or for each contact, of each gathering."""
+        gathering = self.gathering
+        if rows not in ("bodies", "contacts"):
+            raise refuse("rows", rows, "must be 'bodies' or 'contacts'")
+        of_bodies = rows == "bodies"
+        names: list[str] = [f"touches[{k}]" for k in range(len(gathering.touches))]
+        if of_bodies:
+            names = [*gathering.names] or [str(k) for k in range(len(gathering.bodies))]
+        shape = (*gathering.shape, len(names))
+        found: dict[str, Any] = {}
+        units = {"status": ""}
+        for name, unit in VECTORS_OF_BODIES if of_bodies else VECTORS_OF_CONTACTS:
+            found |= along_axes(name, getattr(self, name))
+            units |= dict.fromkeys(found.keys() - units.keys(), unit)
+        if not of_bodies:
+            for name in ("psi1", "psi2"):
+                found |= dict(components(name, getattr(self, name), shape))
+            units |= dict.fromkeys(found.keys() - units.keys(), "1")
+            found |= {name: getattr(self, name) for name, _ in OF_CONTACTS}
+            units |= dict(OF_CONTACTS)
+        status = names_of(self.status, gathering.shape)
+        found["status"] = np.broadcast_to(status[..., None], shape)
+        last = {"body" if of_bodies else "contact": np.array(names)}
+        axes = batch_axes(gathering.shape, "gathering") | last
+        return Sheet(found, units, axes, shape, self.laws)
+
+    def to_dataframe(self, rows: Literal["bodies", "contacts"] = "bodies") -> Any:
+        """Return a ``pandas.DataFrame``, one row for each body or each contact.
+
+        Parameters
+        ----------
+        rows : {"bodies", "contacts"}
+
+        Raises
+        ------
+        ValueError
+            For other rows.
+        """
+        from contactlab.outcome.frames import to_dataframe
+
+        return to_dataframe(self._sheet(rows))
+
+    def to_xarray(self) -> Any:
+        """Return an ``xarray.Dataset`` of bodies and contacts, each a dimension."""
+        from contactlab.outcome.frames import to_xarray
+
+        bodies = to_xarray(self._sheet("bodies"))
+        return to_xarray(self._sheet("contacts")).drop_vars("status").merge(bodies)
+
+    def _draw(self, axes: Axes | None, x: str | None, y: str | None, width: Width | None) -> Axes:
+        """Draw one column of bodies over another, by default the forces of each contact."""
+        if x is not None or y is not None:
+            return super()._draw(axes, x, y, width)
+        if not self.history:
+            remedy = "ask for one: collide(gathering, history=True)"
+            raise refuse("result", self, "has no history to draw", remedy)
+        return self.history.plot(axes=axes, width=width)
 
 
 def collide_all(
@@ -365,6 +431,10 @@ class _ContactsRecorder(Recorder):
         flat = NormalContact(*(_flat(each) for each in contact))
         vectors = [np.asarray(each).reshape(-1, 2) for each in (slip, force)]
         super().__call__(Sample(*alone, flat, *vectors))  # type: ignore[call-arg]
+
+    def history(self) -> History:
+        """Return the history, whose last axis are the contacts."""
+        return attrs.evolve(super().history(), last_axis="contact")
 
 
 def _flat(value: Real) -> Any:

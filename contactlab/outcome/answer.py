@@ -11,6 +11,7 @@ from typing import Any, Self
 import numpy as np
 
 from contactlab.contracts.status import Status, succeeded
+from contactlab.outcome.tabled import Plotted
 
 
 class ImpactError(RuntimeError):
@@ -28,7 +29,7 @@ class ImpactError(RuntimeError):
         return str(self.args[0])
 
 
-class Checked:
+class Checked(Plotted):
     """Base of what tells failures and cautions, and raises them on demand."""
 
     __slots__ = ()

@@ -26,24 +26,9 @@ from contactlab.outcome.result import ImpactResult
 SAMPLE, WORTH_WHILE = 8192, 0.5
 
 
-def to_dict(result: ImpactResult) -> dict[str, Any]:
-    """Return the result without its history as plain numbers, lists and text."""
-    numbers = {name: json_value(values) for name, _, values in columns(result)}
-    return numbers | {
-        "detail": json_value(result.motion.detail),
-        "psi2_error_estimate": json_value(result.psi2_error_estimate),
-        "restitution_error_estimate": json_value(result.restitution_error_estimate),
-        "run_time_s": result.run_time,
-        "energy": result.energy.to_dict(),
-        "counters": dict(result.counters),
-        "laws": dict(result.laws),
-        "plan": result.plan.to_dict(),
-    }
-
-
 def write_json(result: ImpactResult, path: str | Path) -> None:
-    """Write ``to_dict``, and the history if the result has one."""
-    content = to_dict(result)
+    """Write ``result.to_dict``, and the history if the result has one."""
+    content = result.to_dict()
     if result.history:
         course = result.history.columns() | result.history.fields
         content["history"] = {name: json_value(np.asarray(item)) for name, item in course.items()}

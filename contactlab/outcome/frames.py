@@ -3,86 +3,66 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping
-from typing import Any, Protocol
+import math
+from typing import Any
 
 import numpy as np
 
-from contactlab.outcome.columns import WithScene, unit_in
-from contactlab.outcome.columns import columns as all_columns
+from contactlab.outcome.sheet import Sheet
 
 
-class WithLaws(WithScene, Protocol):
-    """A result that has statuses and names of laws, beside columns."""
+def to_dataframe(sheet: Sheet) -> Any:
+    """Return a ``pandas.DataFrame``, one row for each number of a column.
 
-    @property
-    def status(self) -> Any:
-        """Status of each impact."""
-
-    @property
-    def laws(self) -> Mapping[str, str]:
-        """Names of the laws."""
-
-
-def to_dataframe(result: WithLaws) -> Any:
-    """Return a ``pandas.DataFrame``, one row for each impact: ``ImpactResult.to_dataframe``."""
+    Its index is the axes; where none has values, the rows are counted.
+    """
     pandas = import_optional("pandas", "to_dataframe")
-    columns, axes, units = _label_columns(result)
-    if axes:
-        index = pandas.MultiIndex.from_product(list(axes.values()), names=list(axes))
+    if all(values is None for values in sheet.axes.values()):
+        index = pandas.RangeIndex(math.prod(sheet.shape), name=sheet.row)
     else:
-        index = pandas.RangeIndex(np.size(result.status), name="impact")
-    frame = pandas.DataFrame({name: values.ravel() for name, values in columns.items()}, index)
-    frame.attrs |= {"units": units, **result.laws}
+        places = zip(sheet.axes.items(), sheet.shape, strict=True)
+        axes = {
+            name: np.arange(size) if values is None else values for (name, values), size in places
+        }
+        index = pandas.MultiIndex.from_product(list(axes.values()), names=list(axes))
+        if len(axes) == 1:
+            index = index.get_level_values(0)
+    columns = {
+        name: np.broadcast_to(values, sheet.shape).ravel() for name, values in sheet.columns.items()
+    }
+    frame = pandas.DataFrame(columns, index)
+    frame.attrs |= {"units": dict(sheet.units), **sheet.about}
     return frame
 
 
-def to_xarray(result: WithLaws) -> Any:
-    """Return an ``xarray.Dataset``, one dimension for each axis: ``ImpactResult.to_xarray``.
-
-    A batch that is not a grid has the dimension ``impact``, or ``impact_0``, ``impact_1``, ...
-    """
+def to_xarray(sheet: Sheet) -> Any:
+    """Return an ``xarray.Dataset``, one dimension for each axis."""
     xarray = import_optional("xarray", "to_xarray")
-    columns, axes, units = _label_columns(result)
-    dimensions, shape = tuple(axes), tuple(map(np.size, axes.values()))
-    if not axes:
-        shape = result.scene.shape
-        numbered = tuple(f"impact_{number}" for number in range(len(shape)))
-        dimensions = numbered if len(shape) > 1 else ("impact",) * len(shape)
+    dimensions, units = tuple(sheet.axes), sheet.units
     attributes = {name: {"units": unit} if unit else {} for name, unit in units.items()}
     return xarray.Dataset(
         {
-            name: (dimensions, values.reshape(shape), attributes[name])
-            for name, values in columns.items()
+            name: (dimensions, np.broadcast_to(values, sheet.shape), attributes.get(name, {}))
+            for name, values in sheet.columns.items()
         },
-        {name: (name, values, attributes[name]) for name, values in axes.items()},
-        dict(result.laws),
+        {
+            name: (name, values, attributes.get(name, {}))
+            for name, values in sheet.axes.items()
+            if values is not None
+        },
+        dict(sheet.about),
     )
 
 
-def _label_columns(result: WithLaws) -> tuple[dict[str, Any], dict[str, Any], dict[str, str]]:
-    """Return the columns that a scene defines, of its shape, the axes of a grid, and all units."""
-    scene = result.scene
-    axes = dict(scene.axes)
-    columns, units = {}, {}
-    for name, unit, values in all_columns(result):
-        if values is None:  # a scene without bodies
-            continue
-        units[name] = unit_in(unit, scene) if unit else ""
-        if name in axes:
-            continue
-        if name == "status":
-            values = np.reshape([status.name for status in np.ravel(np.array(values))], scene.shape)
-        columns[name] = np.broadcast_to(values, scene.shape)
-    return columns, axes, units
+def import_optional(module: str, method: str, *, extra: str = "") -> Any:
+    """Return an optional module, or raise ``ImportError`` with the command that installs it.
 
-
-def import_optional(module: str, method: str) -> Any:
-    """Return an optional module, or raise ``ImportError`` with the command that installs it."""
+    ``extra`` are the extras to install, by default the one named as the module.
+    """
     try:
         return importlib.import_module(module)
     except ImportError as error:
         raise ImportError(
             f"{method} needs {module}, which is not installed: in the clone pip install "
-            f'".[{module}]"'
+            f'".[{extra or module}]"'
         ) from error

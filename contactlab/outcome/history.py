@@ -13,12 +13,14 @@ from contactlab.contracts.tangential_motion import Sample
 from contactlab.impact.scene import Scene
 from contactlab.numeric.names import attributes_told
 from contactlab.numeric.types import Array, Index
-from contactlab.outcome.columns import components
+from contactlab.outcome.columns import components, json_value
 from contactlab.outcome.motion import Motion
+from contactlab.outcome.tabled import Plotted
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from contactlab.outcome.sheet import Sheet
     from contactlab.outcome.style import Width
 
 
@@ -29,11 +31,12 @@ def _column(unit: str) -> Any:
 
 @attributes_told
 @attrs.frozen(kw_only=True, eq=False, repr=False)
-class History:
+class History(Plotted):
     """Arrays over the instants of an impact, shape (K, ...): instants first, then the batch.
 
     ``tangential_force`` is positive where it opposes a positive slip velocity. Where the scene has
-    vectors, both have components along t1 and t2, shape (K, ..., 2).
+    vectors, both have components along t1 and t2, shape (K, ..., 2). ``last_axis`` is what the last
+    axis of ``time`` counts.
     """
 
     time: Array = _column("s")
@@ -44,6 +47,7 @@ class History:
     slip_velocity: Array = _column("m/s")
     tangential_force: Array = _column("N")
     fields: dict[str, NDArray[Any]] = attrs.field(factory=dict)
+    last_axis: str = "impact"
 
     def columns(self) -> dict[str, Array]:
         """Return the columns with one number for each instant, by name."""
@@ -59,9 +63,26 @@ class History:
 
     def part(self, index: Index) -> History:
         """Return the history of some impacts of a batch."""
-        columns = {name: getattr(self, name)[:, index] for name in _names()}
+        columns: dict[str, Any] = {name: getattr(self, name)[:, index] for name in _names()}
         fields = {name: field[:, index] for name, field in self.fields.items()}
         return History(**columns, fields=fields)
+
+    def _sheet(self) -> Sheet:
+        from contactlab.outcome.sheet import Sheet, batch_axes
+
+        shape, columns = self.time.shape, self.columns()
+        axes: dict[str, Any] = batch_axes(shape[1:], self.last_axis)
+        if len(shape) == 1:  # instants that all columns share
+            axes = {"time": columns.pop("time")}
+        elif self.last_axis == "contact":
+            axes = batch_axes(shape[1:-1], "gathering") | {"contact": None}
+        axes = axes if len(shape) == 1 else {"instant": None} | axes
+        units = {name: self.unit(name) for name in ("time", *columns)}
+        return Sheet(columns, units, axes, shape, row="instant")
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return columns and fields by name as plain lists, None for numbers not finite."""
+        return super().to_dict() | {name: json_value(each) for name, each in self.fields.items()}
 
     def __repr__(self) -> str:
         """Return the number of instants, the last time and the fields."""
@@ -70,11 +91,12 @@ class History:
         fields = ", ".join(self.fields) or "no fields"
         return f"History({len(self.time)} instants to {np.max(self.time):.4g} s; {fields})"
 
-    def plot(self, *, axes: Axes | None = None, width: Width | None = None) -> Axes:
-        """Draw the forces over time on ``axes``, or on a new figure of ``matplotlib.pyplot``.
+    def _draw(self, axes: Axes | None, x: str | None, y: str | None, width: Width | None) -> Axes:
+        """Draw one column over another, by default both forces over time."""
+        if x is not None or y is not None:
+            from contactlab.outcome.sheet_figure import draw_sheet
 
-        A new figure fills ``width`` columns of a page, ``"one"`` or ``"two"``.
-        """
+            return draw_sheet(axes, self._sheet(), x or "time", y, width=width, course=True)
         from contactlab.outcome.history_figure import draw_history  # matplotlib only when drawing
 
         return draw_history(axes, self, width=width)
@@ -110,7 +132,7 @@ NO_HISTORY = NoHistory()
 
 def _names() -> list[str]:
     """Return the names of the columns with one number for each instant, in order."""
-    return [item.name for item in attrs.fields(History) if item.name != "fields"]
+    return [item.name for item in attrs.fields(History) if "unit" in item.metadata]
 
 
 class WithHistory(Protocol):
@@ -170,7 +192,7 @@ class Recorder:
         """Return the history of the samples; its arrays have length 0 if there are none."""
         shape, count = self._shape, len(self._rows)
         batch = (math.prod(shape),) if shape else ()  # what is recorded has one axis
-        columns = {}
+        columns: dict[str, Any] = {}
         for index, name in enumerate(_names()):
             first = np.shape(self._rows[0][index]) if count else ()
             vectors = first[len(batch) :]  # of a slip velocity or force in space

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -279,6 +278,8 @@ class Plan:
 
     def _repr_html_(self) -> str:
         """Return what a notebook shows: the words of ``str``."""
+        import html  # for notebooks only
+
         return f"<pre>{html.escape(str(self))}</pre>"
 
     def to_dict(self) -> dict[str, Any]:

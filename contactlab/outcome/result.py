@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Generic, Self, overload
 
@@ -24,14 +23,9 @@ from contactlab.outcome.plan import Plan
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
+    from contactlab.outcome.sheet import Sheet
     from contactlab.outcome.style import Width
-
-    class OwnAxes(Axes):
-        """Axes of a new figure, and not of a part of one."""
-
-        figure: Figure
 
 
 @attributes_told
@@ -115,10 +109,6 @@ class ImpactResult(Answer, Generic[Each]):
         return equal(mine, its)
 
     __hash__ = None  # type: ignore[assignment]
-
-    def _repr_html_(self) -> str:
-        """Return ``str(self)`` as HTML for a notebook."""
-        return f"<pre>{html.escape(str(self))}</pre>"
 
     @property
     def psi1(self) -> Each:
@@ -331,43 +321,8 @@ class ImpactResult(Answer, Generic[Each]):
         checked = not unchecked if isinstance(unchecked, bool) else ~unchecked
         return ledger(self.scene, self.motion, checked)
 
-    @overload
-    def plot(
-        self, x: str | None = ..., y: str | None = ..., *, axes: Axes, width: Width | None = ...
-    ) -> Axes: ...
-    @overload
-    def plot(
-        self,
-        x: str | None = ...,
-        y: str | None = ...,
-        *,
-        axes: None = ...,
-        width: Width | None = ...,
-    ) -> OwnAxes: ...
-    def plot(
-        self,
-        x: str | None = None,
-        y: str | None = None,
-        *,
-        axes: Axes | None = None,
-        width: Width | None = None,
-    ) -> Axes:
-        """Return axes with ``y`` over ``x`` for a batch, forces over time for a single impact.
-
-        Parameters
-        ----------
-        x, y : str, optional
-            Columns of a written file, angles also in degrees: ``"psi1"``, ``"rebound_angle_deg"``.
-        axes : Axes, optional
-            Axes to draw on; a new figure of ``matplotlib.pyplot`` by default.
-        width : {"one", "two"}, optional
-            Columns of a page that a new figure fills.
-
-        Raises
-        ------
-        ValueError
-            If a quantity is unknown, or a single impact has no history.
-        """
+    def _draw(self, axes: Axes | None, x: str | None, y: str | None, width: Width | None) -> Axes:
+        """Draw ``y`` over ``x`` for a batch, by default psi2; forces over time for one impact."""
         from contactlab.outcome.result_figure import draw_result  # matplotlib only when drawing
 
         return draw_result(axes, self, x, y, width=width)
@@ -394,20 +349,41 @@ class ImpactResult(Answer, Generic[Each]):
         """Cautions that ``str`` shows: about the numerical error, then those of the plan."""
         return [*error_cautions(self), *map(str, self.plan.cautions)]
 
-    def to_dataframe(self) -> Any:
-        """Return a ``pandas.DataFrame``, one row for each impact, units in ``.attrs["units"]``.
+    def _sheet(self) -> Sheet:
+        """Return the columns that the scene defines, over the axes of a grid, or counted."""
+        from contactlab.outcome.columns import columns, unit_in
+        from contactlab.outcome.sheet import Sheet, batch_axes, names_of
 
-        The index is the axes of a ``Scene.grid`` or of a file's product, else ``impact``.
-        """
-        from contactlab.outcome.frames import to_dataframe
+        scene, found, units = self.scene, {}, {}
+        axes = dict(scene.axes) or batch_axes(scene.shape)
+        for name, unit, values in columns(self):
+            if values is None:  # a scene without bodies
+                continue
+            units[name] = unit_in(unit, scene) if unit else ""
+            if name not in axes:
+                found[name] = names_of(values, scene.shape) if name == "status" else values
+        shape = tuple(np.size(axis) for axis in scene.axes.values()) or scene.shape
+        found = {
+            name: np.broadcast_to(values, scene.shape).reshape(shape)
+            for name, values in found.items()
+        }
+        return Sheet(found, units, axes, shape, dict(self.laws))
 
-        return to_dataframe(self)
+    def to_dict(self) -> dict[str, Any]:
+        """Return the result without its history as plain numbers, lists and text."""
+        from contactlab.outcome.columns import columns, json_value
 
-    def to_xarray(self) -> Any:
-        """Return an ``xarray.Dataset`` with units, its dimensions the axes of a ``Scene.grid``."""
-        from contactlab.outcome.frames import to_xarray
-
-        return to_xarray(self)
+        numbers = {name: json_value(values) for name, _, values in columns(self)}
+        return numbers | {
+            "detail": json_value(self.motion.detail),
+            "psi2_error_estimate": json_value(self.psi2_error_estimate),
+            "restitution_error_estimate": json_value(self.restitution_error_estimate),
+            "run_time_s": self.run_time,
+            "energy": self.energy.to_dict(),
+            "counters": dict(self.counters),
+            "laws": dict(self.laws),
+            "plan": self.plan.to_dict(),
+        }
 
     def __len__(self) -> int:
         """Return the number of impacts of a batch."""

@@ -8,10 +8,10 @@ import math
 import os
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
-from functools import cached_property
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property, partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -27,9 +27,17 @@ from contactlab.outcome.chunk_files import (
     refuse_damaged,
     refuse_file,
 )
-from contactlab.outcome.chunk_forms import COLUMN_OF_STATUS, FORMS, NPZ, About
+from contactlab.outcome.chunk_forms import COLUMN_OF_STATUS, FORMS, NPZ, About, Form
+from contactlab.outcome.columns import json_value
 from contactlab.outcome.files import stamp
+from contactlab.outcome.frames import import_optional
 from contactlab.outcome.result import ImpactResult
+from contactlab.outcome.sheet import Sheet, batch_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from contactlab.outcome.style import Width
 
 #: What ``sweep.json`` says of a folder of this kind, and of the codes of its statuses.
 KIND, STATUSES = "columns of results", "statuses"
@@ -83,12 +91,46 @@ def _told(same: list[tuple[list[float], str, About]], total: int) -> str:
     return f"impacts {about.first} to {about.stop}: {sentence}{others}"
 
 
+class _Unchanged(NamedTuple):
+    """A chunk's file, what it tells, and its stamp when the folder was opened."""
+
+    path: Path
+    about: About
+    stamp: tuple[int, ...]
+
+    def check(self) -> None:
+        """Refuse a file that is not the one that was opened."""
+        if stamp(self.path) != self.stamp:  # by another sweep, maybe
+            rule = "was written or removed after this folder was opened"
+            raise refuse_file("path", self.path, rule, f"open {self.path.parent} again")
+
+
+def _read(
+    path: Path, form: Form, statuses: Sequence[str], about: About, names: Sequence[str]
+) -> dict[str, Any]:
+    """Return columns of a chunk by name, statuses by their words."""
+    with columns_of(path, form, statuses, about.sums) as content:
+        columns = {name: np.broadcast_to(content[name], about.chunk.size) for name in names}
+    if COLUMN_OF_STATUS in columns:
+        columns[COLUMN_OF_STATUS] = np.array(statuses)[columns[COLUMN_OF_STATUS]]
+    return columns
+
+
+def _frame(form: Form, statuses: Sequence[str], names: Sequence[str], chunk: _Unchanged) -> Any:
+    """Return a ``pandas.DataFrame`` of columns of a chunk."""
+    chunk.check()
+    pandas = import_optional("pandas", "to_dask")
+    index = pandas.RangeIndex(*chunk.about.chunk, name="impact")
+    return pandas.DataFrame(_read(chunk.path, form, statuses, chunk.about, names), index)
+
+
 @attributes_told
 class SweepFolder(Checked):
     """The finished chunks of ``sweep(..., into=folder)``, read by columns and chunks.
 
     ``folder["psi2"]`` is a column of all impacts. ``folder.chunks("psi1", "psi2")`` reads a chunk
-    after another, in the memory of one.
+    after another, in the memory of one; ``folder.to_dask("psi1", "psi2")`` reads them when they are
+    computed. ``to_dict``, ``to_dataframe`` and ``to_xarray`` take names of columns too.
 
     Parameters
     ----------
@@ -180,6 +222,12 @@ class SweepFolder(Checked):
         ValueError
             If there is no such column, or a file is damaged.
         """
+        wanted = self._wanted(names)
+        for path, about in self._unchanged():
+            yield slice(*about.chunk), _read(path, self._form, self._names, about, wanted)
+
+    def _wanted(self, names: Sequence[str]) -> Sequence[str]:
+        """Return names of columns, all of them if none is given, or refuse what is none."""
         wanted = names or tuple(self.units)
         for name in wanted:
             rule, remedy = "must be the name of a column", "'psi2', or chunks('psi1', 'psi2')"
@@ -188,31 +236,103 @@ class SweepFolder(Checked):
                 known = ", ".join(self.units) or "none, as no chunk is finished"
                 remedy = f"{nearest(name, self.units)}known: {known}"
                 raise refuse("column", name, "is not a column of the sweep", remedy)
-        for path, about in self._unchanged():
-            with columns_of(path, self._form, self._names, about.sums) as content:
-                columns = {
-                    name: np.broadcast_to(content[name], about.chunk.size) for name in wanted
-                }
-            if COLUMN_OF_STATUS in columns:
-                columns[COLUMN_OF_STATUS] = np.array(self._names)[columns[COLUMN_OF_STATUS]]
-            yield slice(*about.chunk), columns
+        return wanted
+
+    def _columns(self, *names: str) -> dict[str, Any]:
+        """Return columns of all impacts by name; no chunk may be missing."""
+        if self.missing:
+            first, stop = self.missing[0]
+            rule = f"impacts {first} to {stop} are missing"
+            remedy = "run the same sweep into the folder again, or read chunks()"
+            raise refuse("path", str(self.path), rule, remedy)
+        columns: dict[str, Any] = {}
+        for place, part in self.chunks(*names):
+            for name, values in part.items():
+                if name not in columns:
+                    columns[name] = np.empty(len(self), dtype=values.dtype)
+                columns[name][place] = values
+        return columns or {name: np.empty(0) for name in names}
+
+    def _sheet(self, *names: str) -> Sheet:
+        shape = (len(self),)
+        return Sheet(self._columns(*names), self.units, batch_axes(shape), shape, self.laws)
+
+    def to_dict(self, *names: str) -> dict[str, Any]:
+        """Return laws, statuses, cautions and what is missing, and the columns that are named.
+
+        Parameters
+        ----------
+        *names : str
+            Columns; none by default, as a folder may have more impacts than memory holds.
+        """
+        columns = self._columns(*names) if names else {}
+        return {
+            "impacts": len(self),
+            "missing": [list(span) for span in self.missing],
+            "statuses": dict(self.statuses),
+            "laws": dict(self.laws),
+            "cautions": self.cautions,
+            "units": dict(self.units),
+        } | {name: json_value(values) for name, values in columns.items()}
+
+    def to_dataframe(self, *names: str) -> Any:
+        """Return a ``pandas.DataFrame`` of columns of all impacts, units in ``.attrs["units"]``.
+
+        Parameters
+        ----------
+        *names : str
+            Columns, all of them by default.
+        """
+        from contactlab.outcome.frames import to_dataframe
+
+        return to_dataframe(self._sheet(*names))
+
+    def to_xarray(self, *names: str) -> Any:
+        """Return an ``xarray.Dataset`` of columns of all impacts, with units.
+
+        Parameters
+        ----------
+        *names : str
+            Columns, all of them by default.
+        """
+        from contactlab.outcome.frames import to_xarray
+
+        return to_xarray(self._sheet(*names))
+
+    def to_dask(self, *names: str) -> Any:
+        """Return a ``dask.dataframe.DataFrame`` of the finished chunks, read when it is computed.
+
+        Its index is the place of each impact in the sweep. Each chunk is a partition, from files of
+        NumPy and of Parquet alike, and is compared with its checksums.
+
+        Parameters
+        ----------
+        *names : str
+            Columns, all of them by default.
+        """
+        dask = import_optional("dask.dataframe", "to_dask", extra="dask,pandas,pyarrow")
+        wanted = self._wanted(names)
+        told = [_Unchanged(path, about, self._stamps[path]) for path, about in self._abouts]
+        if not told:
+            remedy = "run the sweep into it first"
+            raise refuse("path", str(self.path), "holds no finished chunk", remedy)
+        read = partial(_frame, self._form, self._names, wanted)
+        edges = [*(chunk.about.first for chunk in told), told[-1].about.stop - 1]
+        return dask.from_map(read, told, meta=read(told[0]).iloc[:0], divisions=edges)
+
+    def _draw(self, axes: Axes | None, x: str | None, y: str | None, width: Width | None) -> Axes:
+        """Draw one column over another, by default psi2 over psi1; no other is read."""
+        from contactlab.outcome.sheet_figure import draw_sheet  # matplotlib only when drawing
+
+        x, y = x or "psi1", y or "psi2"
+        return draw_sheet(axes, self._sheet(*dict.fromkeys((x, y))), x, y, width=width)
 
     def __getitem__(self, name: str) -> Any:
         """Return a column of the sweep up to its last chunk, shape (n,); no chunk may be missing.
 
         An unfinished sweep has fewer impacts: ``check`` tells.
         """
-        if self.missing:
-            first, stop = self.missing[0]
-            rule = f"impacts {first} to {stop} are missing"
-            remedy = "run the same sweep into the folder again, or read chunks()"
-            raise refuse("path", str(self.path), rule, remedy)
-        column = np.empty(0)
-        for place, columns in self.chunks(name):
-            if not column.size:
-                column = np.empty(len(self), dtype=columns[name].dtype)
-            column[place] = columns[name]
-        return column
+        return self._columns(name)[name]
 
     @property
     def statuses(self) -> Mapping[str, int]:
@@ -222,9 +342,7 @@ class SweepFolder(Checked):
     def _unchanged(self) -> Iterator[tuple[Path, About]]:
         """Yield the finished chunks; refuse a file that is not the one that was opened."""
         for path, about in self._abouts:
-            if stamp(path) != self._stamps[path]:  # by another sweep, maybe
-                rule = "was written or removed after this folder was opened"
-                raise refuse_file("path", path, rule, f"open {self.path} again")
+            _Unchanged(path, about, self._stamps[path]).check()
             yield path, about
 
     def _failed(self) -> Iterator[tuple[int, str]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -22,6 +22,8 @@ from contactlab.numeric.arrays import lock_arrays
 from contactlab.numeric.checks import Rule, of_kind, real, refuse
 from contactlab.numeric.types import Array, Numbers
 from contactlab.outcome.answer import Answer
+from contactlab.outcome.columns import json_value
+from contactlab.outcome.sheet import Sheet, batch_axes, names_of
 from contactlab.paths.path_steps import Followed, Points, follow_path
 from contactlab.registry import composition
 from contactlab.registry.acceptance import accept
@@ -30,8 +32,18 @@ from contactlab.registry.law_words import name_of, of_taken
 from contactlab.solve.solve import refuse_gathering
 from contactlab.solve.unfollowed import refusal
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from contactlab.outcome.style import Width
+
 #: Columns of a path that the laws return.
 COLUMNS = ("normal_force", "friction_force", "friction_load", "contact_radius", "friction_work")
+#: Units of the columns of a path.
+UNITS = {
+    "time": "s", "approach": "m", "displacement": "m", "normal_force": "N", "friction_force": "N",
+    "friction_load": "N", "contact_radius": "m", "friction_work": "J", "work": "J", "status": "",
+}  # fmt: skip
 #: Time of a step over the duration of an elastic impact, if no times are given: viscous forces are
 #: then below the rounding of elastic ones.
 SLOW = 1e12
@@ -128,6 +140,28 @@ class LoadPath(Answer):
         each = [self.tangential.fields(state) for state in self._states]
         names = each[0] if each else ()
         return {name: np.array([fields[name] for fields in each]) for name in names}
+
+    def _sheet(self) -> Sheet:
+        shape = np.shape(self.time)
+        names = UNITS.keys() - {"status"}
+        found = {name: getattr(self, name) for name in UNITS if name in names}
+        found["status"] = names_of(self.status, shape[1:])
+        about = {"normal": name_of(self.normal), "tangential": name_of(self.tangential)}
+        return Sheet(found, UNITS, batch_axes(shape[:1], "point") | batch_axes(shape[1:], "path"),
+                     shape, about, "point")  # fmt: skip
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return columns, fields of the law and cautions as plain lists and text."""
+        fields = {name: json_value(each) for name, each in self.fields.items()}
+        told = {"status": json_value(self.status), "detail": self.detail}
+        return super().to_dict() | fields | told | {"cautions": self.cautions}
+
+    def _draw(self, axes: Axes | None, x: str | None, y: str | None, width: Width | None) -> Axes:
+        """Draw one column over another, by default friction force over displacement."""
+        from contactlab.outcome.sheet_figure import draw_sheet  # matplotlib only when drawing
+
+        names = x or "displacement", y or "friction_force"
+        return draw_sheet(axes, self._sheet(), *names, width=width, course=True)
 
 
 def load_path(

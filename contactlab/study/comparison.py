@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 from typing import TYPE_CHECKING, Any, overload
 
 import attrs
@@ -15,17 +15,19 @@ from contactlab.numeric.names import attributes_told
 from contactlab.numeric.progress import Count, follow
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.result import ImpactResult
+from contactlab.outcome.sheet import Sheet
+from contactlab.outcome.tabled import Tabled
 from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import SceneFile
 from contactlab.solve.error_estimate import estimate_errors
 from contactlab.study.agreement import Agreement, LawRun, values_of
-from contactlab.study.side_by_side import default_quantities, describe
+from contactlab.study.side_by_side import default_quantities, describe, to_dict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from contactlab.outcome.result import OwnAxes
     from contactlab.outcome.style import Width
+    from contactlab.outcome.tabled import OwnAxes
 
 #: Repeats of a short run. The least time counts, which other load of the machine disturbs least.
 REPEATS = 3
@@ -37,7 +39,7 @@ LONG_RUN = 2.0
 
 @attributes_told
 @attrs.frozen(kw_only=True, eq=False)
-class Comparison:
+class Comparison(Tabled):
     """Laws side by side; the first law is the reference of the others.
 
     Attributes
@@ -152,6 +154,30 @@ class Comparison:
         from contactlab.study.comparison_figure import draw_compared  # matplotlib only when drawing
 
         return draw_compared(axes, self, quantity, width)
+
+    def to_dict(self, quantities: Sequence[str] | None = None) -> dict[str, Any]:
+        """Return quantities of each law, differences and agreement as plain numbers and text.
+
+        Parameters
+        ----------
+        quantities : sequence of str, optional
+            Columns of a written file; by default those that ``str`` shows.
+        """
+        return to_dict(self, default_quantities(self) if quantities is None else quantities)
+
+    def _sheet(self) -> Sheet:
+        """Return the columns of all results, with an axis of laws before those of the scene."""
+        sheets = [run.result._sheet() for run in self.runs]
+        shape = (len(sheets), *sheets[0].shape)
+        units = {"law": ""}
+        columns: dict[str, Any] = {}
+        for k, sheet in enumerate(sheets):
+            units |= sheet.units
+            for name, values in sheet.columns.items():  # options of a law are columns of its own
+                kind = object if values.dtype.kind == "U" else float
+                columns.setdefault(name, np.full(shape, np.nan, dtype=kind))[k] = values
+        axes = {"law": np.array(self.names), **sheets[0].axes}
+        return Sheet(columns, units, axes, shape)
 
     def failures(self) -> list[str]:
         """Return one sentence for each run with failed impacts, at measured points too."""

@@ -1,4 +1,4 @@
-"""Every law that fits a scene, its scores, and a comparison as JSON and CSV."""
+"""Every law that fits a scene, its scores, and a comparison as CSV."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from numpy.typing import ArrayLike
 from contactlab.contracts import SteppedTangentialLaw, TangentialLaw, WholeImpactTangentialLaw
 from contactlab.impact.scene import entry_unit
 from contactlab.numeric.types import Real
-from contactlab.outcome.columns import QUANTITIES, csv_heading, json_value
+from contactlab.outcome.columns import QUANTITIES, csv_heading
 from contactlab.outcome.tables import number, time
 from contactlab.outcome.text_table import table
 from contactlab.registration.names import full_name, short_name
 from contactlab.registry import composition
 from contactlab.registry.registry import REGISTRY, PluginError
 from contactlab.runs.simulation import Simulation
-from contactlab.scene_file import LawChoice, Measured, SceneFile
+from contactlab.scene_file import LawChoice, SceneFile
 from contactlab.study.comparison import Comparison
 from contactlab.study.side_by_side import wrap
 
@@ -157,50 +157,6 @@ def _largest(values: ArrayLike) -> float:
     return float(np.max(values[np.isfinite(values)])) if np.isfinite(values).any() else np.nan
 
 
-def to_dict(comparison: Comparison, quantities: Sequence[str]) -> dict[str, Any]:
-    """Return the comparison as numbers, lists and text, ready for JSON."""
-    return {
-        "laws": {
-            run.name: {
-                "versions": dict(run.result.laws),
-                "run_time_per_impact_s": run.run_time_per_impact,
-                "status": json_value(np.array(run.result.status, dtype=object))
-                if comparison.scene.shape
-                else json_value(run.result.status),
-                "cautions": [str(sentence) for sentence in run.result.plan.cautions],
-                "psi2_numerical_error": _list(comparison.numerical_error(run.name)),
-                "values": {name: _list(comparison.values(name, run.name)) for name in quantities},
-                "differences": {
-                    name: _list(comparison.difference(name, run.name)) for name in quantities
-                },
-            }
-            for run in comparison.runs
-        },
-        "varied": {name: _list(values) for name, values in comparison.varied.items()},
-        "measured": [
-            {
-                "quantity": agreement.measured.quantity,
-                "unit": agreement.unit,
-                "against": agreement.measured.against,
-                "source": agreement.measured.source,
-                "x": _list(agreement.measured.x),
-                **_beside(agreement.measured),
-                "values": _list(agreement.measured.values),
-                "error": _list(agreement.measured.error),
-                "laws": {
-                    law: {
-                        "values": _list(values),
-                        "rms": json_value(agreement.rms(law)),
-                        "largest": json_value(agreement.largest(law)),
-                    }
-                    for law, values in agreement.predicted.items()
-                },
-            }
-            for agreement in comparison.agreements
-        ],
-    }
-
-
 def write_csv(comparison: Comparison, quantities: Sequence[str], stream: TextIO) -> None:
     """Write one row per value to ``stream``; the reference is the first law, or the measured value.
 
@@ -227,19 +183,9 @@ def write_csv(comparison: Comparison, quantities: Sequence[str], stream: TextIO)
                 writer.writerow([*start, row[0], law, *row[1:]])
 
 
-def _beside(measured: Measured) -> dict[str, Any]:
-    """Return the other entries of measured impacts, if they have some."""
-    entries = {name: _list(values) for name, values in measured.beside.items()}
-    return {"beside": entries} if entries else {}
-
-
 def _rows(*columns: Real) -> Iterator[list[Any]]:
     for row in np.broadcast(*columns):
         yield ["" if np.isnan(item) else float(item) for item in row]
-
-
-def _list(values: Real) -> Any:
-    return json_value(np.asarray(values)) if np.ndim(values) else json_value(float(values))
 
 
 def describe_scores(scores: Sequence[Score], comparison: Comparison, file: SceneFile) -> str:

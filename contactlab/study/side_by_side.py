@@ -1,10 +1,10 @@
-"""A comparison, ``contactlab.study.comparison.Comparison``, as tables."""
+"""A comparison, ``contactlab.study.comparison.Comparison``, as tables and plain numbers."""
 
 from __future__ import annotations
 
 import textwrap
 from collections.abc import Mapping, Sequence
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -16,10 +16,11 @@ from contactlab.outcome.columns import (
     components,
     find_quantity,
     foreign,
+    json_value,
 )
 from contactlab.outcome.tables import IN_SPACE, heading, number, time
 from contactlab.outcome.text_table import table
-from contactlab.scene_file import SceneFile
+from contactlab.scene_file import Measured, SceneFile
 from contactlab.study.agreement import Agreement, LawRun
 
 #: Laws beside each other, one impact's, above which each has a row.
@@ -54,6 +55,9 @@ class Compared(Protocol):
 
     def difference(self, quantity: str, law: str) -> Array:
         """Return a quantity of one law less that of the first law."""
+
+    def numerical_error(self, law: str) -> Array:
+        """Return the numerical error of psi2 of one law."""
 
 
 def default_quantities(comparison: Compared) -> list[str]:
@@ -194,3 +198,57 @@ def _with_unit(entry: str) -> str:
 def wrap(text: str) -> str:
     """Return a text in lines of 96 characters."""
     return textwrap.fill(" ".join(text.split()), width=96)
+
+
+def to_dict(comparison: Compared, quantities: Sequence[str]) -> dict[str, Any]:
+    """Return the comparison as numbers, lists and text, ready for JSON."""
+    return {
+        "laws": {
+            run.name: {
+                "versions": dict(run.result.laws),
+                "run_time_per_impact_s": run.run_time_per_impact,
+                "status": json_value(np.array(run.result.status, dtype=object))
+                if comparison.scene.shape
+                else json_value(run.result.status),
+                "cautions": [str(sentence) for sentence in run.result.plan.cautions],
+                "psi2_numerical_error": _list(comparison.numerical_error(run.name)),
+                "values": {name: _list(comparison.values(name, run.name)) for name in quantities},
+                "differences": {
+                    name: _list(comparison.difference(name, run.name)) for name in quantities
+                },
+            }
+            for run in comparison.runs
+        },
+        "varied": {name: _list(values) for name, values in comparison.varied.items()},
+        "measured": [
+            {
+                "quantity": agreement.measured.quantity,
+                "unit": agreement.unit,
+                "against": agreement.measured.against,
+                "source": agreement.measured.source,
+                "x": _list(agreement.measured.x),
+                **_beside(agreement.measured),
+                "values": _list(agreement.measured.values),
+                "error": _list(agreement.measured.error),
+                "laws": {
+                    law: {
+                        "values": _list(values),
+                        "rms": json_value(agreement.rms(law)),
+                        "largest": json_value(agreement.largest(law)),
+                    }
+                    for law, values in agreement.predicted.items()
+                },
+            }
+            for agreement in comparison.agreements
+        ],
+    }
+
+
+def _beside(measured: Measured) -> dict[str, Any]:
+    """Return the other entries of measured impacts, if they have some."""
+    entries = {name: _list(values) for name, values in measured.beside.items()}
+    return {"beside": entries} if entries else {}
+
+
+def _list(values: Real) -> Any:
+    return json_value(np.asarray(values)) if np.ndim(values) else json_value(float(values))

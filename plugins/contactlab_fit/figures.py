@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,26 +12,57 @@ from numpy.typing import NDArray
 
 from contactlab.figures.files import Panels, save
 from contactlab.impact.scene import entry_unit
-from contactlab.numeric.types import Array
-from contactlab.outcome.columns import QUANTITIES
+from contactlab.numeric.types import Array, Numbers
+from contactlab.outcome.columns import QUANTITIES, WithScene
 from contactlab.outcome.style import Look, Width, label, law_style, verbatim, zero_line
 from contactlab.study.comparison_figure import POINTS
-from contactlab_fit.fit_result import Fit
+from contactlab_fit.measurements import Measurements
 
 MARKERS = "os^Dv<"
 #: Impacts at which the curve of a law is drawn, beside those that were measured.
 SMOOTH = 100
 
 
+class Valued(Protocol):
+    """A fitted parameter."""
+
+    @property
+    def value(self) -> float:
+        """Its value."""
+
+
+class Fitted(Protocol):
+    """What is drawn of a fit."""
+
+    @property
+    def parameters(self) -> Mapping[str, Valued]:
+        """The fitted parameters."""
+
+    @property
+    def measurements(self) -> Measurements:
+        """What was measured."""
+
+    @property
+    def predicted(self) -> Mapping[str, Array]:
+        """The measured quantities by the law."""
+
+    @property
+    def residuals(self) -> Mapping[str, Array]:
+        """Measured less predicted."""
+
+    def predict(self, **entries: Numbers) -> WithScene:
+        """Return other impacts of the law."""
+
+
 def draw_fits(
-    path: Path, fits: Mapping[str, Fit], *, look: Look = "print", width: Width | None = None
+    path: Path, fits: Mapping[str, Fitted], *, look: Look = "print", width: Width | None = None
 ) -> None:
     """Draw each measured quantity in a column of panels, and write a picture.
 
     Parameters
     ----------
     path : Path
-    fits : mapping of str to Fit
+    fits : mapping of str to Fitted
         Fits to the same measurements, by the names of their laws.
     look, width
         As of ``contactlab.figures.files.save``.
@@ -51,7 +82,7 @@ def draw_fits(
     save(path, draw, rows=2, columns=len(names), heights=(2.0, 1.0), look=look, width=width)
 
 
-def measured_and_laws(axes: Axes, fits: Mapping[str, Fit], quantity: str) -> Axes:
+def measured_and_laws(axes: Axes, fits: Mapping[str, Fitted], quantity: str) -> Axes:
     """Draw measured values of a quantity with their errors, and the predictions of each law."""
     first = next(iter(fits.values()))
     x, words = _abscissa(first)
@@ -70,7 +101,7 @@ def measured_and_laws(axes: Axes, fits: Mapping[str, Fit], quantity: str) -> Axe
     return axes
 
 
-def _curve(fit: Fit, x: Array, present: NDArray[np.bool_], quantity: str) -> tuple[Array, Array]:
+def _curve(fit: Fitted, x: Array, present: NDArray[np.bool_], quantity: str) -> tuple[Array, Array]:
     """Return the law between the measured impacts: abscissas, and the quantity there."""
     if not fit.measurements.given:
         return x, fit.predicted[quantity][present]
@@ -83,7 +114,7 @@ def _curve(fit: Fit, x: Array, present: NDArray[np.bool_], quantity: str) -> tup
     return between, QUANTITIES[quantity].of(fit.predict(**entries))
 
 
-def residuals(axes: Axes, fits: Mapping[str, Fit], quantity: str) -> Axes:
+def residuals(axes: Axes, fits: Mapping[str, Fitted], quantity: str) -> Axes:
     """Draw the residuals, measured less predicted, of each law."""
     zero_line(axes)
     for number, fit in enumerate(fits.values()):
@@ -104,7 +135,7 @@ def residuals(axes: Axes, fits: Mapping[str, Fit], quantity: str) -> Axes:
     return axes
 
 
-def _abscissa(fit: Fit) -> tuple[Any, str]:
+def _abscissa(fit: Fitted) -> tuple[Any, str]:
     """Return abscissa and label: the angle of incidence, else the first entry that varies."""
     given = fit.measurements.given
     if "angle_deg" in given:
@@ -118,7 +149,7 @@ def _abscissa(fit: Fit) -> tuple[Any, str]:
     return np.arange(1.0, 1.0 + len(fit.measurements)), "impact"
 
 
-def _legend(name: str, fit: Fit) -> str:
+def _legend(name: str, fit: Fitted) -> str:
     """Return the name of a law with its parameters."""
     values = ", ".join(
         f"{key.rpartition('.')[2].replace('_', ' ')} {estimate.value:.3g}"

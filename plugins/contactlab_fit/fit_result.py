@@ -4,17 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
+from contactlab.impact.scene import entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import attributes_told
 from contactlab.numeric.types import Array, Numbers
-from contactlab.outcome.columns import json_value
+from contactlab.outcome.columns import QUANTITIES, json_value
 from contactlab.outcome.result import ImpactResult
+from contactlab.outcome.sheet import Sheet, batch_axes
+from contactlab.outcome.tabled import Tabled
 from contactlab_fit.measurements import Measurements
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from contactlab.outcome.style import Width
 
 Interval = tuple[float, float]
 
@@ -48,7 +56,7 @@ class Estimate:
 
 @attributes_told
 @attrs.frozen(kw_only=True, eq=False, repr=False)
-class Fit:
+class Fit(Tabled):
     """Best parameters, their errors, and the residuals.
 
     Attributes
@@ -132,6 +140,50 @@ class Fit:
     def largest(self) -> dict[str, float]:
         """Largest absolute residual, by quantity."""
         return {name: float(np.nanmax(np.abs(r))) for name, r in self.residuals.items()}
+
+    def _sheet(self) -> Sheet:
+        """Return what was given and measured, and what is predicted, one row for each impact."""
+        content, shape = self.measurements, (len(self.measurements),)
+        columns: dict[str, Any] = dict(content.given)
+        units = {name: entry_unit(name) for name in content.given}
+        kinds = {"": content.measured, "predicted_": self.predicted, "residual_": self.residuals}
+        for before, values in (kinds | {"error_": content.errors}).items():
+            columns |= {before + name: each for name, each in values.items()}
+            units |= {before + name: QUANTITIES[name].unit for name in values}
+        return Sheet(columns, units, batch_axes(shape), shape, {"laws": self.laws})
+
+    def plot(
+        self,
+        quantity: str | None = None,
+        *,
+        axes: Axes | None = None,
+        width: Width | None = None,
+    ) -> Axes:
+        """Return axes with measured values of a quantity as points, and the law as a curve.
+
+        Parameters
+        ----------
+        quantity : str, optional
+            A measured quantity; the first by default.
+        axes : Axes, optional
+            Axes to draw on; a new figure of ``matplotlib.pyplot`` by default.
+        width : {"one", "two"}, optional
+            Columns of a page that a new figure fills.
+
+        Raises
+        ------
+        ValueError
+            If the quantity was not measured.
+        """
+        from contactlab.outcome.history_figure import on_axes  # matplotlib only when drawing
+        from contactlab_fit.figures import measured_and_laws
+
+        quantity = quantity or next(iter(self.predicted))
+        if quantity not in self.predicted:
+            remedy = f"there are {', '.join(self.predicted)}"
+            raise refuse("quantity", quantity, "was not measured", remedy)
+        with on_axes(axes, width) as drawn:
+            return measured_and_laws(drawn, {"law": self}, quantity)
 
     def to_dict(self) -> dict[str, Any]:
         """Return everything as plain numbers, lists and text."""

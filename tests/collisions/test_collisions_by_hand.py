@@ -77,7 +77,7 @@ def test_two_balls_in_gross_slip(laws, batch):
     assert np.ravel(books.imbalance)[0] == pytest.approx(0.0, abs=1e-9)
     assert np.asarray(books.checked).dtype == bool
     assert np.all(books.checked == (laws is not None))  # without laws the books close themselves
-    assert made.to_dict() == {
+    assert made.vectors() == {
         name: np.asarray(getattr(made, name)).tolist()
         for name in (
             "velocity", "spin", "target_velocity", "target_spin", "impulse", "contact_velocity",

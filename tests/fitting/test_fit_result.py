@@ -6,6 +6,7 @@ import pytest
 
 from contactlab_fit.fit_result import Estimate
 from tests.fitting.made_fit import made
+from tests.present import extra
 
 
 def test_residuals_and_their_sizes():
@@ -72,3 +73,32 @@ def test_a_fit_as_plain_numbers():
     assert plain["parameters"]["mu"]["bootstrap_95"] is None
     assert plain["parameters"]["mu"]["interval_95"] == [0.1, 0.2]
     assert (plain["reduced_chi_square"], plain["samples"]) == (1.5, 0)
+
+
+def test_a_fit_in_a_notebook_and_as_a_figure():
+    from matplotlib.figure import Figure
+
+    found = made()
+    assert found._repr_html_() == f"<pre>{found}</pre>"
+    without = attrs.evolve(found, measurements=attrs.evolve(found.measurements, given={}))
+    axes = without.plot("rebound_spin", axes=Figure().subplots())
+    assert axes.lines[1].get_ydata() == pytest.approx(found.predicted["rebound_spin"])
+    with pytest.raises(ValueError, match="quantity = 'spin': was not measured; there are psi2"):
+        found.plot("spin")
+
+
+@extra("pandas")
+def test_a_fit_as_a_frame():
+    found = made()
+    frame = found.to_dataframe()
+    assert frame["residual_rebound_spin"].tolist() == [0.0, 1.0, 3.0]
+    assert frame["psi1"].tolist() == [1.0, 2.0, 3.0]
+    assert frame.attrs["units"]["predicted_rebound_spin"] == "rad/s"
+    assert frame.attrs["laws"] == "some laws"
+
+
+@extra("xarray")
+def test_a_fit_as_a_data_set():
+    data = made().to_xarray()
+    np.testing.assert_array_equal(data.psi2, [0.5, np.nan, -1.0])
+    assert data.psi2.dims == ("impact",)

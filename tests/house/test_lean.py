@@ -102,7 +102,7 @@ acceptance answer answers batches bodies bound bring capability cautions columns
 decoupled energy error_model failed_motion groups hertz history hooks installed inverse_mass
 kinetics
 law_classes law_words loading manager material motion names normal_motion numerical_error
-of_speed plan planning registry result scene simulation solve way
+of_speed plan planning registry result scene simulation solve tabled way
 """
 
 

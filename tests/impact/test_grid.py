@@ -10,7 +10,7 @@ from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, read_scen
 from contactlab.impact.grid import MOST_IMPACTS
 from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.outcome.columns import COLUMNS
-from contactlab.outcome.export import to_dict, write_csv, write_npz
+from contactlab.outcome.export import write_csv, write_npz
 from tests.present import extra
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
@@ -135,7 +135,7 @@ angle_deg = [10, 20, 30]
     assert lines[4].startswith("0.02,10.0,")
     with np.load(tmp_path / "a.npz") as content:
         assert content["sphere.radius"].tolist() == [0.01] * 3 + [0.02] * 3
-    assert to_dict(result)["angle_deg"] == [10.0, 20.0, 30.0] * 2
+    assert result.to_dict()["angle_deg"] == [10.0, 20.0, 30.0] * 2
     data = result.to_xarray()
     assert data.psi2.dims == ("sphere.radius", "angle_deg")
     assert data["sphere.radius"].attrs == {"units": "m"}

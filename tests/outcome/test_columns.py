@@ -12,7 +12,7 @@ from contactlab.outcome.columns import (
     columns,
     csv_heading,
 )
-from contactlab.outcome.export import to_dict, write_csv, write_history_csv, write_json, write_npz
+from contactlab.outcome.export import write_csv, write_history_csv, write_json, write_npz
 from contactlab.outcome.history import History
 from tests.outcome.made import BALL, LAWS, SOFT, plan, result, scene
 
@@ -142,8 +142,8 @@ def test_a_result_as_json(tmp_path):
         },
         "history": HISTORY | {"traction": [1.0, None]},
     }
-    assert "history" not in to_dict(made)
-    assert to_dict(result())["psi2_error_estimate"] is None
+    assert "history" not in made.to_dict()
+    assert result().to_dict()["psi2_error_estimate"] is None
 
 
 def test_a_result_as_csv(tmp_path):

@@ -1,6 +1,7 @@
 """Sweeps into a folder: the columns of the same sweep in memory, part after part."""
 
 import errno
+import html
 import json
 import shutil
 import subprocess
@@ -30,6 +31,7 @@ from tests.full_disk import full_disk
 from tests.laws.ending_laws import Raising
 from tests.laws.random_laws import RandomStepped
 from tests.longer import longer
+from tests.present import extra
 from tests.runs.test_sweep import CHI, RIGID, blocks_of, scene
 
 STEEL = Material.named("steel")
@@ -347,6 +349,59 @@ def test_a_damaged_file_is_told(tmp_path):
             with pytest.raises(ValueError, match=rf"into = .*{name}.*{words}"):
                 simulation.sweep(parts(), into=target)
         (target / name).unlink()
+
+
+def test_a_folder_is_told_and_drawn(tmp_path):
+    """Of a folder nothing is read but what is named."""
+    from matplotlib.figure import Figure
+
+    folder = Simulation(**RIGID).sweep(scene(), into=tmp_path / "swept", chunk=40).check()
+    told = json.loads(json.dumps(folder.to_dict("psi2")))
+    assert told["psi2"] == folder["psi2"].tolist()
+    assert told["impacts"] == len(folder)
+    assert told["statuses"] == {"SUCCESS": len(folder)}
+    assert "psi1" not in folder.to_dict()
+    assert folder._repr_html_() == f"<pre>{html.escape(str(folder))}</pre>"
+    curve = folder.plot(axes=Figure().subplots()).lines[0]
+    order = np.argsort(folder["psi1"])
+    assert curve.get_ydata() == pytest.approx(folder["psi2"][order])
+
+
+@extra("pandas")
+def test_a_folder_is_a_frame(tmp_path):
+    folder = Simulation(**RIGID).sweep(scene(), into=tmp_path / "swept", chunk=40)
+    frame = folder.to_dataframe("psi2", "status")
+    assert frame["psi2"].tolist() == folder["psi2"].tolist()
+    assert [*frame.columns] == ["psi2", "status"]
+    assert frame.attrs["units"]["normal_speed"] == folder.units["normal_speed"]
+    with pytest.raises(ValueError, match="column = 'psi3': is not a column"):
+        folder.to_dataframe("psi3")
+
+
+@extra("xarray")
+def test_a_folder_is_a_data_set(tmp_path):
+    folder = Simulation(**RIGID).sweep(scene(), into=tmp_path / "swept", chunk=40)
+    assert folder.to_xarray("psi2").psi2.values.tolist() == folder["psi2"].tolist()
+
+
+@pytest.mark.parametrize("form", ["swept", "swept.parquet"])
+def test_a_folder_is_read_by_dask_when_it_is_computed(tmp_path, form):
+    pytest.importorskip("dask.dataframe")
+    if form.endswith("parquet"):
+        pytest.importorskip("pyarrow")
+    folder = Simulation(**RIGID).sweep(scene(), into=tmp_path / form, chunk=40)
+    lazy = folder.to_dask("psi1", "psi2", "status")
+    assert lazy.npartitions == len([*folder.chunks()])
+    assert lazy["psi2"].sum().compute(scheduler="sync") == pytest.approx(folder["psi2"].sum())
+    frame = lazy.loc[50:99].compute(scheduler="sync")
+    assert frame.index.tolist() == list(range(50, 100))
+    assert frame["psi1"].tolist() == folder["psi1"][50:100].tolist()
+    with pytest.raises(ValueError, match="column = 'psi3': is not a column"):
+        folder.to_dask("psi3")
+    first = min(folder.path.glob("impacts-*"))
+    first.write_bytes(first.read_bytes() + b"0")
+    with pytest.raises(ValueError, match="was written or removed after this folder was opened"):
+        lazy["psi2"].sum().compute(scheduler="sync")
 
 
 def test_an_open_folder_reads_no_other_sweep(tmp_path):

@@ -17,7 +17,6 @@ from contactlab.study.scores import (
     candidates,
     pressed_force,
     scores,
-    to_dict,
     write_csv,
 )
 from tests.study.made_up import ERRORS, LAWS, SERIES, SWEEP
@@ -103,7 +102,7 @@ def test_the_integrator_chosen_runs_the_laws_that_it_can():
 
 
 def test_a_single_impact_is_single_numbers():
-    found = to_dict(compare(Scene.nondimensional(psi1=2.0, chi=1.0), LAWS), ["psi2"])
+    found = compare(Scene.nondimensional(psi1=2.0, chi=1.0), LAWS).to_dict(["psi2"])
     assert found["laws"]["smooth"]["status"] == "SUCCESS"
     assert found["laws"]["smooth"]["values"]["psi2"] == 2.0
     assert (found["varied"], found["measured"]) == ({}, [])
