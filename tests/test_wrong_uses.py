@@ -53,8 +53,8 @@ PYTHON = [
     ("Simulation('hertz')", "name=value", "Simulation(normal='hertz')"),
     ("Simulation().run(scene()).psi_2", "'psi2'", "Simulation().run(scene()).psi2"),
     # an option or a number to the wrong owner
-    ("Simulation(restitution=0.5)", r"normal=create\('normal.viscoelastic', restitution=0.5\)",
-     "Simulation(normal=create('normal.viscoelastic', restitution=0.5))"),
+    ("Simulation(normal='hertz', restitution=0.5)", "viscoelastic takes it",
+     "Simulation(normal='viscoelastic', restitution=0.5)"),
     ("Simulation(steps=100)", r"integrator=create\('integrator.symplectic', steps=100\)",
      "Simulation(integrator=create('integrator.symplectic', steps=100))"),
     ("Simulation(annuli=30)", r"tangential=create\('tangential.annulus', annuli=30\)",

@@ -20,8 +20,11 @@ RESTITUTIONS = Rule(
 )
 
 
-def _from(least: float) -> Rule:
-    """Return the rule of one coefficient from ``least`` to 1."""
+def _from(least: float, per_impact: bool) -> Rule:
+    """Return the rule of coefficients from ``least`` to 1."""
+    if per_impact:
+        sentence = f"must be from {least:g} to 1: rebound over approach velocity"
+        return Rule(lambda value: (value >= least) & (value <= 1.0), sentence)
     below = "; nearer to 0 no step can follow this law" if least > 0.0 else ""
     return Rule(
         lambda value: np.ndim(value) == 0 and least <= value <= 1.0,
@@ -29,7 +32,9 @@ def _from(least: float) -> Rule:
     )
 
 
-def restitution(*, default: float | None, least: float = LEAST_RESTITUTION) -> Any:
+def restitution(
+    *, default: float | None, least: float = LEAST_RESTITUTION, per_impact: bool = False
+) -> Any:
     """Return an attrs field for a coefficient of normal restitution, from ``least`` to 1.
 
     Parameters
@@ -38,5 +43,7 @@ def restitution(*, default: float | None, least: float = LEAST_RESTITUTION) -> A
         Value if none is given; None makes the option optional.
     least : float
         The least that the law answers.
+    per_impact : bool
+        Whether each impact may have its own.
     """
-    return quantity("1", rule=_from(least), default=default)
+    return quantity("1", rule=_from(least, per_impact), default=default, per_impact=per_impact)

@@ -5,14 +5,20 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable
 from inspect import signature
+from typing import Any
+
+import attrs
 
 from contactlab.contracts.law import Law, law_kind
+from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import shown
+from contactlab.numeric.checks import real, refuse, shown
 from contactlab.numeric.names import REMARKS, SYMBOLS, nearest
+from contactlab.numeric.taken import Taken
 from contactlab.registration.names import full_name, kind_of
+from contactlab.registry import composition
 from contactlab.registry.composition import EXACT, PREFERRED, RESTITUTION
 from contactlab.registry.registry import REGISTRY, PluginError
 
@@ -83,6 +89,30 @@ def with_restitution(law: Law, restitution: object) -> str:
         if not known:
             return f"{type(law).__name__}(restitution={restitution!r})"
     return f"create({name!r}, restitution={restitution!r})"
+
+
+def restituted(normal: object, restitution: object) -> Any:
+    """Return the normal law of a restitution, or a named one with it; None for elastic bodies.
+
+    Raises
+    ------
+    ValueError
+        If the restitution is out of range, or the named law does not take it.
+    """
+    e = real("restitution", restitution, rule=RESTITUTIONS)
+    own = composition.RESTITUTION["normal"]
+    if normal is None:
+        elastic = isinstance(e, float) and e == 1.0
+        return None if elastic else composition.law("normal", own, restitution=e)
+    found = composition.law("normal", normal)
+    if takes_restitution(type(found)):
+        if isinstance(normal, str):
+            return composition.law("normal", normal, restitution=e)
+        if attrs.has(type(found)) and isinstance(found.restitution, Taken | None):
+            return attrs.evolve(found, restitution=e)
+    rule = f"stands beside normal = {REGISTRY.short_name(found)}, which "
+    rule += "has one" if takes_restitution(type(found)) else "does not take it"
+    raise refuse("restitution", restitution, rule, f"leave out one of them; {own} takes it")
 
 
 def takes_restitution(law: type[Law]) -> bool:

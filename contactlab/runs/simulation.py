@@ -19,7 +19,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import taken
 from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import arguments_told
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Numbers
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory, Recorder
 from contactlab.outcome.motion import Motion, without_failures
 from contactlab.outcome.plan import Plan
@@ -63,16 +63,23 @@ class Simulation:
         in ``FOR_COUPLED`` stands in for it. ``attrs.evolve(simulation, tangential="springs")``
         swaps a law: of the others those that were given stay, and the rest is chosen anew.
 
+    restitution : float or array, optional
+        Coefficient of normal restitution, from 0 to 1, in place of a normal law: one loss for
+        pressure and shear (``normal.viscoelastic``), 1 for elastic bodies. An array has one number
+        for each impact. A normal law named beside it takes it as its own option.
+
     Raises
     ------
     ValueError
-        If a name is not installed, or the laws do not fit together (naming what would).
+        If a name is not installed, or the laws do not fit together (naming what would); if a
+        normal law stands beside a restitution that it does not take.
     """
 
-    # Laws that were given, which attrs.evolve passes on, and None for the others.
+    # What was given, which attrs.evolve passes on, and None for the others.
     _normal: str | NormalLaw | None = attrs.field(eq=False, repr=False)
     _tangential: str | TangentialLaw | None = attrs.field(eq=False, repr=False)
     _integrator: str | Integrator | None = attrs.field(eq=False, repr=False)
+    _restitution: Numbers | None = attrs.field(eq=False, repr=False)
     normal: NormalLaw = attrs.field(init=False)
     tangential: TangentialLaw = attrs.field(init=False)
     integrator: Integrator = attrs.field(init=False)
@@ -85,8 +92,14 @@ class Simulation:
         normal: str | NormalLaw | None = None,
         tangential: str | TangentialLaw | None = None,
         integrator: str | Integrator | None = None,
+        restitution: Numbers | None = None,
     ) -> None:
-        self._set(composition.compose(normal, tangential, integrator))
+        own = normal
+        if restitution is not None:
+            from contactlab.runs.owners import restituted  # most simulations name laws
+
+            own = restituted(normal, restitution)
+        self._set(composition.compose(own, tangential, integrator), normal, restitution)
 
     @staticmethod
     def _remedy(name: str, value: object) -> str:
@@ -107,10 +120,12 @@ class Simulation:
         simulation._set(laws)
         return simulation
 
-    def _set(self, laws: Laws) -> None:
+    def _set(self, laws: Laws, normal: Any = None, restitution: Any = None) -> None:
         composed = laws.by_kind()
         given = {kind: law if kind in laws.named else None for kind, law in composed.items()}
-        self.__attrs_init__(**given)
+        if restitution is not None:
+            given["normal"] = normal
+        self.__attrs_init__(**given, restitution=restitution)
         for name, value in (*composed.items(), ("laws", laws)):
             object.__setattr__(self, name, value)
 

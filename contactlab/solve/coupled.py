@@ -213,7 +213,8 @@ class Coupled(Way):
         affected = bool(np.any(self.scene.lam))
         why = "friction affects the approach" if affected else "the slip changes its direction"
         said = [BOTH_MOTIONS.format(why)]
-        if getattr(self.laws.normal, "restitution", None) not in (None, 1.0):
+        e = getattr(self.laws.normal, "restitution", None)
+        if e is not None and np.any(e != 1.0):
             said.append(OF_CONTACT)
         return [Clause(text, masks.known) for text in said]
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import attrs
+import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import (
@@ -22,6 +23,7 @@ from contactlab.contracts import (
     TangentialLaw,
     TangentialResponse,
     WholeImpact,
+    number_in,
     resolution_of,
     shares_loss,
     sliding,
@@ -153,6 +155,8 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
             return ()
         if isinstance(e, ByIndex):
             e = e.at(scene.index)
+        elif isinstance(e, np.ndarray):
+            e = number_in(normal.law, "restitution", scene)
         from contactlab_laws.viscoelastic import whole_impacts  # springs need no table
 
         return whole_impacts.look_up(scene, e, beyond=rate is not None)

@@ -8,7 +8,13 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 
-from contactlab.contracts import NormalContact, Tabulated, UnfollowedNormalLaw, without_tension
+from contactlab.contracts import (
+    NormalContact,
+    Tabulated,
+    UnfollowedNormalLaw,
+    number_in,
+    without_tension,
+)
 from contactlab.contracts.restitution import LEAST_RESTITUTION, restitution
 from contactlab.impact.of_speed import interpolate, speed_pairs
 from contactlab.impact.scene import Scene
@@ -54,12 +60,12 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
 
     Parameters
     ----------
-    restitution : float, optional
+    restitution : float or array, optional
         e of this contact at this speed, from 0 to 1, rebound over approach velocity, without
-        friction; 0.9 if neither e nor A is given. Below 0.01 the impact has no course, and
-        ``tangential.springs`` answers it as a whole. Where friction changes the approach, as of
-        bodies that are no spheres, A follows from e by the mass 1/W_nn, and the rebound of the body
-        is its own.
+        friction; one number, or one an impact; 0.9 if neither e nor A is given. Below 0.01 the
+        impact has no course, and ``tangential.springs`` answers it as a whole. Where friction
+        changes the approach, as of bodies that are no spheres, A follows from e by the mass
+        1/W_nn, and the rebound of the body is its own.
     relaxation_time : float, optional
         A in s, a constant of the materials: 1 - e grows as v1^(1/5).
     speed_loss : float, optional
@@ -85,7 +91,7 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
         metadata={"unit": "m/s, 1", "range": PAIRS},
     )
 
-    restitution: Either = restitution(default=None, least=0.0)
+    restitution: Either = restitution(default=None, least=0.0, per_impact=True)
     number_of = staticmethod(number_of)
     chi_range: ClassVar[tuple[float, float]] = RESTITUTED_CHI
 
@@ -106,13 +112,16 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
     @property
     def loses(self) -> bool:
         """True if there is any loss."""
-        if isinstance(self.restitution, ByIndex):
-            return bool(np.any(self.restitution.values != 1.0))
+        if isinstance(self.restitution, ByIndex | np.ndarray):
+            each = self.restitution
+            return bool(np.any((each.values if isinstance(each, ByIndex) else each) != 1.0))
         return super().loses or bool(self.speed_loss) or self.restitutions is not None
 
     def waives(self) -> frozenset[str]:
         """Return the words of a loss that does not hold, or that differs from impact to impact."""
-        return super().waives() | (UNLIKE if isinstance(self.restitution, ByIndex) else NO_WORDS)
+        return super().waives() | (
+            UNLIKE if isinstance(self.restitution, ByIndex | np.ndarray) else NO_WORDS
+        )
 
     def accept(self, scene: Scene) -> None:
         """Refuse a speed at which e is not known."""
@@ -125,7 +134,8 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
             each: Real = plain(self.restitution.at(scene.index))
             return each
         if self.restitution is not None:
-            return float(self.restitution)
+            one: Real = number_in(self, "restitution", scene)
+            return float(one) if np.ndim(one) == 0 else one
         speed = np.asarray(scene.normal_speed)
         e: Any
         if self.restitutions is None:
