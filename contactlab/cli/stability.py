@@ -5,6 +5,7 @@ Examples
   contactlab stability --quick
   contactlab stability --figure stability.png --out stability.csv
   contactlab stability --tangential springs --time-limit 60
+  contactlab stability --restitution 0.6 --quick
 """
 
 from __future__ import annotations
@@ -37,6 +38,8 @@ WORDS = ("answered", "coarse", NO_REFERENCE, "refused", SKIPPED, RAISED, WRONG)
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the laws, the size, and the outputs."""
     shared.add_report(parser, progress="yes")
+    words = "coefficient of restitution, in place of a normal law"
+    parser.add_argument("--restitution", type=shared.finite, metavar="E", help=words)
     return shared.check_outputs_first(execute)
 
 
@@ -44,7 +47,8 @@ def execute(arguments: argparse.Namespace) -> int:
     """Run the report; the status is 1 if any answer is silently wrong or a law raised."""
     if arguments.width == "one":
         raise ValueError("--width one: the map needs two columns; use --width two")
-    chosen = methods(shared.chosen_laws(arguments))
+    laws = shared.chosen_laws(arguments)
+    chosen = methods(laws, restitution=arguments.restitution)
     told = arguments.progress is not False
     if told:
         cases, seconds = expected_time(chosen, quick=arguments.quick)

@@ -120,7 +120,9 @@ class Simulation:
         simulation._set(laws)
         return simulation
 
-    def _set(self, laws: Laws, normal: Any = None, restitution: Any = None) -> None:
+    def _set(
+        self, laws: Laws, normal: str | NormalLaw | None = None, restitution: Numbers | None = None
+    ) -> None:
         composed = laws.by_kind()
         given = {kind: law if kind in laws.named else None for kind, law in composed.items()}
         if restitution is not None:

@@ -13,8 +13,9 @@ from contactlab.contracts.law import law_kind
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import refuse
 from contactlab.registration.names import KINDS, full_name, is_place, kind_of, short_name
-from contactlab.registry.composition import DEFAULT_NORMAL
+from contactlab.registry.composition import DEFAULT_NORMAL, RESTITUTION
 from contactlab.registry.registry import REGISTRY, PluginError
 from contactlab.runs.simulation import Simulation
 from contactlab.study.posed import pose
@@ -59,11 +60,14 @@ class Method:
     ----------
     tangential, integrator, normal : str
         Names without the kind.
+    restitution : float or None
+        Of the normal law; None for what it takes.
     """
 
     tangential: str
     integrator: str
     normal: str = DEFAULT_NORMAL
+    restitution: float | None = None
 
     @property
     def whole(self) -> bool:
@@ -74,7 +78,10 @@ class Method:
     def name(self) -> str:
         """``law / integrator``, or ``law`` without one; a normal law other than the default too."""
         name = self.tangential if self.whole else f"{self.tangential} / {self.integrator}"
-        return name if self.normal == DEFAULT_NORMAL else f"{name}, {self.normal}"
+        if self.normal == DEFAULT_NORMAL:
+            return name
+        e = "" if self.restitution is None else f" e={self.restitution:g}"
+        return f"{name}, {self.normal}{e}"
 
     def resolutions(self, *, quick: bool = False) -> list[Options]:
         """Return options of tangential law and integrator by kind, coarse to fine."""
@@ -122,8 +129,10 @@ class Method:
 
     def simulation(self, options: Options, *, normal: str | None = None) -> Simulation:
         """Return the composition at one resolution; ``normal`` replaces the method's normal law."""
+        own = normal in (None, self.normal)
         return Simulation(
             normal=normal or self.normal,
+            restitution=self.restitution if own else None,
             tangential=REGISTRY.create(
                 full_name("tangential", self.tangential), **options["tangential"]
             ),
@@ -159,7 +168,7 @@ def scenes(*, quick: bool = False, sized: bool = False, elsewhere: bool = False)
     return [*fixed, Scene(Sphere(6.35e-3, steel), HalfSpace(steel), 0.15, 1.93, 0.9, -40.0)]
 
 
-def methods(laws: Iterable[str] | None = None) -> list[Method]:
+def methods(laws: Iterable[str] | None = None, *, restitution: float | None = None) -> list[Method]:
     """Return every installed composition that fits, or the compositions of the laws named.
 
     Laws without friction are left out unless named; so are broken plug-ins.
@@ -170,18 +179,29 @@ def methods(laws: Iterable[str] | None = None) -> list[Method]:
         Names of any kind, as ``"integrator.mine"``; a name without a kind is a tangential law.
         If no tangential law is named, all are taken, and likewise integrators; if no normal law
         is named, the default.
+    restitution : float, optional
+        Coefficient of restitution, in place of a normal law; 1 for elastic bodies.
 
     Raises
     ------
     ValueError
-        If a law named is not installed, or fits no other.
+        If a law named is not installed, or fits no other; if a normal law is named beside a
+        restitution.
     """
+    if restitution is not None:
+        Simulation(restitution=restitution)  # refuses what is out of range
     named: dict[str, list[str]] = {kind: [] for kind in KINDS}
     for law in laws or ():
         kind = law_kind(REGISTRY.law_class(law)) if is_place(law) else kind_of(law)
         kind = kind if kind in KINDS else "tangential"
         named[kind].append(short_name(full_name(kind, law)))
         _law(kind, named[kind][-1])  # raises if the law is not installed
+    if restitution is not None and named["normal"]:
+        rule = f"stands in place of a normal law, and {named['normal'][0]} is named"
+        raise refuse("restitution", restitution, rule, "leave out one of the two")
+    if restitution is not None and restitution != 1.0:
+        laws = [*(laws or ())]
+        named["normal"] = [RESTITUTION["normal"]]
     fitting: list[Method] = []
     for normal in named["normal"] or [DEFAULT_NORMAL]:
         for tangential in named["tangential"] or _list_names("tangential"):
@@ -197,6 +217,8 @@ def methods(laws: Iterable[str] | None = None) -> list[Method]:
     if laws is not None and not fitting:
         listed = ", ".join(name for names in named.values() for name in names)
         raise ValueError(f"{listed}: no installed tangential law fits")
+    if named["normal"] == [RESTITUTION["normal"]]:
+        fitting = [attrs.evolve(method, restitution=restitution) for method in fitting]
     return fitting
 
 

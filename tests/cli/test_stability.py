@@ -123,3 +123,16 @@ def test_the_picture_has_a_curve_a_law_under_its_usual_integrator(run, tmp_path,
     assert ran.status == 0
     (axes,) = drawn[0].axes
     assert {"springs", "linear spring"} <= {text.get_text() for text in axes.texts}
+
+
+def test_a_restitution_stands_in_place_of_a_normal_law(run):
+    """Of Coulomb at a point: each case at that restitution, elastic ones beside it differ."""
+    words = "stability", "--quick", "--tangential", "coulomb", "--csv"
+    ran = run(*words, "--restitution", "0.6")
+    assert ran.status == 0
+    methods = {row["method"] for row in csv.DictReader(ran.out.splitlines())}
+    assert methods == {"coulomb, viscoelastic e=0.6"}
+    refused = run(*words, "--restitution", "0.6", "--normal", "hertz")
+    assert refused.status == 2
+    assert "stands in place of a normal law, and hertz is named" in refused.err
+    assert "from 0 to 1" in run(*words, "--restitution", "1.6").err
