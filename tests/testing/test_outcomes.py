@@ -230,4 +230,4 @@ def test_words_that_a_law_may_offer_are_those_that_checks_test():
         "normal_spin",
         "shares_loss",
     }
-    assert known_words(contracts.Integrator) == {"several_contacts"}
+    assert known_words(contracts.Integrator) == {"several_contacts", "controls_error"}
