@@ -19,7 +19,8 @@ from contactlab.contracts.tangential import (
     WholeImpactTangentialLaw,
 )
 from contactlab.numeric.checks import refuse
-from contactlab.registration.names import KINDS, full_name, short_name
+from contactlab.registration.bring import state
+from contactlab.registration.names import KINDS, full_name, is_place, short_name
 from contactlab.registry.capability import Capability
 from contactlab.registry.law_classes import unfit
 from contactlab.registry.registry import REGISTRY, PluginError
@@ -147,6 +148,19 @@ def fixed_steps(steps: int) -> Integrator:
 
 def compose(normal: object, tangential: object, integrator: object) -> Laws:
     """Return three laws that fit, from names or laws; None stands for the preferred law."""
+    for each in (normal, tangential, integrator):
+        if each is not None and (type(each) is not str or is_place(each)):  # files may change
+            return _compose(normal, tangential, integrator)
+    return _by_names(normal, tangential, integrator, state())
+
+
+@lru_cache(maxsize=256)
+def _by_names(normal: object, tangential: object, integrator: object, _: object) -> Laws:
+    """Return the laws that fit of three names; the plug-ins at hand are part of the key."""
+    return _compose(normal, tangential, integrator)
+
+
+def _compose(normal: object, tangential: object, integrator: object) -> Laws:
     given = {"normal": normal, "tangential": tangential, "integrator": integrator}
     named = {kind: law(kind, value) for kind, value in given.items() if value is not None}
     laws = _completed(named)
@@ -245,16 +259,23 @@ def misfit(normal: Law, tangential: Any, integrator: Any = None) -> str | None:
 
 def _lacking(law: Law, other: Law) -> str | None:
     """Return what a law needs and another has not, with the names of both; or None."""
-    kind, others = law_kind(law), law_kind(other)
-    for need in sorted(requirements(law), key=str):
-        if isinstance(need, str):
-            if others == "normal" and need not in claims(other):
-                what = NEEDS.get(need, f"{need!r} of the normal law")
-                return f"{kind} = {_named(law)}: needs {what}, which {_named(other)} does not offer"
-        elif law_kind(need) == others and not isinstance(other, need):
-            what = RUNS.get(need.__name__, f"a {need.__name__}")
-            return f"{kind} = {_named(law)}: runs {what}, and {_named(other)} is not one"
-    return None
+    others = law_kind(other)
+    lacking = [need for need in requirements(law) if not _has(other, others, need)]
+    if not lacking:
+        return None
+    kind, need = law_kind(law), min(lacking, key=str)
+    if isinstance(need, str):
+        what = NEEDS.get(need, f"{need!r} of the normal law")
+        return f"{kind} = {_named(law)}: needs {what}, which {_named(other)} does not offer"
+    what = RUNS.get(need.__name__, f"a {need.__name__}")
+    return f"{kind} = {_named(law)}: runs {what}, and {_named(other)} is not one"
+
+
+def _has(law: Law, kind: str, need: str | type) -> bool:
+    """Return whether a law has what is needed; what laws of other kinds must have is no matter."""
+    if isinstance(need, str):
+        return kind != "normal" or need in claims(law)
+    return law_kind(need) != kind or isinstance(law, need)
 
 
 def _would_fit(laws: Laws) -> str:

@@ -41,7 +41,8 @@ def stand_in(laws: Laws, part: Scene) -> Laws:
 def _no_answer(laws: Laws, part: Scene) -> str | None:
     """Return why laws have no answer where friction changes the approach; None if they have one."""
     able, turns = laws.capability, not part.planar
-    name, reason = _name(laws.tangential), None
+    law: Law = laws.tangential
+    reason = None
     if turns and "vectors" not in able.tangential_claims:
         reason = "the law follows slip along one line"
     elif able.coupled is not None and part.links is None:
@@ -49,15 +50,15 @@ def _no_answer(laws: Laws, part: Scene) -> str | None:
     elif able.causal is None:
         reason = "the law needs the normal motion first"
     elif able.marcher is None:
-        name, reason = _name(laws.integrator), "the integrator needs the normal motion first"
+        law, reason = laws.integrator, "the integrator needs the normal motion first"
     elif part.links is not None and SEVERAL not in laws.integrator.offers:
-        name, reason = _name(laws.integrator), "the integrator marches each contact by itself"
+        law, reason = laws.integrator, "the integrator marches each contact by itself"
     if reason is None:
         return None
     where = "the slip turns" if turns else "friction affects the approach"
     if part.links is not None:
         where = "several contacts act at once"
-    return f"{name}: has no answer, as {where} and {reason}"
+    return f"{_name(law)}: has no answer, as {where} and {reason}"
 
 
 def _fitting(laws: Laws, kinds: Iterable[str]) -> Iterator[tuple[dict[str, str], Laws]]:

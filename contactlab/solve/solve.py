@@ -36,10 +36,11 @@ def ways(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
 
             found.append(Coupled.of(where, part, laws))
     found.reverse()
-    if any(way.laws.capability.unnamed for way in found):
-        from contactlab.solve.resolution import with_resolutions  # most laws have none
+    for way in found:
+        if way.laws.capability.unnamed:
+            from contactlab.solve.resolution import with_resolutions  # most laws have none
 
-        return [each for way in found for each in with_resolutions(way, as_one=as_one)]
+            return [each for way in found for each in with_resolutions(way, as_one=as_one)]
     return found
 
 

@@ -143,8 +143,8 @@ class Way(Entries, ABC):
     def outcome(self, history: bool | str, recorder: Recorder | None) -> tuple[PlanColumns, Motion]:
         """Return columns of the plan, and motion; a law that raises costs its impacts only."""
         scene, laws = self.scene, self.laws
-        batch = kinetics.batch_of(scene)  # a gathering is never divided
-        divisible = bool(batch) and recorder is None and math.prod(batch) > 1
+        batch = kinetics.batch_of(scene) if scene.shape else ()  # a gathering is never divided
+        divisible = recorder is None and math.prod(batch) > 1
         if divisible and scene.shape[0] > (most := self.most_at_a_time()):
             return self.solve_parts(blocks(scene.shape[0], int(most)))
         try:
