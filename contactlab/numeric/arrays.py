@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from functools import cache, lru_cache
+from operator import attrgetter
 from typing import Any
 
 import attrs
@@ -109,17 +110,23 @@ def change_entries(tree: Tree, **entries: object) -> Tree:
     """Return a copy of a tree with other entries, none of which is checked again."""
     kind: Any = type(tree)
     copy: Tree = object.__new__(kind)
-    for name in _entries(kind):
-        value = entries[name] if name in entries else getattr(tree, name)
-        object.__setattr__(copy, name, value)
+    names, read = _entries(kind)
+    put = object.__setattr__
+    for name, value in zip(names, read(tree), strict=True):
+        put(copy, name, value)
+    for name in entries:
+        put(copy, name, entries[name])
     return copy
 
 
 @cache
-def _entries(kind: Hashable) -> tuple[str, ...]:
-    """Return the names of the entries of a class of trees; attrs takes long to make the list."""
+def _entries(kind: Hashable) -> tuple[tuple[str, ...], Callable[[object], Any]]:
+    """Return the names of the entries of a class of trees, and what reads them all at once."""
     fields: Any = attrs.fields(kind)  # type: ignore[arg-type]
-    return tuple(field.name for field in fields)
+    names = tuple(field.name for field in fields)
+    if len(names) > 1:
+        return names, attrgetter(*names)
+    return names, lambda tree: tuple(getattr(tree, name) for name in names)
 
 
 def known(value: object) -> Any:

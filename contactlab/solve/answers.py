@@ -159,7 +159,7 @@ def _check_answer(answer: WholeImpact, law: TangentialLaw, shape: tuple[int, ...
         If it is not.
     """
     for entry in (answer.slip_velocity_change, answer.friction_work, answer.normal_spin_change):
-        if faults.is_malformed(entry, shape):
+        if type(entry) is not float and faults.is_malformed(entry, shape):
             sentence = faults.sentence(law, f"the answer {shown(entry)} to a whole impact", 1)
             raise faults.LawFaultError(Status.MALFORMED, sentence)
     if not (type(answer.psi2_error) is float and answer.psi2_error >= 0.0):

@@ -128,8 +128,10 @@ def _one_by_one(
     work: Real = 0.0 if single else np.zeros(shape)
     zero = 0.0 * change
     shear: Real = zero
-    slowed, acting = zero, zero
+    slowed = zero
+    force: Real = zero
     shares = shares_loss(law, normal.law)
+    sampled: Sampled | None = None
     before = NormalContact(zero, zero, zero, zero)
     fault, count = None, 0
     velocity: Real = lock_arrays(initial)
@@ -142,11 +144,10 @@ def _one_by_one(
             displacement = velocity * step.drift
             if not single:
                 lock_arrays(velocity), lock_arrays(displacement)
-            sampled = None
             if shares:
                 mobility = 0.5 * step.kick / mass
-                slip = velocity - mobility * acting
-                sampled = Sampled(step.approach, step.rate, slip, acting, mobility)
+                slip = velocity - mobility * force
+                sampled = Sampled(step.approach, step.rate, slip, force, mobility)
             increment = Increment(
                 displacement, velocity, step.friction_load, step.kick, step.drift, sampled
             )
@@ -161,7 +162,6 @@ def _one_by_one(
             change = change - slowed
             work = work + lost
             shear = shear + loss
-            acting = force
             before = contact
             if observer is not None:
                 middle, fields = velocity - 0.5 * slowed, partial(law.fields, state)
