@@ -117,7 +117,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             if parsed.traceback:
                 traceback.print_exc()
             name = f"contactlab {parsed.command}".strip()
-            print(f"{name}: error: {_one_line(error)}", file=sys.stderr)
+            told = [_one_line(error), *getattr(error, "__notes__", ())]
+            print(f"{name}: error: " + "\n  ".join(told), file=sys.stderr)
             if isinstance(error, OSError):
                 _leave_stdout()
             stopped = isinstance(error, contactlab.ImpactError) and error.status

@@ -228,8 +228,19 @@ def _numeric_columns() -> Iterator[Column]:
     yield Column("rebound_speed", "m/s", "rebound_speed")
 
 
+class _Size(Column):
+    """The size of a column, for numbers without their sign."""
+
+    def of(self, result: WithScene) -> NDArray[np.float64]:
+        """Return the magnitudes as an array of the scene's shape."""
+        return np.abs(super().of(result))
+
+
 class _Quantities(Mapping[str, Column]):
-    """The columns of numbers by name; plug-ins are asked for them at the first use."""
+    """The columns of numbers by name; plug-ins are asked for them at the first use.
+
+    ``"|name|"`` is the size of one; it is not among those listed.
+    """
 
     def __init__(self) -> None:
         self._state: object = None
@@ -242,6 +253,8 @@ class _Quantities(Mapping[str, Column]):
         return self._found
 
     def __getitem__(self, name: str) -> Column:
+        if name[:1] == name[-1:] == "|":
+            return _Size(*self._named()[name[1:-1]]._replace(name=name))
         return self._named()[name]
 
     def __iter__(self) -> Iterator[str]:

@@ -15,6 +15,7 @@ from __future__ import annotations
 import argparse
 import itertools
 import sys
+from functools import partial
 from pathlib import Path
 from typing import Any, Unpack
 
@@ -29,6 +30,7 @@ from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab_fit import Fit, Ranked, fit, in_order, rank, read_flight
 from contactlab_fit.beside import as_met
 from contactlab_fit.estimation import default_laws, parameters_of
+from contactlab_fit.measurements import Measurements
 from contactlab_fit.model import DEFAULTS
 from contactlab_fit.options import add_columns, read_impacts
 from contactlab_fit.parameters import RESTITUTION
@@ -104,17 +106,14 @@ def execute(arguments: argparse.Namespace) -> int:
         )
     data, path = _files(arguments.files, arguments.flight)
     if arguments.flight is None:
-        impacts = read_impacts(data, arguments)
+        impacts = read_impacts(data, arguments, partial(_first_fit, path, arguments))
     else:
         names = arguments.columns or dict(arguments.column)
         impacts = read_flight(data, columns=names, frame_rate=arguments.fps)
     impacts = as_met(impacts, path)
     samples = _samples(arguments.bootstrap, len(impacts))
-    allow = arguments.allow_code
-    file = read_scene(path, entries=impacts.given, defaults=DEFAULTS, allow_code=allow)
-    simulations = _simulations(arguments, file)
+    file, simulations, own = _posed(impacts, path, arguments)
     shared.tell_normal_spin(file.scene, *simulations.values())
-    own = parameters_of(impacts, path, simulations, arguments.fit)
     selection: dict[str, Any] = {"quantities": arguments.quantity}
     first, *others = simulations
     reported = {"parameters": own[first], "simulation": simulations[first], **selection}
@@ -150,6 +149,25 @@ def execute(arguments: argparse.Namespace) -> int:
     )
     _report(fitted, ranked, complete=not interrupted, as_json=arguments.json)
     return shared.INTERRUPTED if interrupted else max(saved, _failures(ranked))
+
+
+def _posed(
+    impacts: Measurements, path: Path, arguments: argparse.Namespace
+) -> tuple[SceneFile, dict[str, Simulation | None], dict[str, list[str]]]:
+    """Return the file of the bodies, the laws by name, and the parameters of each."""
+    allow = arguments.allow_code
+    file = read_scene(path, entries=impacts.given, defaults=DEFAULTS, allow_code=allow)
+    simulations = _simulations(arguments, file)
+    return file, simulations, parameters_of(impacts, path, simulations, arguments.fit)
+
+
+def _first_fit(path: Path, arguments: argparse.Namespace, impacts: Measurements) -> Fit:
+    """Return the fit of the first law to a reading of a table."""
+    impacts = as_met(impacts, path)
+    _, simulations, own = _posed(impacts, path, arguments)
+    first = next(iter(simulations))
+    chosen: dict[str, Any] = {"parameters": own[first], "quantities": arguments.quantity}
+    return fit(impacts, path, simulation=simulations[first], **chosen)
 
 
 def _samples(wanted: int | None, impacts: int) -> int:

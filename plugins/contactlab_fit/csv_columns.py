@@ -39,6 +39,8 @@ UNITS = {unit for pair in CONVERSIONS for unit in pair} | set(SAME_UNITS) | {"%"
 #: Other names of the entry ``angle_deg``.
 ANGLES = ("angle", "incidence_angle", "incidence_angle_deg")
 ERROR = "_error"
+#: Angles from the surface, by the name of that from the normal.
+FROM_SURFACE = {"angle_from_surface": "angle", "rebound_angle_from_surface": "rebound_angle"}
 #: What to write for a table without headings.
 IN_ORDER = (
     "name all columns in their order by --columns angle_deg,psi2 (columns=[...] in Python), "
@@ -64,12 +66,14 @@ class Heading(NamedTuple):
     """The meaning of a column.
 
     ``role`` is "given" (an entry of the scene), "measured", "error" (standard error of a
-    measured quantity) or "unused"; ``factor`` converts to the unit of ``name``.
+    measured quantity) or "unused"; ``factor`` converts to the unit of ``name``, ``offset`` is added
+    then.
     """
 
     role: str
     name: str
     factor: float = 1.0
+    offset: float = 0.0
 
 
 def measurable() -> tuple[str, ...]:
@@ -88,6 +92,13 @@ def read_heading(text: str, columns: Mapping[str, str]) -> Heading:
     error, name, unit = name_and_unit(alias)
     if alias is not text and not unit:
         unit = name_and_unit(text)[2]
+    if (normal := FROM_SURFACE.get(name.removesuffix("_deg"))) is not None:
+        own = "deg" if name.endswith("_deg") else ""
+        size = _factor(text, name, unit or own, "deg")
+        role = "given" if normal in ANGLES else "measured"
+        if not error:
+            return Heading(role, f"{normal}_deg", -size, 90.0)
+        return Heading("error" if role == "measured" else "unused", f"{normal}_deg", size)
     if name in ANGLES and not error:
         return Heading("given", "angle_deg", _factor(text, name, unit, "deg"))
     if not error and (is_option(name) or PROPERTY.fullmatch(name)):
@@ -96,7 +107,7 @@ def read_heading(text: str, columns: Mapping[str, str]) -> Heading:
         return Heading("given", name, _factor(text, name, unit, entry_unit(name)))
     if unit == "deg" and not name.endswith("_deg"):
         name = f"{name}_deg"
-    if name in measurable():
+    if name.strip("|") in measurable():
         role = "error" if error else "measured"
         return Heading(role, name, _factor(text, name, unit, QUANTITIES[name].unit))
     if name in QUANTITIES or name == "status":

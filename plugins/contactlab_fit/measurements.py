@@ -12,6 +12,7 @@ from contactlab.numeric.checks import check_place, real, refuse
 from contactlab.numeric.names import nearest
 from contactlab.numeric.types import Array
 from contactlab.scene_file import SceneFile
+from contactlab_fit.conventions import ForeignHeadingsError
 from contactlab_fit.csv_columns import (
     ERROR,
     UnknownHeadingError,
@@ -21,7 +22,7 @@ from contactlab_fit.csv_columns import (
     read_text,
 )
 from contactlab_fit.drops import TAKEN, find_drops, restitutions, tell_restitutions
-from contactlab_fit.foreign_headings import ForeignHeadingsError, foreign
+from contactlab_fit.foreign_headings import foreign
 from contactlab_fit.struck import VELOCITY, to_the_struck_body
 
 
@@ -151,7 +152,7 @@ def _from_csv(path: Path, names: Mapping[str, str] | Sequence[str]) -> Measureme
         table = _from_columns(columns, renamed, str(path))
         return attrs.evolve(table, notes=(*left_out, *table.notes))
     except ForeignHeadingsError as error:
-        raise ForeignHeadingsError(f"{path}: {error.said}", error.columns) from None
+        raise ForeignHeadingsError(f"{path}: {error.said}", error.readings) from None
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
 
@@ -173,7 +174,7 @@ def _from_columns(
     refused: list[str] = []
     for text, content in zip(headings, columns.values(), strict=True):
         try:
-            role, name, factor = read_heading(text, names)
+            role, name, factor, offset = read_heading(text, names)
         except UnknownHeadingError as error:
             if text.strip() in names:  # a wrong name is no foreign heading
                 refused.append(str(error))
@@ -188,7 +189,8 @@ def _from_columns(
             continue
         if name in parts[role]:
             raise ValueError(f"heading {text!r}: {name} is there twice")
-        parts[role][name] = column_of(text, content, gaps=role != "given") * factor
+        numbers = column_of(text, content, gaps=role != "given") * factor
+        parts[role][name] = numbers + offset if offset else numbers
     notes = foreign(unknown, parts["given"].keys() | parts["measured"].keys(), refused)
     given, measured, errors = parts.values()
     _leave_out_duplicates(given, measured, unused)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import shlex
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +13,8 @@ from contactlab.registration.hooks import hookimpl
 from contactlab.scene_file import SceneFile
 
 if TYPE_CHECKING:
+    from contactlab_fit.conventions import Result
+    from contactlab_fit.fit_result import Fit
     from contactlab_fit.measurements import Measurements
 
 
@@ -40,10 +42,17 @@ def _columns(text: str) -> list[str]:
     return [name.strip() for name in text.split(",")]
 
 
-def read_impacts(data: str | Path | SceneFile, arguments: argparse.Namespace) -> Measurements:
-    """Return measured impacts, with the names of columns; a refusal has the command to paste."""
+def read_impacts(
+    data: str | Path | SceneFile,
+    arguments: argparse.Namespace,
+    fit_of: Callable[[Measurements], Fit] | None = None,
+) -> Measurements:
+    """Return measured impacts, with the names of columns; a refusal has the command to paste.
+
+    Headings that may be read in several ways are told with what ``fit_of`` gives for each.
+    """
     from contactlab_fit import measurements  # only for measured impacts
-    from contactlab_fit.foreign_headings import ForeignHeadingsError
+    from contactlab_fit.conventions import ForeignHeadingsError
 
     if arguments.columns and arguments.column:
         raise ValueError("--column: --columns names all columns already; leave out --column")
@@ -54,8 +63,19 @@ def read_impacts(data: str | Path | SceneFile, arguments: argparse.Namespace) ->
     try:
         return measurements.read_measurements(data, columns=names)
     except ForeignHeadingsError as error:
-        command = f"paste: contactlab {shlex.join(arguments.words)}"
-        raise ForeignHeadingsError(error.said, error.columns, command) from None
+        command = f"contactlab {shlex.join(arguments.words)}"
+        gives: list[Result] = []
+        if fit_of is not None and isinstance(names, Mapping):
+            from contactlab_fit.printed import tried
+
+            own = names
+
+            def fitted(columns: Mapping[str, str]) -> Fit:
+                named = {text.strip(): name for text, name in columns.items()}
+                return fit_of(measurements.read_measurements(data, columns={**own, **named}))
+
+            gives = tried(error.readings, fitted)
+        raise ForeignHeadingsError(error.said, error.readings, command, gives) from None
 
 
 def _column(text: str) -> tuple[str, str]:

@@ -2,17 +2,48 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from contactlab.impact.scene import entry_unit
+from contactlab.outcome.answer import ImpactError
 from contactlab.outcome.columns import QUANTITIES
 from contactlab.outcome.files import write_table
 from contactlab.outcome.tables import heading
 from contactlab.outcome.text_table import table
 from contactlab_fit import Fit, Ranked
+from contactlab_fit.conventions import Reading, Result
+
+#: Most letters of a refusal beside a reading.
+LETTERS = 160
+
+
+def tried(readings: Sequence[Reading], fit_of: Callable[[Mapping[str, str]], Fit]) -> list[Result]:
+    """Return what a fit gives for each reading of headings, in words; nothing where there is one.
+
+    It is the parameters and the rms residual of each quantity, or why there is no fit.
+    """
+    if len(readings) == 1:
+        return []
+    told: list[Result] = []
+    for reading in readings:
+        try:
+            found = fit_of(reading.columns)
+        except (ValueError, ImpactError) as error:
+            why = re.split(r"(?<=[a-z)])[.;] |: read so", str(error))[0][:LETTERS]
+            told.append(Result(f"no fit: {why}", runs=False))
+            continue
+        values = [
+            f"{name} {each.value:.3g} ± {each.standard_error:.1g}"
+            for name, each in found.parameters.items()
+        ]
+        values += [f"rms of {name} {rms:.3g}" for name, rms in found.rms.items()]
+        told.append(Result(", ".join(values), runs=True))
+    return told
 
 
 def describe(fit: Fit) -> str:

@@ -232,8 +232,16 @@ def test_a_row_without_a_number_before_the_impact_is_left_out_and_told(tmp_path)
         ("omega_after", 9.0, "rebound_spin (rad/s)"),
         ("Spin rate (rpm)", 9.0, "-rebound_spin (rpm)"),
         ("Backspin", 9.0, "-rebound_spin (rad/s)"),
-        ("Attack Angle (deg)", 9.0, "angle_deg"),
         ("angle_out", 9.0, "rebound_angle_deg"),
+        ("angle out from normal", 9.0, "rebound_angle_deg"),
+        ("grazing angle in (rad)", 0.9, "angle_from_surface_deg"),
+        ("Descent Angle (deg)", -40.0, "-angle_from_surface_deg"),
+        ("theta1", 40.0, "angle_deg"),
+        ("slip_out", -1.0, "rebound_slip_velocity (m/s)"),
+        ("vt_out (mm/s)", 1.0, "rebound_tangential_velocity (mm/s)"),
+        ("e_t", 0.4, "beta0"),
+        ("Tangential coefficient of restitution", 0.4, "beta0"),
+        ("Coefficient of restitution", 0.4, "normal_restitution"),
         ("Club Speed (mph)", 9.0, "speed (mph)"),
         ("COR", 0.9, "normal_restitution"),
         ("tangential_restituion", 0.9, "tangential_restitution"),
@@ -244,7 +252,8 @@ def test_a_heading_in_other_words_is_told_with_what_to_paste(heading, number, na
     """The option that is told reads the column, and turns it to the sign that holds here."""
     with pytest.raises(ValueError, match="look like other words") as caught:
         read_measurements({heading: [number], "contact_time (s)": [0.1]})
-    assert shlex.split(str(caught.value))[-2:] == ["--column", f"{heading}={name}"]
+    told, *_ = [*getattr(caught.value, "__notes__", ()), str(caught.value)]
+    assert shlex.split(told)[-2:] == ["--column", f"{heading}={name}"]
     found = read_measurements(
         {heading: [number], "contact_time (s)": [0.1]}, columns={heading: name}
     )
@@ -289,5 +298,6 @@ def test_the_headings_of_a_launch_monitor(monitor, spin, tmp_path):
     (note,) = found.notes
     ground, _, unknown = note.partition("; ")
     assert ground.startswith("left out, for they are of the ground, where the club's speed is rel")
-    assert {"Ball Speed", "Launch Angle"} == set(re.findall(r"(\w+ \w+) \(", ground))
+    expected = {"Attack Angle", "Ball Speed", "Launch Angle"}
+    assert expected == set(re.findall(r"(\w+ \w+) \(", ground))
     assert unknown.startswith("left out, for nothing here has such names: Date, Player, Club, ")
