@@ -14,6 +14,8 @@ from __future__ import annotations
 
 import argparse
 import itertools
+import re
+import shlex
 import sys
 from functools import partial
 from pathlib import Path
@@ -29,10 +31,12 @@ from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab_fit import Fit, Ranked, fit, in_order, rank, read_flight
 from contactlab_fit.beside import as_met
+from contactlab_fit.csv_columns import read_text
 from contactlab_fit.estimation import default_laws, parameters_of
+from contactlab_fit.flight import is_film
 from contactlab_fit.measurements import Measurements
 from contactlab_fit.model import DEFAULTS
-from contactlab_fit.options import add_columns, read_impacts
+from contactlab_fit.options import add_columns, read_impacts, read_named
 from contactlab_fit.parameters import RESTITUTION
 from contactlab_fit.printed import describe, further_cautions, ranking, write_residuals
 from contactlab_fit.problem import MANY
@@ -105,11 +109,16 @@ def execute(arguments: argparse.Namespace) -> int:
             }
         )
     data, path = _files(arguments.files, arguments.flight)
+    first_fit = partial(_first_fit, path, arguments)
     if arguments.flight is None:
-        impacts = read_impacts(data, arguments, partial(_first_fit, path, arguments))
+        try:
+            impacts = read_impacts(data, arguments, first_fit)
+        except ValueError as error:
+            raise _tell_film(error, data, arguments) from None
     else:
         names = arguments.columns or dict(arguments.column)
-        impacts = read_flight(data, columns=names, frame_rate=arguments.fps)
+        read = partial(read_flight, data, frame_rate=arguments.fps)
+        impacts = read_named(read, names, arguments, first_fit)
     impacts = as_met(impacts, path)
     samples = _samples(arguments.bootstrap, len(impacts))
     file, simulations, own = _posed(impacts, path, arguments)
@@ -159,6 +168,20 @@ def _posed(
     file = read_scene(path, entries=impacts.given, defaults=DEFAULTS, allow_code=allow)
     simulations = _simulations(arguments, file)
     return file, simulations, parameters_of(impacts, path, simulations, arguments.fit)
+
+
+def _tell_film(error: ValueError, data: Any, arguments: argparse.Namespace) -> ValueError:
+    """Return an error of a table; of one with the headings of a film, that it may be one."""
+    try:
+        first = read_text(data).splitlines()[0] if isinstance(data, Path) else ""
+    except (ValueError, IndexError):
+        return error
+    if not is_film(re.split(r"[,;\t]", first)):
+        return error
+    words = list(arguments.words)
+    words.insert(words.index(str(data)), "--flight")
+    said = f"{error}; if this is the film of a ball, paste: contactlab {shlex.join(words)}"
+    return ValueError(said if arguments.fps or "rame" not in first else f"{said} --fps RATE")
 
 
 def _first_fit(path: Path, arguments: argparse.Namespace, impacts: Measurements) -> Fit:

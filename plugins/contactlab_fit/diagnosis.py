@@ -74,7 +74,7 @@ def diagnose(
         robust_values, scales = outliers.robust(problem, values)
         far, robust = outliers.outliers(problem, robust_values, scales), robust_values.tolist()
     few, (kept,) = fewer(problem, far.rest.measured)
-    certain, possible = slips(few, table.given, values, kept)
+    certain, possible = slips(few, table, values, kept)
     unlikely = plausible.unlikely_numbers(problem, table)
     slipped = (*certain, *unlikely)
     others = () if slipped or explained else (*_others(problem, table, values, far), *possible)

@@ -160,7 +160,7 @@ def _fit(
         idle_words = f"{', '.join(idle)}: not met, for no parameter moves it under these laws"
         left_out = (*left_out, idle_words)
         few, _ = fewer(problem)
-        slipped, _ = slips(few, table.given, values, few.measured)
+        slipped, _ = slips(few, table, values, few.measured)
         if not slipped and (seen := lost(problem, values)):
             slipped, of_restitution = seen, []
         table = table.only([name for name in table.measured if name not in idle])

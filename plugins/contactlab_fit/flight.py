@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 from contactlab.numeric.checks import POSITIVE, real, refuse
 from contactlab.numeric.types import Array, Real
 from contactlab.numeric.units import CONVERSIONS, factor
+from contactlab_fit.conventions import ForeignHeadingsError, Reading
 from contactlab_fit.csv_columns import (
     NUMBER,
     name_and_unit,
     read_numbers,
     read_text,
 )
-from contactlab_fit.drops import GRAVITY
+from contactlab_fit.drops import GRAVITY, tell_restitutions
 from contactlab_fit.measurements import Measurements, column_of
 
 #: Columns of a film and their units; without z the flight stays in the plane of x and y.
@@ -31,6 +32,9 @@ FILM = {"t": "s", "frame": "1", "x": "m", "y": "m", "z": "m", "angle": "rad"}
 PIXELS = ("px", "pixel", "pixels", "pix")
 #: Other names of columns.
 ALSO = {"time": "t", "angle_deg": "angle", "rotation": "angle", "height": "y"}
+#: Headings of frames and of times, and those of places that programs write.
+FRAME, TIMES = ("frame",), ("t", "time", "t (s)", "time (s)")
+PLACE = re.compile(r"([xyz])\d*")
 #: Shares by which the flights may fall faster or slower before it is told, and before the film is
 #: refused.
 TOLD, REFUSED = 0.03, 0.15
@@ -121,6 +125,9 @@ def read_flight(
     try:
         film, in_pixels = _film(table, names, rate)
         found = _bounces(film, in_pixels=in_pixels)
+    except ForeignHeadingsError as error:
+        said = f"{source}: {error.said}" if source else error.said
+        raise ForeignHeadingsError(said, error.readings) from None
     except ValueError as error:
         raise ValueError(f"{source}: {error}" if source else str(error)) from None
     return attrs.evolve(found, source=source)
@@ -183,6 +190,7 @@ def _film(
         film[name] = sign * times * column_of(text, values, gaps=True)
     for name in ("t", "x", "y"):
         if name not in film:
+            _tell_places(table, film)
             raise ValueError(
                 f"{name}: is missing; a film needs the columns t (s), x (m), y (m); name one by "
                 f"--column 'HEADING={name}'. Columns found: {', '.join(table)}"
@@ -191,6 +199,34 @@ def _film(
         raise ValueError("x, y, z: some are in pixels and some are not; give all in one unit")
     whole = np.all([np.isfinite(values) for values in film.values()], axis=0)
     return {name: values[whole] for name, values in film.items()}, in_pixels == {True}
+
+
+def is_film(headings: Iterable[str]) -> bool:
+    """Return whether headings are of times and of places, as those of a film."""
+    names = {text.strip().lower() for text in headings}
+    return bool(names & {*FRAME, *TIMES}) and bool({*map(_place, headings)} >= {"x", "y"})
+
+
+def _place(heading: str) -> str:
+    """Return x, y or z for a heading of a place, such as X1; empty for another."""
+    found = PLACE.fullmatch(name_and_unit(heading)[1])
+    return found[1] if found else ""
+
+
+def _tell_places(table: Mapping[str, object], film: Mapping[str, Array]) -> None:
+    """Refuse headings such as X1 and Y1 with what they probably mean, in pixels or in m."""
+    found = {text: place for text in table if (place := _place(text)) and place not in film}
+    units = {name_and_unit(text)[2] for text in found}
+    if not {"t", "x", "y"} <= {*found.values(), *film} or len({*found.values()}) < len(found):
+        return
+    told = {"(px)": "places are in pixels", "(m)": "places are in m"}
+    if units != {""}:
+        told = {"": ""}
+    ways = [
+        Reading(words, {text: f"{place} {unit}".strip() for text, place in found.items()})
+        for unit, words in told.items()
+    ]
+    raise ForeignHeadingsError("headings look like other words for those of a film", ways)
 
 
 def _needed(rate: Real | None, table: Mapping[str, object]) -> Real:
@@ -250,6 +286,8 @@ def _bounces(film: dict[str, Array], *, in_pixels: bool) -> Measurements:
         for name in told
         if name not in measured
     ]
+    restitution = -columns["rebound_normal_velocity"] / columns["normal_speed"]
+    notes.append(tell_restitutions(columns["normal_speed"], restitution))
     return Measurements(
         given={name: columns[name] for name in GIVEN if name in columns},
         measured={name: columns[name] for name in measured},

@@ -17,6 +17,7 @@ from contactlab_fit.csv_columns import (
     ERROR,
     UnknownHeadingError,
     known_names,
+    name_and_unit,
     read_columns,
     read_heading,
     read_text,
@@ -51,6 +52,8 @@ class Measurements:
     thrown : mapping of str to array, shape (n,)
         Of a film without an angle: the ``velocity`` along the floor in the first flight of each
         throw and its standard ``error``, in m/s; empty otherwise.
+    headings : mapping of str to tuple of str
+        Heading of each column, sign, ``"-"`` or empty, and unit that its name was given with.
     """
 
     given: Mapping[str, Array]
@@ -62,10 +65,21 @@ class Measurements:
     struck: tuple[str, ...] = ()
     taken: tuple[str, ...] = ()
     thrown: Mapping[str, Array] = attrs.field(factory=dict)
+    headings: Mapping[str, tuple[str, str, str]] = attrs.field(factory=dict)
 
     def __len__(self) -> int:
         """Return the number of impacts."""
         return len(next(iter(self.measured.values())))
+
+    def named_as(self, name: str, alias: str) -> str:
+        """Return HEADING=ALIAS for the column of a quantity, an alias of whose numbers is to hold.
+
+        A sign turns what the column has now.
+        """
+        heading, sign, unit = self.headings.get(name, ("HEADING", "", ""))
+        if unit and not alias.endswith(("_deg", ")")):
+            alias = f"{alias} ({unit})"
+        return f"{heading}={sign}{alias}".replace("=--", "=")
 
     def only(self, quantities: Sequence[str] | None) -> Measurements:
         """Return the measurements of some quantities, without impacts that have none of them.
@@ -169,6 +183,7 @@ def _from_columns(
     if drops := find_drops({text: names.get(text.strip(), text) for text in headings}):
         return _of_drops(columns, drops, source)
     parts: dict[str, dict[str, Array]] = {"given": {}, "measured": {}, "error": {}}
+    heads: dict[str, tuple[str, str, str]] = {}
     unused: list[str] = []
     unknown: dict[str, object] = {}
     refused: list[str] = []
@@ -191,6 +206,10 @@ def _from_columns(
             raise ValueError(f"heading {text!r}: {name} is there twice")
         numbers = column_of(text, content, gaps=role != "given") * factor
         parts[role][name] = numbers + offset if offset else numbers
+        if role != "error":
+            alias = names.get(text.strip(), "")
+            unit = name_and_unit(alias.removeprefix("-"))[2] if alias else ""
+            heads[name] = text.strip(), "-" if alias.startswith("-") else "", unit
     notes = foreign(unknown, parts["given"].keys() | parts["measured"].keys(), refused)
     given, measured, errors = parts.values()
     _leave_out_duplicates(given, measured, unused)
@@ -214,6 +233,7 @@ def _from_columns(
         source=source,
         notes=notes,
         struck=struck,
+        headings=heads,
     )
 
 

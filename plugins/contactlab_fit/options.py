@@ -6,6 +6,7 @@ import argparse
 import shlex
 import sys
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -52,7 +53,6 @@ def read_impacts(
     Headings that may be read in several ways are told with what ``fit_of`` gives for each.
     """
     from contactlab_fit import measurements  # only for measured impacts
-    from contactlab_fit.conventions import ForeignHeadingsError
 
     if arguments.columns and arguments.column:
         raise ValueError("--column: --columns names all columns already; leave out --column")
@@ -60,19 +60,29 @@ def read_impacts(
     headings = [heading for heading, _ in arguments.column]
     if twice := sorted(name for name in set(headings) if headings.count(name) > 1):
         raise ValueError(f"--column: {twice[0]!r} is named twice; leave out one")
+    read = partial(measurements.read_measurements, data)
+    return read_named(read, names, arguments, fit_of)
+
+
+def read_named(
+    read: Callable[..., Measurements],
+    names: Mapping[str, str] | list[str],
+    arguments: argparse.Namespace,
+    fit_of: Callable[[Measurements], Fit] | None,
+) -> Measurements:
+    """Return what ``read`` makes of ``columns=names``; a refusal has the command to paste."""
+    from contactlab_fit.conventions import ForeignHeadingsError
+
     try:
-        return measurements.read_measurements(data, columns=names)
+        return read(columns=names)
     except ForeignHeadingsError as error:
         command = f"contactlab {shlex.join(arguments.words)}"
         gives: list[Result] = []
         if fit_of is not None and isinstance(names, Mapping):
             from contactlab_fit.printed import tried
 
-            own = names
-
             def fitted(columns: Mapping[str, str]) -> Fit:
-                named = {text.strip(): name for text, name in columns.items()}
-                return fit_of(measurements.read_measurements(data, columns={**own, **named}))
+                return fit_of(read(columns={**names, **columns}))
 
             gives = tried(error.readings, fitted)
         raise ForeignHeadingsError(error.said, error.readings, command, gives) from None

@@ -106,7 +106,8 @@ def restitutions(problem: Problem, table: Measurements) -> list[str]:
     lossless = laws is None or "elastic_hertz" in claims(laws.normal)
     if off < 0.0 and mean > 0.0 and lossless:
         return [
-            f"{name}: the restitution is {mean:.3g}, but these laws lose nothing: {tabulated.TOO}"
+            f"{name}: the restitution is {mean:.3g}, but these laws lose nothing: "
+            + tabulated.fit_restitution(scene, [p.name for p in problem.model.parameters])
         ]
     return []
 

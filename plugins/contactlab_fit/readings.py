@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from functools import partial
 from typing import Any, NamedTuple
@@ -38,8 +39,9 @@ MISTAKEN["rad"] = MISTAKEN["deg"]
 #: Least count of numbers that shows a shift by a row.
 ROWS = 6
 SURFACE, SIGN = "measured from the surface, not from the normal", "of the opposite sign"
-#: How a column of the opposite sign is read; beside the words on it.
-TURNED = " (--column HEADING=-{} turns it)"
+#: Words for units in the ways of mistaken units; no heading can be in percent.
+IN_UNIT = re.compile(r"in (?!percent)(\S+)(?: under a heading in \S+)?")
+UNITS = {"radians": "rad", "degrees": "deg"}
 #: Quantities of the centre and of the contact point, which are easily exchanged.
 TAKEN_FOR = {
     "rebound_angle_deg": "local_rebound_angle_deg",
@@ -60,35 +62,63 @@ class Reading(NamedTuple):
     ``words`` state the supposed mistake. ``problem`` has the impacts and numbers of this reading,
     in the order of the measured quantities. ``factors`` are the factors on the numbers, by
     quantity. ``rest`` are the original numbers without those that the reading drops; None if the
-    reading drops no number.
+    reading drops no number. ``names`` are those under which ``--column`` reads columns so.
     """
 
     words: str
     problem: Problem
     factors: Mapping[str, float]
     rest: Mapping[str, Array] | None = None
+    names: Mapping[str, str] = {}
+
+    @property
+    def turned(self) -> bool:
+        """Whether the reading is that of the opposite sign."""
+        return SIGN in self.words
 
 
 def readings(problem: Problem, given: Collection[str]) -> Iterator[Reading]:
     """Yield every other reading; ``given`` are the columns before the impact."""
-    impacts = dict(_impacts(problem.model.setup.scene, given))
-    for words, scene in impacts.items():
-        yield Reading(words, attrs.evolve(problem, model=problem.model.at(scene)), {})
+    impacts = {one.words: one for one in _impacts(problem.model.setup.scene, given)}
+    for words, one in impacts.items():
+        read = attrs.evolve(problem, model=problem.model.at(one.scene))
+        yield Reading(words, read, {}, names=one.names)
     yield from _numbers(problem)
     angles = [name for name in problem.measured if QUANTITIES[name].unit in ("deg", "rad")]
     for way in ("in radians", SURFACE) if angles else ():
-        for words, scene in impacts.items():
+        for words, one in impacts.items():
             if words.endswith(way):
-                both = attrs.evolve(problem, model=problem.model.at(scene))
+                both = attrs.evolve(problem, model=problem.model.at(one.scene))
+                names = dict(one.names)
                 factor = MISTAKEN["deg"].get(way, 1.0)
                 for name in angles:
                     both = _with(both, name, _way(name, way))
+                    names |= _named(name, way)
                 head = words.partition(" looks")[0]
                 words = f"{head} and {' and '.join(angles)} look as if {way}"
-                yield Reading(words, both, dict.fromkeys(angles, factor))
+                yield Reading(words, both, dict.fromkeys(angles, factor), names=names)
 
 
-def _impacts(scene: Scene, given: Collection[str]) -> Iterator[tuple[str, Scene]]:
+class Met(NamedTuple):
+    """Words on a mistake before the impact, the scene without it, and names for its columns."""
+
+    words: str
+    scene: Scene
+    names: Mapping[str, str] = {}
+
+
+def _named(name: str, way: str) -> dict[str, str]:
+    """Return the name under which a column is read another way, by its name; none if there is."""
+    if way == SIGN:
+        return {name: f"-{name}"}
+    if way == SURFACE:
+        return {name: name.replace("angle", "angle_from_surface")}
+    if unit := IN_UNIT.fullmatch(way):
+        return {name: f"{name} ({UNITS.get(unit[1], unit[1])})"}
+    return {}
+
+
+def _impacts(scene: Scene, given: Collection[str]) -> Iterator[Met]:
     """Yield scenes with another angle, speed, spin before, or size of the ball."""
     normal: Any = np.asarray(scene.normal_speed)
     along: Any = np.asarray(scene.tangential_velocity)
@@ -96,10 +126,14 @@ def _impacts(scene: Scene, given: Collection[str]) -> Iterator[tuple[str, Scene]
     name = "angle_deg" if "angle_deg" in given else "the angle of incidence"
     for way, reread in (("in radians", np.degrees(angle)), (SURFACE, 90.0 - angle)):
         if np.all(np.abs(reread) < 90.0):
-            yield f"{name} looks as if {way}", turn_scene(scene, np.radians(reread), given)
+            names = _named(name, way) if name in given else {}
+            met = turn_scene(scene, np.radians(reread), given)
+            yield Met(f"{name} looks as if {way}", met, names)
     if {"normal_speed", "tangential_velocity"} <= set(given) and np.all(along > 0.0):
         words = "normal_speed and tangential_velocity look as if exchanged"
-        yield words, attrs.evolve(scene, normal_speed=along, tangential_velocity=normal)
+        met = attrs.evolve(scene, normal_speed=along, tangential_velocity=normal)
+        both = {"normal_speed": "tangential_velocity", "tangential_velocity": "normal_speed"}
+        yield Met(words, met, both)
     for way, factor in MISTAKEN["m/s"].items():
         for name, fields in {
             "speed": ("normal_speed", "tangential_velocity"),
@@ -110,16 +144,18 @@ def _impacts(scene: Scene, given: Collection[str]) -> Iterator[tuple[str, Scene]
                 faster: dict[str, Any] = {
                     field: factor * np.asarray(getattr(scene, field)) for field in fields
                 }
-                yield f"{name} looks as if {way}", attrs.evolve(scene, **faster)
+                met = attrs.evolve(scene, **faster)
+                yield Met(f"{name} looks as if {way}", met, _named(name, way))
     if np.any(scene.spin):
         for way, factor in (MISTAKEN["rad/s"] | {SIGN: -1.0}).items():
             spin = factor * np.asarray(scene.spin)
-            mend = TURNED.format("spin") if way == SIGN else ""
-            yield f"spin looks as if {way}{mend}", attrs.evolve(scene, spin=spin)
+            met = attrs.evolve(scene, spin=spin)
+            yield Met(f"spin looks as if {way}", met, _named("spin", way))
     for way, factor in {"in mm": 1e-3, "in cm": 1e-2, "the diameter": 0.5}.items():
         assert scene.sphere is not None
         ball = attrs.evolve(scene.sphere, radius=factor * np.asarray(scene.sphere.radius)[()])
-        yield f"the radius of the sphere looks as if {way}", attrs.evolve(scene, sphere=ball)
+        met = attrs.evolve(scene, sphere=ball)
+        yield Met(f"the radius of the sphere looks as if {way}", met)
 
 
 def turn_scene(scene: Scene, angle: Array, given: Collection[str]) -> Scene:
@@ -139,29 +175,33 @@ def _numbers(problem: Problem) -> Iterator[Reading]:
         unit = QUANTITIES[name].unit
         for way, factor in (MISTAKEN.get(unit, {}) | {SIGN: -1.0}).items():
             read = _with(problem, name, _way(name, way))
-            mend = TURNED.format(name) if way == SIGN else ""
-            yield Reading(f"{name} looks as if {way}{mend}", read, {name: abs(factor)})
+            names = _named(name, way)
+            yield Reading(f"{name} looks as if {way}", read, {name: abs(factor)}, names=names)
         if unit in ("deg", "rad"):
             read = _with(problem, name, _way(name, SURFACE))
-            yield Reading(f"{name} looks as if {SURFACE}", read, {})
+            names = _named(name, SURFACE)
+            yield Reading(f"{name} looks as if {SURFACE}", read, {}, names=names)
         twin = TAKEN_FOR.get(name, "")
         for other, sign, words in RESTITUTIONS.get(name, ((twin, 1.0, twin),)):
             if other and other not in measured:
                 read = _rename(_with(problem, name, partial(np.multiply, sign)), {name: other})
-                yield Reading(f"{name} looks as if its numbers were those of {words}", read, {})
-    names = list(measured)
-    for place, first in enumerate(names):
-        for second in names[place + 1 :]:
+                words = f"{name} looks as if its numbers were those of {words}"
+                names = {name: f"{'-' if sign < 0.0 else ''}{other}"}
+                yield Reading(words, read, {}, names=names)
+    every = list(measured)
+    for place, first in enumerate(every):
+        for second in every[place + 1 :]:
             if QUANTITIES[first].unit == QUANTITIES[second].unit:
                 read = _rename(problem, {first: second, second: first})
-                yield Reading(f"{first} and {second} look as if exchanged", read, {})
-    listed = " and ".join(names)
-    look = "looks" if len(names) == 1 else "look"
+                words = f"{first} and {second} look as if exchanged"
+                yield Reading(words, read, {}, names={first: second, second: first})
+    listed = " and ".join(every)
+    look = "looks" if len(every) == 1 else "look"
     if min(problem.counts.values()) < ROWS:
         return
     for way, step in (("low", -1), ("high", 1)):
         read = problem
-        for name in names:
+        for name in every:
             read = _with(read, name, partial(_shift_rows, step=step))
         kept = {name: _shift_rows(_shift_rows(v, step), -step) for name, v in measured.items()}
         yield Reading(f"{listed} {look} as if written a row too {way}", read, {}, kept)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any, NamedTuple
 
@@ -15,6 +16,7 @@ from contactlab.registry.registry import REGISTRY
 from contactlab_fit import tabulated
 from contactlab_fit.csv_columns import MEASURABLE
 from contactlab_fit.f_test import SPARE, chance_of
+from contactlab_fit.measurements import Measurements
 from contactlab_fit.parameters import (
     RESTITUTION,
     SHEAR_LOSS,
@@ -29,8 +31,9 @@ from contactlab_fit.patterns import NO_PATTERN, Pattern
 from contactlab_fit.problem import Problem, grid, solve_problem
 from contactlab_fit.readings import Reading, readings, turn_scene
 
-#: A mistake is reported if its correction makes residuals this many times smaller and the
-#: likelihood exp(CERTAIN/2) times greater, which chance does once in 20,000 times.
+#: A mistake is reported if its correction makes the likelihood exp(CERTAIN/2) times greater, which
+#: chance does once in 20,000 times, and residuals this many times smaller. A sign is reported at
+#: once: numbers of slip throughout, turned, look like those of a greater friction.
 SMALLER, CERTAIN = 2.0, 20.0
 #: A reading is fitted if its residuals on the grid of starts are at most this many times the
 #: residuals of the fit: the friction coefficients of the grid are far apart.
@@ -59,9 +62,11 @@ class Read(NamedTuple):
 
 
 def slips(
-    problem: Problem, given: Collection[str], values: Array, kept: Mapping[str, Array]
+    problem: Problem, table: Measurements, values: Array, kept: Mapping[str, Array]
 ) -> tuple[list[str], list[str]]:
     """Return sentences on certain and on possible mistakes in columns, at most one of them.
+
+    A sentence names the options that read the columns so.
 
     Readings are tried with the tabulated exact elastic law. Under other laws a reading has to fit
     far better too. A mistake is only possible if the fit to the numbers ``kept``, without
@@ -74,19 +79,31 @@ def slips(
         return [], []
     quick = _elastic(problem)
     start = values if quick is problem else solve_problem(quick, _first(quick))
-    better = _better(quick, start, readings(quick, given))
+    better = _better(quick, start, readings(quick, table.given))
     if quick is not problem and better:
         again = [_under(problem, read.reading) for read in better]
         better = _better(problem, values, again)
     if not better:
         return [], []
     best = better[0]
+    better = [read._replace(reading=_with_options(read.reading, table)) for read in better]
     sentence = _sentence(problem, values, better)
     subsets = [kept] if best.reading.rest is None else [kept, best.reading.rest]
     own = min(_without(problem, values, numbers) for numbers in subsets)
     if own - best.score > CERTAIN:
         return [sentence], []
     return [], [f"or, with every number kept, {sentence}"] if own > best.score else []
+
+
+def _with_options(reading: Reading, table: Measurements) -> Reading:
+    """Return a reading whose words name the options that read the columns of a table so."""
+    options = " ".join(
+        f"--column {shlex.quote(table.named_as(name, alias))}"
+        for name, alias in reading.names.items()
+    )
+    if not options:
+        return reading
+    return reading._replace(words=f"{reading.words} ({options} reads it so)")
 
 
 def _under(problem: Problem, reading: Reading) -> Reading:
@@ -118,7 +135,7 @@ def _better(problem: Problem, values: Array, candidates: Iterable[Reading]) -> l
     """Return the readings that fit far better than the measurement as it is, best first."""
     number = sum(problem.counts.values())
     own = _score(problem, values, problem)
-    limit = own - max(CERTAIN, 2.0 * number * math.log(SMALLER))
+    times = 2.0 * number * math.log(SMALLER)
     better = []
     for reading in candidates:
         points = grid(reading.problem.model.parameters)
@@ -128,7 +145,7 @@ def _better(problem: Problem, values: Array, candidates: Iterable[Reading]) -> l
             continue
         best = solve_problem(reading.problem, points[least])
         score = float(_scores(reading, best[None], problem)[0])
-        if score < limit:
+        if score < own - (CERTAIN if reading.turned else max(CERTAIN, times)):
             better.append(Read(reading, score, best))
     better.sort(key=lambda read: read.score)
     return [read for read in better if read.score - better[0].score < ALIKE][:LISTED]
@@ -330,7 +347,7 @@ def _free_restitution(problem: Problem, values: Array) -> Wider:
     def words(restitution: float) -> str:
         return (
             f"the impacts look as if their restitution were {restitution:.3g} in place of "
-            f"{own:.3g} ({tabulated.TOO})"
+            f"{own:.3g} ({tabulated.fit_restitution(setup.scene, [p.name for p in parameters])})"
         )
 
     names = [parameter.name for parameter in parameters]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from typing import Any
 
@@ -23,8 +23,18 @@ from contactlab.runs.simulation import Simulation
 
 #: The normal law behind ``rebound(restitution=)``.
 LOSSY = composition.RESTITUTION["normal"]
-#: What leads to it.
-TOO = f"fit restitution too: that of normal={LOSSY}, equal damping in compression and shear"
+#: Steepest impacts, by tangential over normal speed, that tell of no friction.
+STEEP = 0.1
+
+
+def fit_restitution(scene: Scene, parameters: Iterable[str]) -> str:
+    """Return in words how a restitution is fitted beside parameters, with the option to write."""
+    along = np.max(np.abs(scene.slip_velocity) / np.asarray(scene.normal_speed))
+    names = [name for name in parameters if name != "friction_coefficient" or along > STEEP]
+    return (
+        f"fit restitution too: that of normal={LOSSY}, equal damping in compression and shear "
+        f"(--fit {','.join([*names, 'restitution'])})"
+    )
 
 
 def holds(simulation: Simulation | None) -> bool:

@@ -148,7 +148,7 @@ def test_a_sign_that_is_told_is_turned_by_the_mapping_that_is_told():
     bare["omega"] = -bare["omega"]
     wrong = read_measurements(bare, columns={"omega": "rebound_spin (rad/s)"})
     (note,) = fit(wrong, BODIES).notes
-    assert "(--column HEADING=-rebound_spin turns it)" in note
+    assert "(--column 'omega=-rebound_spin (rad/s)' reads it so)" in note
     right = read_measurements(bare, columns={"omega": "-rebound_spin (rad/s)"})
     as_it_is = read_measurements(columns)
     for part in ("given", "measured"):

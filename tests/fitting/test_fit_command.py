@@ -141,7 +141,7 @@ def test_the_notes_lead_from_a_csv_of_soft_data_to_its_friction(run, tmp_path):
     )
     command = ("fit", data, bodies, "--bootstrap", 0)
     positive = run(*command, "--column", "vn (m/s)=rebound_normal_velocity (m/s)")
-    assert "(--column HEADING=-rebound_normal_velocity turns it)" in positive.err
+    assert "--column 'vn (m/s)=-rebound_normal_velocity (m/s)' reads it so" in positive.err
     command += ("--column", "vn (m/s)=-rebound_normal_velocity (m/s)")
     assert "fit restitution too: that of normal=viscoelastic" in run(*command).err
     both = run(*command, "--fit", "friction_coefficient,restitution").out
