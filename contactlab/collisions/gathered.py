@@ -19,7 +19,6 @@ from contactlab.impact.gathering_scene import SPARSE
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import attributes_told
-from contactlab.numeric.taken import ByIndex
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.answer import Answer, statuses_told
 from contactlab.outcome.columns import components, json_value
@@ -28,6 +27,7 @@ from contactlab.outcome.gathering_energy import gathering_ledger
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory, Recorder
 from contactlab.outcome.motion import Motion, without_failures
 from contactlab.outcome.sheet import Sheet, along_axes, batch_axes, names_of
+from contactlab.registration.names import KINDS
 from contactlab.registry import composition
 from contactlab.registry.acceptance import accept
 from contactlab.registry.bound import bound, options_read
@@ -372,8 +372,8 @@ def collide_all(
 
 def way_for(gathering: Gathering, simulation: Simulation | None) -> Coupled:
     """Return the way in which a gathering is answered, or refuse laws that have no answer."""
-    scene = gathering.scene
-    way = Coupled.of(..., scene, _laws_for(gathering, simulation, scene))
+    laws, scene = _bound(gathering, _laws_for(gathering, simulation))
+    way = Coupled.of(..., scene, laws)
     for law in way.laws.capability.refusing:
         accept(law, way.scene.central)
     return way
@@ -442,29 +442,29 @@ def _flat(value: Real) -> Any:
     return value if np.ndim(value) == 0 else np.reshape(value, -1)
 
 
-def _laws_for(gathering: Gathering, simulation: Simulation | None, scene: Scene) -> Laws:
-    """Return the laws of a gathering: those of a simulation, or those of its restitutions."""
+def _laws_for(gathering: Gathering, simulation: Simulation | None) -> Laws:
+    """Return the laws of a gathering: of a simulation, whose normal law its restitutions may be."""
     e = gathering.assembly.of_contacts("restitution")
+    named: dict[str, Any] = {} if simulation is None else simulation.laws.by_kind()
     if simulation is not None:
-        if np.any(e != 1.0):
+        named = {kind: law for kind, law in named.items() if kind in simulation.laws.named}
+    if np.any(e != 1.0):
+        if "normal" in named:
             k = int(np.argwhere(e != 1.0)[0][-1])
-            rule = "stands in place of a simulation, which has a normal law of its own"
-            remedy = "leave out simulation, or restitution of the contacts"
+            rule = "stands in place of a normal law, and the simulation names one"
+            remedy = "leave out normal of the simulation, or restitution of the contacts"
             value = gathering.touches[k].restitution
             raise refuse(f"touches[{k}].restitution", value, rule, remedy)
-        laws = simulation.laws
-        used, whole = bound(laws, scene.central)
-        reads = any(each.material for law in laws for each in options_read(type(law)))
-        told = any(
-            body.material.properties
-            for met in gathering.assembly.met
-            for body in (met.body, met.target)
-        )
-        if used is not laws or whole._options or (reads and told):
-            rule = "has options of each impact, or of materials, and contacts have none"
-            raise refuse("simulation", simulation, rule, "give each option as one number")
-        return laws
-    if np.all(e == 1.0):
-        return composition.compose(None, None, None).changed(named=frozenset())
-    normal = composition.law("normal", composition.RESTITUTION["normal"], restitution=ByIndex(e))
-    return composition.compose(normal, None, None)
+        name = composition.RESTITUTION["normal"]
+        named["normal"] = composition.law("normal", name, restitution=e)
+    return composition.compose(*(named.get(kind) for kind in KINDS))
+
+
+def _bound(gathering: Gathering, laws: Laws) -> tuple[Laws, Scene]:
+    """Return laws, and the scene with the options of each contact; refuse those of materials."""
+    reads = any(each.material for law in laws for each in options_read(type(law)))
+    for k, met in enumerate(gathering.assembly.met if reads else ()):
+        if met.body.material.properties or met.target.material.properties:
+            rule = "has properties of materials, which are those of one contact"
+            raise refuse(f"touches[{k}]", met, rule, "give the options to the laws")
+    return bound(laws, gathering.scene)

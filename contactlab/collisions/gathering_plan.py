@@ -12,7 +12,6 @@ import numpy as np
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.gathering import Gathering
-from contactlab.numeric.taken import ByIndex
 from contactlab.numeric.types import Array, Mask
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import Clause, Clauses, Plan, Words
@@ -176,9 +175,9 @@ class _Words:
     def _normal(self) -> str:
         """Return the normal law in words; of contacts with losses of their own the range of e."""
         e = getattr(self.laws.normal, "restitution", None)
-        if not isinstance(e, ByIndex):
+        if not isinstance(e, np.ndarray):
             return in_words(self.laws.normal)
-        low, high = e.values.min(), e.values.max()
+        low, high = e.min(), e.max()
         return f"{name_of(self.laws.normal)}, each contact with its e, {low:g} to {high:g}"
 
     def _ratio(self) -> Array:

@@ -13,7 +13,7 @@ import attrs
 import numpy as np
 
 from contactlab.numeric.labels import forbid_position
-from contactlab.numeric.taken import ByIndex, Taken
+from contactlab.numeric.taken import Taken
 from contactlab.numeric.types import Array, Numbers, Places, Real
 
 T = TypeVar("T")
@@ -203,12 +203,12 @@ def unit_remedy(unit: str) -> str:
 
 def _check_field(
     value: Numbers | None, owner: object, field: attrs.Attribute[object]
-) -> Real | ByIndex | None:
+) -> Real | None:
     """Return the checked value of a field of ``owner``, the object that is being made."""
     if value is None and field.default is None:
         return None
-    if type(value) is Taken or isinstance(value, ByIndex):
-        return value  # by the author of the class, or by the core
+    if type(value) is Taken:
+        return value  # by the author of the class
     meta = field.metadata
     if type(value) is float and math.isfinite(value) and meta["rule"].holds(value):
         return value  # the remedy of a refusal takes longer to write than a number to check
@@ -247,7 +247,7 @@ def _partly_known(value: object) -> Array | None:
     return numbers if some else None
 
 
-def key(value: Real | ByIndex | None) -> object:
+def key(value: Real | None) -> object:
     """Return a key for equality and hash of a quantity; arrays have no usable one.
 
     A number that was taken is another than the same number given.
@@ -256,8 +256,6 @@ def key(value: Real | ByIndex | None) -> object:
         return Taken, float(value)
     if value is None or isinstance(value, float):
         return value
-    if type(value) is ByIndex:
-        return ByIndex, key(value.values)
     array = np.asarray(value) + 0.0  # -0.0 equals 0.0
     return array.shape, array.tobytes()
 

@@ -7,8 +7,6 @@ from typing import Any
 
 import attrs
 
-from contactlab.numeric.types import Array, Places
-
 
 class Taken(float):
     """A default that nobody can know: the restitution of two bodies, their adhesion, their yield.
@@ -34,23 +32,3 @@ def _options(law_class: type) -> tuple[str, ...]:
     """Return the names of the options of a law."""
     fields = attrs.fields(law_class) if attrs.has(law_class) else ()
     return tuple(field.name for field in fields)
-
-
-class ByIndex:
-    """Numbers of the impacts of a batch by their index, which the core gives a law in place of one.
-
-    Attributes
-    ----------
-    values : array
-    """
-
-    def __init__(self, values: Array) -> None:
-        self.values = values
-
-    def __repr__(self) -> str:
-        """Return the range of the numbers."""
-        return f"{self.values.min():g} to {self.values.max():g}, of each impact"
-
-    def at(self, index: Places | int) -> Any:
-        """Return the numbers of impacts."""
-        return self.values.reshape(-1)[index]

@@ -13,7 +13,7 @@ from contactlab.contracts.restitution import TAKEN_RESTITUTION, restitution
 from contactlab.impact.hertz import hertz_scales, hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, quantity
-from contactlab.numeric.types import Real
+from contactlab.numeric.types import Either, Real
 from contactlab_laws.calibrated import OF_LOSS, one_of_two, waived_of_loss
 
 
@@ -31,7 +31,7 @@ class Relaxing(NormalLaw):
 
     offers: ClassVar[frozenset[str]] = OF_LOSS | {"radius", "elliptic"}
 
-    restitution: float | None = restitution(default=None)
+    restitution: Either = restitution(default=None)
     relaxation_time: Real | None = quantity(
         "s", rule=NON_NEGATIVE, default=None, per_impact=True, material=BY_COMPLIANCE
     )
@@ -48,7 +48,8 @@ class Relaxing(NormalLaw):
     def loses(self) -> bool:
         """True if there is any loss."""
         time = self.relaxation_time
-        return self.restitution not in (None, 1.0) or (time is not None and bool(np.any(time)))
+        loses = self.restitution is not None and bool(np.any(self.restitution != 1.0))
+        return loses or (time is not None and bool(np.any(time)))
 
     def waives(self) -> frozenset[str]:
         """Return the words of a loss that does not hold."""
@@ -56,7 +57,8 @@ class Relaxing(NormalLaw):
 
     def restitution_in(self, scene: Scene) -> Real | None:
         """Return e of each impact, where no relaxation time is given."""
-        return self.restitution
+        found: Real | None = number_in(self, "restitution", scene)
+        return found
 
     def start(self, scene: Scene) -> Parts:
         """Return stiffness and relaxation time of the pair; the law has no memory."""

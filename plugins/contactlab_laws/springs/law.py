@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import attrs
-import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import (
@@ -32,7 +31,6 @@ from contactlab.contracts import (
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Rule, choice, count, flag, quantity, refuse
-from contactlab.numeric.taken import ByIndex
 from contactlab.numeric.types import Real
 from contactlab_laws.compiled import library, told
 from contactlab_laws.differences import table as differences
@@ -150,13 +148,11 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
         if "kelvin_voigt" not in normal.claims:
             return ()
         rate = unfollowed_rate(normal.law, scene)
-        e = getattr(normal.law, "restitution", None) if rate is None else -rate / scene.normal_speed
+        e = None if rate is None else -rate / scene.normal_speed
+        if rate is None and getattr(normal.law, "restitution", None) is not None:
+            e = number_in(normal.law, "restitution", scene)
         if e is None or (rate is None and not self.table):
             return ()
-        if isinstance(e, ByIndex):
-            e = e.at(scene.index)
-        elif isinstance(e, np.ndarray):
-            e = number_in(normal.law, "restitution", scene)
         from contactlab_laws.viscoelastic import whole_impacts  # springs need no table
 
         return whole_impacts.look_up(scene, e, beyond=rate is not None)

@@ -12,7 +12,6 @@ from contactlab.contracts import (
     NormalContact,
     Tabulated,
     UnfollowedNormalLaw,
-    number_in,
     without_tension,
 )
 from contactlab.contracts.restitution import LEAST_RESTITUTION, restitution
@@ -20,7 +19,6 @@ from contactlab.impact.of_speed import interpolate, speed_pairs
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import plain
 from contactlab.numeric.checks import Rule, quantity, refuse
-from contactlab.numeric.taken import ByIndex
 from contactlab.numeric.types import Either, Real
 from contactlab_laws.relaxing import Parts, Relaxing
 from contactlab_laws.tables.restituted_regions import RESTITUTED_CHI, restituted_error
@@ -30,8 +28,6 @@ from contactlab_laws.viscoelastic.relaxation import number_of
 LOSS = Rule(
     lambda value: np.ndim(value) == 0 and 0.0 <= value <= 0.5, "must be one number from 0 to 0.5"
 )
-#: The word that a law of many restitutions does not offer.
-UNLIKE, NO_WORDS = frozenset({"similar"}), frozenset[str]()
 #: Options by which e depends on the speed.
 BY_SPEED = ("speed_loss", "restitutions")
 #: Options by which it does not, or by which it follows from the material.
@@ -112,16 +108,7 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
     @property
     def loses(self) -> bool:
         """True if there is any loss."""
-        if isinstance(self.restitution, ByIndex | np.ndarray):
-            each = self.restitution
-            return bool(np.any((each.values if isinstance(each, ByIndex) else each) != 1.0))
         return super().loses or bool(self.speed_loss) or self.restitutions is not None
-
-    def waives(self) -> frozenset[str]:
-        """Return the words of a loss that does not hold, or that differs from impact to impact."""
-        return super().waives() | (
-            UNLIKE if isinstance(self.restitution, ByIndex | np.ndarray) else NO_WORDS
-        )
 
     def accept(self, scene: Scene) -> None:
         """Refuse a speed at which e is not known."""
@@ -130,12 +117,8 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
 
     def restitution_in(self, scene: Scene) -> Real | None:
         """Return e of each impact at its speed of approach."""
-        if isinstance(self.restitution, ByIndex):
-            each: Real = plain(self.restitution.at(scene.index))
-            return each
         if self.restitution is not None:
-            one: Real = number_in(self, "restitution", scene)
-            return float(one) if np.ndim(one) == 0 else one
+            return super().restitution_in(scene)
         speed = np.asarray(scene.normal_speed)
         e: Any
         if self.restitutions is None:
