@@ -17,7 +17,6 @@ from contactlab import (
     create,
 )
 from contactlab.contracts.status import Status
-from contactlab.registry.registry import REGISTRY
 from tests.collisions.gathered import STEEL, cushion, laws, random_gathering, row
 
 VISCOUS = create("normal.viscoelastic", restitution=0.7)
@@ -213,45 +212,38 @@ def test_random_gatherings_gain_no_energy():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("count", "e"), [(40, False), (10, True)])
-def test_many_random_gatherings_gain_no_energy(count, e):
-    assert _judge(_random(count, 8, 6, e), 2e-4) <= 0.1 * count
+@pytest.mark.parametrize(
+    ("count", "e", "springs", "books"),
+    [(40, False, 50, 2e-4), (10, True, 50, 2e-4), (100, True, 12, 2e-3)],
+)
+def test_many_random_gatherings_gain_no_energy(count, e, springs, books):
+    """Of 1,000 and 100 with loss all ended, books were off by 4.6e-4 and 4.2e-6 at most."""
+    steps = create("integrator.symplectic", steps=50 if springs == 12 else 200)
+    simulation = Simulation(
+        tangential=create("tangential.springs", springs=springs), integrator=steps
+    )
+    assert _judge(_random(count, 8, 6, e), books, simulation) <= 0.1 * count
+
+
+def bouncing():
+    """Return a light ball that heavy ones pass to and fro: it meets both twice."""
+    heavy, light = Sphere(0.02, STEEL), Sphere(0.005, STEEL)
+    bodies = [Body(heavy, velocity=[1, 0, 0], spin=[0, 0, 40]), Body(light), Body(heavy)]
+    touches = [Touch(k, k + 1, 0.2, normal=[1, 0, 0], gap=3e-5 * k) for k in (0, 1)]
+    return Gathering(bodies, touches)
 
 
 @pytest.mark.slow
-def test_the_order_is_two():
-    fine = collide(skew(), laws(200, 800)).velocity
-    finer = collide(skew(), laws(400, 1600)).velocity
-    exact = (4.0 * finer - fine) / 3.0
+@pytest.mark.parametrize(("make", "touches", "order"), [(skew, 1, 1.9), (bouncing, 2, 1.5)])
+def test_the_order_is_two(make, touches, order):
+    fine = collide(make(), laws(200, 800))
+    finer = collide(make(), laws(400, 1600)).velocity
+    exact = (4.0 * finer - fine.velocity) / 3.0
     each = (25, 50, 100)
-    errors = [np.abs(collide(skew(), laws(n, 4 * n)).velocity - exact).max() for n in each]
+    errors = [np.abs(collide(make(), laws(n, 4 * n)).velocity - exact).max() for n in each]
     slope = np.polyfit(np.log(each), np.log(errors), 1)[0]
-    assert slope < -1.9
-
-
-#: Tangential laws that answer several contacts, and one of each kind that does not.
-STEPPERS = ("springs", "linear_spring")
-REFUSED = ("fronts", "coulomb")
-
-
-@pytest.mark.parametrize("name", STEPPERS)
-def test_laws_that_step_run_as_they_are(name):
-    simulation = Simulation(tangential=f"tangential.{name}", integrator="symplectic")
-    hit = collide(skew(), simulation)
-    assert hit.status is Status.SUCCESS
-    np.testing.assert_allclose(hit.velocity.sum(axis=0), [1, 0, 0], atol=1e-14)
-    assert abs(hit.energy.relative_imbalance) < 1e-3
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in REGISTRY.names("normal") if ":" not in name])
-def test_every_normal_law_runs(name):
-    simulation = Simulation(normal=name, tangential="springs", integrator="symplectic")
-    hit = collide(row(3, mu=0.1, spin=20.0), simulation)
-    assert hit.status in (Status.SUCCESS, Status.NOT_SEPARATED)
-    if hit.status is Status.SUCCESS:
-        np.testing.assert_allclose(hit.velocity.sum(axis=0), [1, 0, 0], atol=1e-14)
-        assert hit.energy.end <= hit.energy.start * (1.0 + 1e-3)
+    assert slope < -order
+    assert fine.touches.max() == touches
 
 
 def test_a_body_of_one_contact_with_two_walls_is_not_answered_contact_by_contact():
