@@ -10,12 +10,10 @@ from typing import TYPE_CHECKING, Any, Literal
 import attrs
 import numpy as np
 
-from contactlab.collisions.gathering_plan import MICRON, GatheringPlan, gathering_plan
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.status import Status, succeeded
 from contactlab.contracts.tangential_motion import Sample
 from contactlab.impact.gathering import Body, Gathering
-from contactlab.impact.gathering_scene import SPARSE
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import attributes_told
@@ -27,13 +25,11 @@ from contactlab.outcome.gathering_energy import gathering_ledger
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory, Recorder
 from contactlab.outcome.motion import Motion, without_failures
 from contactlab.outcome.sheet import Sheet, along_axes, batch_axes, names_of
-from contactlab.registration.names import KINDS
-from contactlab.registry import composition
-from contactlab.registry.acceptance import accept
-from contactlab.registry.bound import bound, options_read
-from contactlab.registry.composition import Laws, versions
+from contactlab.registry.composition import versions
 from contactlab.runs.simulation import Simulation
 from contactlab.solve.coupled import Coupled
+from contactlab.solve.gathering import bodies_after, history_of, plan_of_gathering, way_of
+from contactlab.solve.gathering_plan import GatheringPlan
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -86,7 +82,9 @@ class GatheringResult(Answer):
     @cached_property
     def plan(self) -> GatheringPlan:
         """What is computed, what is left out, and the cautions; ``per_micron`` when it is read."""
-        return _plan(self.gathering, self.simulation, self._way, self._motion, bool(self.history))
+        laws = None if self.simulation is None else self.simulation.laws
+        told = bool(self.history)
+        return plan_of_gathering(self.gathering, laws, self._way, self._motion, history=told)
 
     def _shaped(self, value: Real, *trailing: int) -> Any:
         """Return what each gathering has in the batch shape."""
@@ -108,15 +106,7 @@ class GatheringResult(Answer):
     @cached_property
     def _after(self) -> tuple[Array, Array]:
         """Velocities and spins of the bodies, shape (..., N, 3)."""
-        assembly, told = self.gathering.assembly, self._motion.contacts
-        bodies = len(self.gathering.bodies)
-        if told is None:
-            nothing = np.full((*self.gathering.shape, bodies, 3), np.nan)
-            return nothing, nothing
-        lost = np.where(self._motion.status == Status.SUCCESS, 0.0, np.nan)[:, 0]
-        vectors = assembly.after(told.impulse, told.pushed[:, 0] + lost)
-        velocity, spin = (each + lost[:, None, None] for each in vectors)
-        return self._shaped(velocity, bodies, 3), self._shaped(spin, bodies, 3)
+        return bodies_after(self.gathering, self._motion)
 
     @property
     def velocity(self) -> Array:
@@ -348,10 +338,9 @@ def collide_all(
     gathering: Gathering, simulation: Simulation | None, *, history: bool = False
 ) -> GatheringResult:
     """Return the outcome of a gathering, under its restitutions or the laws of a simulation."""
-    if history not in (True, False):
-        rule = "must be True or False: fields are those of one contact"
-        raise refuse("history", history, rule, "give history=True")
-    started, way = time.perf_counter(), way_for(gathering, simulation)
+    history = history_of(history)
+    started = time.perf_counter()
+    way = way_of(gathering, None if simulation is None else simulation.laws)
     scene = way.scene
     recorder = _ContactsRecorder((*gathering.shape, scene.shape[-1])) if history else None
     with np.errstate(under="ignore"):
@@ -368,57 +357,6 @@ def collide_all(
         way=way,
         motion=motion,
     )
-
-
-def way_for(gathering: Gathering, simulation: Simulation | None) -> Coupled:
-    """Return the way in which a gathering is answered, or refuse laws that have no answer."""
-    laws, scene = _bound(gathering, _laws_for(gathering, simulation))
-    way = Coupled.of(..., scene, laws)
-    for law in way.laws.capability.refusing:
-        accept(law, way.scene.central)
-    return way
-
-
-def _plan(
-    gathering: Gathering,
-    simulation: Simulation | None,
-    way: Coupled,
-    motion: Motion | None,
-    history: bool,
-) -> GatheringPlan:
-    """Return the plan of a gathering."""
-
-    def widened() -> Array:
-        return _per_micron(gathering, simulation)
-
-    return gathering_plan(gathering, way, motion, history, widened)
-
-
-def _per_micron(gathering: Gathering, simulation: Simulation | None) -> Array:
-    """Return the largest change of a velocity in m/s if any gap were a micron wider."""
-    contacts = len(gathering.touches)
-    at_once = contacts + 1 if contacts < SPARSE else 1
-    wide = np.eye(contacts + 1)[:, 1:] * MICRON  # no change, then that of each contact
-    found = [
-        _with_gaps(gathering, simulation, wide[first : first + at_once])
-        for first in range(0, contacts + 1, at_once)
-    ]
-    velocity = np.concatenate(found)
-    moved = np.linalg.norm(velocity[1:] - velocity[0], axis=-1)
-    return np.asarray(moved.max(axis=(0, -1)))
-
-
-def _with_gaps(gathering: Gathering, simulation: Simulation | None, wider: Array) -> Array:
-    """Return velocities, (rows, ..., N, 3), with gaps that are wider by rows of C, in m."""
-    rows = wider.T.reshape(*wider.T.shape, *(1 for _ in gathering.shape))
-    touches = []
-    for touch, more in zip(gathering.touches, rows, strict=True):
-        gap = touch.gap + (0.0 if touch.loaded else 1.0) * more
-        touches.append(attrs.evolve(touch, gap=gap))
-    bodies: Any = gathering.bodies
-    if gathering.names:
-        bodies = dict(zip(gathering.names, bodies, strict=True))
-    return collide_all(Gathering(bodies, touches), simulation).velocity
 
 
 class _ContactsRecorder(Recorder):
@@ -440,31 +378,3 @@ class _ContactsRecorder(Recorder):
 def _flat(value: Real) -> Any:
     """Return numbers of gatherings and contacts over one axis."""
     return value if np.ndim(value) == 0 else np.reshape(value, -1)
-
-
-def _laws_for(gathering: Gathering, simulation: Simulation | None) -> Laws:
-    """Return the laws of a gathering: of a simulation, whose normal law its restitutions may be."""
-    e = gathering.assembly.of_contacts("restitution")
-    named: dict[str, Any] = {} if simulation is None else simulation.laws.by_kind()
-    if simulation is not None:
-        named = {kind: law for kind, law in named.items() if kind in simulation.laws.named}
-    if np.any(e != 1.0):
-        if "normal" in named:
-            k = int(np.argwhere(e != 1.0)[0][-1])
-            rule = "stands in place of a normal law, and the simulation names one"
-            remedy = "leave out normal of the simulation, or restitution of the contacts"
-            value = gathering.touches[k].restitution
-            raise refuse(f"touches[{k}].restitution", value, rule, remedy)
-        name = composition.RESTITUTION["normal"]
-        named["normal"] = composition.law("normal", name, restitution=e)
-    return composition.compose(*(named.get(kind) for kind in KINDS))
-
-
-def _bound(gathering: Gathering, laws: Laws) -> tuple[Laws, Scene]:
-    """Return laws, and the scene with the options of each contact; refuse those of materials."""
-    reads = any(each.material for law in laws for each in options_read(type(law)))
-    for k, met in enumerate(gathering.assembly.met if reads else ()):
-        if met.body.material.properties or met.target.material.properties:
-            rule = "has properties of materials, which are those of one contact"
-            raise refuse(f"touches[{k}]", met, rule, "give the options to the laws")
-    return bound(laws, gathering.scene)

@@ -36,10 +36,12 @@ from contactlab.solve.way import Way
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
+    from contactlab.impact.gathering import Gathering
     from contactlab.impact.grid import GridParts
     from contactlab.numeric.progress import Count
     from contactlab.outcome.sweep_folder import SweepFolder
     from contactlab.runs.pieces import Piece
+    from contactlab.solve.gathering_plan import GatheringPlan
 
 
 #: What to do with a file, and with bodies in space, that users give in place of a scene.
@@ -131,16 +133,29 @@ class Simulation:
         for name, value in (*composed.items(), ("laws", laws)):
             object.__setattr__(self, name, value)
 
-    def plan(self, scene: Scene, *, history: bool | str = False) -> Plan:
+    @overload
+    def plan(self, scene: Scene, *, history: bool | str = False) -> Plan: ...
+    @overload
+    def plan(self, scene: Gathering, *, history: bool = False) -> GatheringPlan: ...
+    def plan(self, scene: Scene | Gathering, *, history: bool | str = False) -> Plan:
         """Return what ``run`` would compute for ``scene``, what it would leave out and why.
+
+        Of a ``Gathering`` it is what ``collide(gathering, simulation)`` would.
 
         Parameters
         ----------
-        scene : Scene
+        scene : Scene or Gathering
             One impact or a batch.
         history : bool or "fields"
             The same as in ``run``.
         """
+        if type(scene) is not Scene:
+            from contactlab.impact.gathering import Gathering  # a scene needs none of this
+
+            if isinstance(scene, Gathering):
+                from contactlab.solve.gathering import plan_of_gathering
+
+                return plan_of_gathering(scene, self.laws, history=history)
         laws, scene = bound(self.laws, _scene(scene))
         ways = solve.accept_scene(laws, scene, as_one=bool(_history(history)))
         columns = solve.plan_columns(ways, scene, history)

@@ -332,6 +332,20 @@ def test_a_micron_of_gap_is_told():
     assert not any("micron" in text for text in batch.cautions)
 
 
+def test_a_plan_without_a_run_is_that_of_the_run():
+    given, simulation = row(3, mu=0.2, gaps=[0.0, 5e-6]), laws(12, 50)
+    plan, run = simulation.plan(given), collide(given, simulation).plan
+    assert str(plan) == str(run)
+    np.testing.assert_array_equal(plan.gap_over_depth, run.gap_over_depth)
+    assert plan.per_micron == run.per_micron
+    batch = simulation.plan(row(3, gaps=[0.0, np.array([0.0, 1e-4])]))
+    assert batch.gap_over_depth.shape == (2, 2)
+    with pytest.raises(ValueError, match="fields are those of one contact"):
+        simulation.plan(given, history="fields")
+    with pytest.raises(ValueError, match="nothing approaches"):
+        simulation.plan(row(3, speed=-1.0))
+
+
 def test_a_weight_that_nothing_carries_is_told():
     hit = collide(cushion(force=[0, 0, -9.81 * 0.1406]), laws(12, 50))
     assert any("g T/v1 = 0.056" in text for text in hit.cautions)

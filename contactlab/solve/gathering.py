@@ -1,0 +1,129 @@
+"""Several contacts at once: the laws of a gathering, its way, its bodies afterwards, its plan."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.contracts.status import Status
+from contactlab.impact.gathering import Gathering
+from contactlab.impact.gathering_scene import SPARSE
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import refuse
+from contactlab.numeric.types import Array
+from contactlab.outcome.motion import Motion
+from contactlab.registration.names import KINDS
+from contactlab.registry import composition
+from contactlab.registry.acceptance import accept
+from contactlab.registry.bound import bound, options_read
+from contactlab.registry.composition import Laws
+from contactlab.solve.coupled import Coupled
+from contactlab.solve.gathering_plan import MICRON, GatheringPlan, gathering_plan
+
+
+def way_of(gathering: Gathering, laws: Laws | None) -> Coupled:
+    """Return the way in which a gathering is answered, or refuse laws that have no answer.
+
+    ``laws`` are those of a simulation; None stands for the usual ones.
+    """
+    used, scene = _bound(gathering, _laws_of(gathering, laws))
+    way = Coupled.of(..., scene, used)
+    for law in way.laws.capability.refusing:
+        accept(law, way.scene.central)
+    return way
+
+
+def bodies_after(gathering: Gathering, motion: Motion) -> tuple[Array, Array]:
+    """Return velocities and spins of the bodies, shape (..., N, 3); NaN of a failure."""
+    shape = (*gathering.shape, len(gathering.bodies), 3)
+    told = motion.contacts
+    if told is None:
+        return np.full(shape, np.nan), np.full(shape, np.nan)
+    lost = np.where(motion.status == Status.SUCCESS, 0.0, np.nan)[:, 0]
+    after = gathering.assembly.after(told.impulse, told.pushed[:, 0] + lost)
+    velocity, spin = ((each + lost[:, None, None]).reshape(shape) for each in after)
+    return velocity, spin
+
+
+def plan_of_gathering(
+    gathering: Gathering,
+    laws: Laws | None,
+    way: Coupled | None = None,
+    motion: Motion | None = None,
+    *,
+    history: bool | str = False,
+) -> GatheringPlan:
+    """Return the plan of a gathering; of a run its ``way`` and its ``motion`` are known."""
+
+    def widened() -> Array:
+        return _per_micron(gathering, laws)
+
+    way = way_of(gathering, laws) if way is None else way
+    return gathering_plan(gathering, way, motion, history_of(history), widened)
+
+
+def history_of(history: bool | str) -> bool:
+    """Return ``history``, or refuse a value that gatherings have not."""
+    if history not in (True, False):
+        rule = "must be True or False: fields are those of one contact"
+        raise refuse("history", history, rule, "give history=True")
+    return bool(history)
+
+
+def _per_micron(gathering: Gathering, laws: Laws | None) -> Array:
+    """Return the largest change of a velocity in m/s if any gap were a micron wider."""
+    contacts = len(gathering.touches)
+    at_once = contacts + 1 if contacts < SPARSE else 1
+    wide = np.eye(contacts + 1)[:, 1:] * MICRON  # no change, then that of each contact
+    found = [
+        _with_gaps(gathering, laws, wide[first : first + at_once])
+        for first in range(0, contacts + 1, at_once)
+    ]
+    velocity = np.concatenate(found)
+    moved = np.linalg.norm(velocity[1:] - velocity[0], axis=-1)
+    return np.asarray(moved.max(axis=(0, -1)))
+
+
+def _with_gaps(gathering: Gathering, laws: Laws | None, wider: Array) -> Array:
+    """Return velocities, (rows, ..., N, 3), with gaps that are wider by rows of C, in m."""
+    rows = wider.T.reshape(*wider.T.shape, *(1 for _ in gathering.shape))
+    touches = []
+    for touch, more in zip(gathering.touches, rows, strict=True):
+        gap = touch.gap + (0.0 if touch.loaded else 1.0) * more
+        touches.append(attrs.evolve(touch, gap=gap))
+    bodies: Any = gathering.bodies
+    if gathering.names:
+        bodies = dict(zip(gathering.names, bodies, strict=True))
+    wide = Gathering(bodies, touches)
+    with np.errstate(under="ignore"):
+        _, motion = way_of(wide, laws).outcome(False, None)
+    return bodies_after(wide, motion)[0]
+
+
+def _laws_of(gathering: Gathering, laws: Laws | None) -> Laws:
+    """Return laws beside which the restitutions of contacts stand as the normal law."""
+    e = gathering.assembly.of_contacts("restitution")
+    given = {} if laws is None else laws.by_kind()
+    named = {kind: law for kind, law in given.items() if laws and kind in laws.named}
+    if np.any(e != 1.0):
+        if "normal" in named:
+            k = int(np.argwhere(e != 1.0)[0][-1])
+            rule = "stands in place of a normal law, and the simulation names one"
+            remedy = "leave out normal of the simulation, or restitution of the contacts"
+            value = gathering.touches[k].restitution
+            raise refuse(f"touches[{k}].restitution", value, rule, remedy)
+        name = composition.RESTITUTION["normal"]
+        named["normal"] = composition.law("normal", name, restitution=e)
+    return composition.compose(*(named.get(kind) for kind in KINDS))
+
+
+def _bound(gathering: Gathering, laws: Laws) -> tuple[Laws, Scene]:
+    """Return laws, and the scene with the options of each contact; refuse those of materials."""
+    reads = any(each.material for law in laws for each in options_read(type(law)))
+    for k, met in enumerate(gathering.assembly.met if reads else ()):
+        if met.body.material.properties or met.target.material.properties:
+            rule = "has properties of materials, which are those of one contact"
+            raise refuse(f"touches[{k}]", met, rule, "give the options to the laws")
+    return bound(laws, gathering.scene)
