@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -155,24 +155,6 @@ class Side(NamedTuple):
     sense: float
 
 
-class Reach(NamedTuple):
-    """A contact as one of its bodies has it.
-
-    Attributes
-    ----------
-    axes : three vectors
-        n, t1 and t2, by their components.
-    arm : vector
-        From the centre of mass to the contact, in m.
-    sense : float
-        1 if the body is the first of the contact, -1 if it is the second.
-    """
-
-    axes: Sequence[Vector]
-    arm: Vector
-    sense: float
-
-
 def sides(encounter: _Meeting, normal: Vector) -> list[Side]:
     """Return the bodies that move; a half-space does not."""
     found = []
@@ -198,32 +180,36 @@ def turn_body(body: Sphere | RigidBody, *moments: Vector) -> list[Vector]:
 def inverse_mass_of(bodies: Sequence[Side], axes: Sequence[Vector]) -> list[list[Any]]:
     """Return the rows of W in 1/kg along unit vectors at right angles."""
     W: list[list[Any]] = [[0.0 for _ in axes] for _ in axes]
-    for _, body, arm, _ in bodies:
-        # an impulse p turns the body by J⁻¹ (arm x p), and moves the contact by that x arm
-        moments = [cross(arm, axis) for axis in axes]
-        turns = turn_body(body, *moments)
-        for i, moment in enumerate(moments):
-            W[i][i] = W[i][i] + 1.0 / body.mass
-            for j in range(i + 1):
-                W[i][j] = W[j][i] = W[i][j] + dot(moment, turns[j])
+    for side in bodies:
+        add_coupling(W, (side, axes), (side, axes))
     return W
 
 
-def coupling_of(body: Sphere | RigidBody, one: Reach, other: Reach) -> list[list[Any]]:
-    """Return the rows of the block of W in 1/kg by which one contact of a body moves another.
+def add_coupling(
+    inverse: list[list[Any]],
+    one: tuple[Side, Sequence[Vector]],
+    other: tuple[Side, Sequence[Vector]],
+) -> None:
+    """Add to rows of W in 1/kg how a body moves one of its contacts by forces at another.
 
-    The block of a contact with itself is that of ``inverse_mass_of``.
+    A contact is its body and its axes; with itself it is a block on the diagonal of W.
     """
-    rates = [cross(one.arm, axis) for axis in one.axes]
-    turns = turn_body(body, *(cross(other.arm, axis) for axis in other.axes))
-    sense = one.sense * other.sense
-    return [
-        [
-            sense * (dot(axis, along) / body.mass + dot(rate, turn))
-            for along, turn in zip(other.axes, turns, strict=True)
-        ]
-        for axis, rate in zip(one.axes, rates, strict=True)
-    ]
+    (here, axes), (there, across) = one, other
+    alone, mass, sense = here is there, here.body.mass, here.sense * there.sense
+    # an impulse p turns the body by J⁻¹ (arm x p), and moves a contact by that x its arm
+    moments = [cross(here.arm, axis) for axis in axes]
+    turns = turn_body(
+        here.body, *(moments if alone else [cross(there.arm, axis) for axis in across])
+    )
+    for i, moment in enumerate(moments):
+        if alone:
+            inverse[i][i] = inverse[i][i] + 1.0 / mass
+        for j, turn in enumerate(turns[: i + 1] if alone else turns):
+            moved = dot(moment, turn)
+            if alone:
+                inverse[i][j] = inverse[j][i] = inverse[i][j] + moved
+            else:
+                inverse[i][j] = inverse[i][j] + sense * (dot(axes[i], across[j]) / mass + moved)
 
 
 def relative_velocity(encounter: _Meeting, bodies: Sequence[Side]) -> Vector:
@@ -559,21 +545,30 @@ def push_bodies(
     ``impulse`` has components along n, t1 and t2, the rows of ``axes``, shape (..., 3). ``couple``
     is the angular impulse on the target about the normal, in N m s, of the batch shape.
     """
-    frame, (p, q, r) = rows(axes), components(impulse)
-    whole = [p * n + q * t1 + r * t2 for n, t1, t2 in zip(*frame, strict=True)]
     moved = {}
     for name in ("velocity", "spin", "target_velocity", "target_spin"):
         moved[name] = over(getattr(encounter, name), impulse.shape)
-    for name, body, arm, sense in sides(encounter, frame[0]):
-        # the impulse on this body, and its angular impulse about the centre of mass
-        push = [-sense * each for each in whole]
-        moment = [m - sense * couple * n for m, n in zip(cross(arm, push), frame[0], strict=True)]
-        changes = {
-            "velocity": [each / body.mass for each in push],
-            "spin": turn_body(body, moment)[0],
-        }
+    for side, changes in changes_of(encounter, axes, impulse, couple):
         for entry, change in changes.items():
-            before = components(getattr(encounter, f"{name}{entry}"))
+            before = components(getattr(encounter, f"{side.name}{entry}"))
             after = [one + more for one, more in zip(before, change, strict=True)]
-            moved[f"{name}{entry}"] = join_components(after, encounter.shape)
+            moved[f"{side.name}{entry}"] = join_components(after, encounter.shape)
     return moved
+
+
+def changes_of(
+    encounter: _Meeting, axes: Array, impulse: Array, couple: Real = 0.0
+) -> Iterator[tuple[Side, dict[str, Vector]]]:
+    """Yield each body that moves, and the changes of its velocity and spin, as of ``push_bodies``.
+
+    They are vectors by their components.
+    """
+    frame, (p, q, r) = rows(axes), components(impulse)
+    whole = [p * n + q * t1 + r * t2 for n, t1, t2 in zip(*frame, strict=True)]
+    for side in sides(encounter, frame[0]):
+        # the impulse on this body, and its angular impulse about the centre of mass
+        push = [-side.sense * each for each in whole]
+        turn = zip(cross(side.arm, push), frame[0], strict=True)
+        moment = [m - side.sense * couple * n for m, n in turn]
+        velocity = tuple(each / side.body.mass for each in push)
+        yield side, {"velocity": velocity, "spin": turn_body(side.body, moment)[0]}

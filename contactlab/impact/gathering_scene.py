@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from itertools import combinations
 from typing import Any, Protocol
 
 import attrs
@@ -12,19 +12,19 @@ import numpy as np
 from contactlab.impact.bodies import Pair
 from contactlab.impact.body_contact import (
     Frame,
-    Reach,
-    coupling_of,
+    Side,
+    add_coupling,
+    changes_of,
     elastic_numbers,
     frame,
     sides,
-    turn_body,
 )
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.links import Links, energy_of
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import first_of, refuse
 from contactlab.numeric.types import Array, Real
-from contactlab.numeric.vectors import components, cross, dot, join_components
+from contactlab.numeric.vectors import components, dot, join_components
 
 #: Contacts of one gathering from which W is kept by its blocks that are not zero.
 SPARSE = 100
@@ -61,7 +61,7 @@ class Assembly:
     frames : list of Frame
         Of each contact, arrays of shape (count,).
     reaches : list of dict
-        Of each body, by the number of the contact: its axes, arm and sense.
+        Of each body, by the number of the contact: the body as that contact has it.
     """
 
     def __init__(self, gathering: _Given) -> None:
@@ -70,7 +70,7 @@ class Assembly:
         self._wide = gathering.shape or (1,)
         self.met = [self._flat_encounter(k) for k in range(len(gathering.touches))]
         self.frames: list[Frame] = []
-        self.reaches: list[dict[int, Reach]] = [{} for _ in gathering.bodies]
+        self.reaches: list[dict[int, Side]] = [{} for _ in gathering.bodies]
         for k, encounter in enumerate(self.met):
             normal = encounter.unit_normal()
             bodies = sides(encounter, normal)
@@ -79,9 +79,9 @@ class Assembly:
             except ValueError as error:
                 raise ValueError(f"touches[{k}]: {error}") from None
             self.frames.append(found)
-            for name, _, arm, sense in bodies:
-                place: Any = gathering.places[k][1 if name else 0]
-                self.reaches[place][k] = Reach(found.axes, arm, sense)
+            for side in bodies:
+                at: Any = gathering.places[k][side.sense < 0.0]
+                self.reaches[at][k] = side
 
     def _flat_encounter(self, contact: int) -> Encounter:
         """Return the encounter of a contact in each of the gatherings."""
@@ -176,9 +176,12 @@ class Assembly:
             (k, k): join_components(each.inverse_mass, (self.count,))
             for k, each in enumerate(self.frames)
         }
-        for body, reaches in zip(self.met_bodies(), self.reaches, strict=True):
-            for (one, first), (other, second) in _pairs(reaches):
-                block = join_components(coupling_of(body, first, second), (self.count,))
+        for reaches in self.reaches:
+            for one, other in combinations(sorted(reaches), 2):
+                rows = [[0.0] * 3 for _ in range(3)]
+                pair = ((reaches[k], self.frames[k].axes) for k in (one, other))
+                add_coupling(rows, *pair)
+                block = join_components(rows, (self.count,))
                 blocks[one, other] = blocks.get((one, other), 0.0) + block
         if self.count > 1 or contacts < SPARSE:
             self._check_memory()
@@ -197,27 +200,14 @@ class Assembly:
             rule = f"{self.count} gatherings of {len(self.frames)} contacts take {needed:.2g} bytes"
             raise refuse("shape", self.gathering.shape, rule, "give fewer at a time")
 
-    def met_bodies(self) -> list[Any]:
-        """Return every body as the encounters of its contacts have it, flat."""
-        found: list[Any] = [body.shape for body in self.gathering.bodies]
-        for k, (first, second) in enumerate(self.gathering.places):
-            found[first] = self.met[k].body
-            if second is not None:
-                found[second] = self.met[k].target
-        return found
-
     def _pull(self) -> Array:
         """Return the accelerations of approach and slip by constant forces, (count, C, 3)."""
         pull = np.zeros((self.count, len(self.frames), 3))
-        for body, held, reaches in zip(
-            self.met_bodies(), self.gathering.bodies, self.reaches, strict=True
-        ):
-            if not held.force.any():
-                continue
+        for held, reaches in zip(self.gathering.bodies, self.reaches, strict=True):
             force = components(self.flat(held.force, 3))
-            for k, reach in reaches.items():
-                for row, axis in enumerate(reach.axes):
-                    pull[:, k, row] += reach.sense * dot(axis, force) / body.mass
+            for k, side in reaches.items() if held.force.any() else ():
+                for row, axis in enumerate(self.frames[k].axes):
+                    pull[:, k, row] += side.sense * dot(axis, force) / side.body.mass
         return pull
 
     def _loaded(self, pull: Array) -> Array:
@@ -242,33 +232,17 @@ class Assembly:
         ``impulse`` is in N s along the axes, (count, C, 3), ``time`` that of the forces in s,
         (count,).
         """
-        velocity, spin = self.of_bodies("velocity"), self.of_bodies("spin")
-        pushes = [
-            [sum(p * axis[j] for p, axis in zip(components(impulse[:, k]), each.axes, strict=True))
-             for j in range(3)]
-            for k, each in enumerate(self.frames)
-        ]  # fmt: skip
-        for place, (body, reaches) in enumerate(zip(self.met_bodies(), self.reaches, strict=True)):
-            held = components(self.flat(self.gathering.bodies[place].force, 3))
-            whole: list[Any] = [each * time for each in held]
-            moment: list[Any] = [0.0, 0.0, 0.0]
-            for k, reach in reaches.items():
-                push = [-reach.sense * each for each in pushes[k]]
-                whole = [one + more for one, more in zip(whole, push, strict=True)]
-                turn = cross(reach.arm, push)
-                moment = [one + more for one, more in zip(moment, turn, strict=True)]
-            velocity[:, place] += join_components(
-                [each / body.mass for each in whole], (self.count,)
-            )
-            (turned,) = turn_body(body, moment)
-            spin[:, place] += join_components(turned, (self.count,))
-        return velocity, spin
-
-
-def _pairs(reaches: dict[int, Reach]) -> Sequence[tuple[tuple[int, Reach], tuple[int, Reach]]]:
-    """Return every two different contacts of a body, in order."""
-    each = sorted(reaches.items(), key=lambda item: item[0])
-    return [(one, other) for i, one in enumerate(each) for other in each[i + 1 :]]
+        axes = self.axes
+        after = {entry: self.of_bodies(entry) for entry in ("velocity", "spin")}
+        for place, body in enumerate(self.gathering.bodies):
+            pushed = self.flat(body.force, 3) * np.asarray(time)[:, None]
+            after["velocity"][:, place] += pushed / self.flat(body.shape.mass)[:, None]
+        for k, met in enumerate(self.met):
+            for side, changes in changes_of(met, axes[:, k], impulse[:, k]):
+                place: Any = self.gathering.places[k][side.sense < 0.0]
+                for entry, change in changes.items():
+                    after[entry][:, place] += join_components(change, (self.count,))
+        return after["velocity"], after["spin"]
 
 
 def _sparse(blocks: dict[tuple[int, int], Array], contacts: int) -> Any:
