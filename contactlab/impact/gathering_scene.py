@@ -239,9 +239,9 @@ class Assembly:
             after["velocity"][:, place] += pushed / self.flat(body.shape.mass)[:, None]
         for k, met in enumerate(self.met):
             for side, changes in changes_of(met, axes[:, k], impulse[:, k]):
-                place: Any = self.gathering.places[k][side.sense < 0.0]
+                moved: Any = self.gathering.places[k][side.sense < 0.0]
                 for entry, change in changes.items():
-                    after[entry][:, place] += join_components(change, (self.count,))
+                    after[entry][:, moved] += join_components(change, (self.count,))
         return after["velocity"], after["spin"]
 
 

@@ -627,7 +627,7 @@ class Shape:
     name : str
     make : callable
         Takes the keys, ``material``, ``normal`` and ``axis`` or ``axes`` by name, and returns
-        ``(body, contact)``.
+        ``(body, contact)``; one that lands flat ``(body, contacts, gaps)``.
     needed, further : tuple of str
         Keys of numbers that must be given, and that may be, beside mass and material.
     oriented : str
@@ -637,7 +637,7 @@ class Shape:
     """
 
     name: str
-    make: Callable[..., tuple[RigidBody, Array]]
+    make: Callable[..., tuple[Any, ...]]
     needed: tuple[str, ...]
     further: tuple[str, ...] = ()
     oriented: str = "axes"
@@ -671,6 +671,16 @@ def contactlab_shapes() -> list[Shape]:
             example={"semi_axes": (0.03, 0.02, 0.01)},
         ),
     ]  # fmt: skip
+
+
+#: Shapes that land flat, with several contacts: of ``[bodies.NAME]``.
+FLAT = {
+    "flat_box": Shape(name="flat_box", make=flat_box, needed=("sides", "corner_radius", "reach")),
+    "flat_rod": Shape(
+        name="flat_rod", make=flat_rod, needed=("length", "radius", "reach"),
+        further=("end_radius",), oriented="axis",
+    ),
+}  # fmt: skip
 
 
 def shapes_by_name() -> Mapping[str, Shape]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from contactlab.impact.material import Material
 from contactlab.impact.rigid_body import RigidBody
-from contactlab.impact.shapes import shapes_by_name
+from contactlab.impact.shapes import Shape, shapes_by_name
 from contactlab.numeric.checks import real, refuse
 from contactlab.numeric.types import Array, Real
 from contactlab.scene_file.entries import RIGID_KEYS, TILT
@@ -17,11 +17,19 @@ from contactlab.scene_file.table import Table
 
 #: Default axis of a rod or disc: up, so that a rod hangs over what lies below.
 UPRIGHT = (0.0, 0.0, 1.0)
+#: No shapes.
+NONE: Mapping[str, Shape] = {}
 
 
 def rigid_body(
-    content: object, path: str, normal: Array, material: Callable[[Table], Material]
-) -> tuple[RigidBody, Any]:
+    content: object,
+    path: str,
+    normal: Array,
+    material: Callable[[Table], Material],
+    *,
+    further: Mapping[str, Shape] = NONE,
+    beside: tuple[str, ...] = (),
+) -> tuple[Any, ...]:
     """Return the body of a table, and its contact in m; None if the table has no shape.
 
     Parameters
@@ -33,11 +41,15 @@ def rigid_body(
         Outward normal of the body at the contact.
     material : callable
         Reads the material of a table.
+    further : mapping
+        More shapes by name; of those that land flat contacts and gaps follow the body.
+    beside : tuple of str
+        Keys of the table that are not of the body.
     """
     name = content.get("shape") if isinstance(content, Mapping) else None
-    known = shapes_by_name()
+    known = {**shapes_by_name(), **further}
     if name is None:
-        table = Table(content, path, known=("kind", "shape", *RIGID_KEYS))
+        table = Table(content, path, known=("kind", "shape", *RIGID_KEYS, *beside))
         numbers = {key: table.content[key] for key in RIGID_KEYS if table.has(key)}
         for key in ("mass", "curvature_radius"):
             table.require(key, "or name a shape: " + ", ".join(known))
@@ -45,13 +57,13 @@ def rigid_body(
     if not (isinstance(name, str) and name in known):
         raise refuse(f"{path}.shape", name, "is no shape", "known: " + ", ".join(known))
     shape = known[name]
-    table = Table(content, path, known=("kind", "shape", TILT, *shape.keys))
+    table = Table(content, path, known=("kind", "shape", TILT, *shape.keys, *beside))
     options = {key: table.content[key] for key in shape.keys if table.has(key)}
     options |= {"material": material(table), "normal": normal}
     tilt = real(table.at(TILT), table.content.get(TILT, 0.0), remedy="in degrees, about y")
     upright = options.pop(shape.oriented, UPRIGHT if shape.oriented == "axis" else np.eye(3))
 
-    def made(**numbers: object) -> tuple[RigidBody, Any]:
+    def made(**numbers: object) -> tuple[Any, ...]:
         try:
             turned = _about_y(tilt) @ np.asarray(upright, dtype=float)
         except ValueError:

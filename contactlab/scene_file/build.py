@@ -76,7 +76,7 @@ def build_scene(
         bodies, contacts = _bodies(root, impact)
         encounter = _encounter(impact, *bodies, **contacts)
         return impact.make(lambda: encounter.scene), encounter
-    sphere = _sphere(root.table("sphere", known=SPHERE_KEYS))
+    sphere = read_sphere(root.table("sphere", known=SPHERE_KEYS))
     target = _target(root)
     keys = dict.fromkeys((*IMPACT_KEYS, *SPHERE_VECTORS, *STRUCK_KEYS))
     impact = root.table("impact", known=keys)
@@ -130,7 +130,7 @@ def read_material(table: Table) -> Material:
     return material.make(Material, **numbers)
 
 
-def _sphere(table: Table) -> Sphere:
+def read_sphere(table: Table) -> Sphere:
     """Return a sphere; its mass needs a value of its own or a density."""
     numbers = _numbers(table, ("radius",)) | _present(table, ("mass", "gyration_ratio"))
     material = read_material(table)
@@ -152,7 +152,7 @@ def _target(root: Table) -> Sphere | HalfSpace:
     if kind is not None and not (isinstance(kind, str) and kind in kinds):
         raise refuse("target.kind", kind, 'must be "half-space", "sphere" or "body"')
     table = Table(raw, "target", known=kinds.get(str(kind), ()))
-    return HalfSpace(read_material(table)) if kind == "half-space" else _sphere(table)
+    return HalfSpace(read_material(table)) if kind == "half-space" else read_sphere(table)
 
 
 def _is_rigid(target: object) -> bool:
@@ -171,7 +171,7 @@ def _bodies(root: Table, impact: Table) -> tuple[list[Any], dict[str, Any]]:
     for name, key, sense in (("body", "contact", 1.0), ("target", "target_contact", -1.0)):
         content = root.content.get(name)
         if name == "body" and content is None:
-            bodies.append(_sphere(root.table("sphere", known=SPHERE_KEYS)))
+            bodies.append(read_sphere(root.table("sphere", known=SPHERE_KEYS)))
         elif name == "target" and not _is_rigid(content):
             bodies.append(_target(root))
         else:

@@ -9,21 +9,19 @@ import attrs
 import numpy as np
 
 from contactlab.impact import material as materials
-from contactlab.impact.bodies import HalfSpace, Sphere
+from contactlab.impact.bodies import HalfSpace
 from contactlab.impact.gathering import Body, Gathering, Touch
 from contactlab.impact.rigid_body import RigidBody
-from contactlab.numeric.checks import POSITIVE, of_kind, real, refuse, unit_remedy
+from contactlab.impact.shapes import FLAT
+from contactlab.numeric.checks import POSITIVE, of_kind, real, refuse
 from contactlab.numeric.types import Numbers
-from contactlab.scene_file.build import read_material
-from contactlab.scene_file.entries import RIGID_KEYS, SPHERE_KEYS, UNITS
+from contactlab.scene_file.bodies import rigid_body
+from contactlab.scene_file.build import read_material, read_sphere
+from contactlab.scene_file.entries import SPHERE_KEYS
 from contactlab.scene_file.table import Table, nearest_of
 
-#: What a body is, with its keys.
-KINDS = {
-    "sphere": ("kind", *SPHERE_KEYS),
-    "body": ("kind", *RIGID_KEYS),
-    "half-space": ("kind", "material"),
-}
+#: What a body is.
+KINDS = ("sphere", "body", "half-space")
 #: Vectors of a body that moves, and the keys of a contact, numbers and others.
 MOTION = ("velocity", "spin", "force", "position")
 NUMBERS = ("friction_coefficient", "gap", "restitution")
@@ -44,13 +42,16 @@ def read_gathering(document: Mapping[str, object], varied: Mapping[str, Numbers]
                     remedy="write [[touches]]")  # fmt: skip
     bodies: dict[str, Body] = {}
     walls: dict[str, HalfSpace] = {}
+    shaped: dict[str, list[dict[str, Any]]] = {}
     for name, content in tables.items():
-        made = _body(content, f"bodies.{name}")
+        made, contacts = _body(content, f"bodies.{name}")
         if isinstance(made, HalfSpace):
             walls[name] = made
         else:
-            bodies[name] = made
-    touches = [_touch(each, f"touches.{k}", walls) for k, each in enumerate(given)]
+            bodies[name], shaped[name] = made, contacts
+    touches: list[Touch] = []
+    for k, each in enumerate(given):
+        touches += _touches(each, f"touches.{k}", walls, shaped)
     for name, values in varied.items():
         _vary(name, values, bodies, touches)
     return Gathering(bodies, touches)
@@ -68,26 +69,43 @@ def swept_path(name: str, *, where: str = "") -> str:
     raise ValueError(f"{where}{name}: {rule}; known: bodies.NAME.{SPEED}, {known}")
 
 
-def _body(content: object, path: str) -> Body | HalfSpace:
-    """Return a body that moves, or a half-space."""
-    kind = content.get("kind", "sphere") if isinstance(content, Mapping) else "sphere"
+def _body(content: object, path: str) -> tuple[Body | HalfSpace, list[dict[str, Any]]]:
+    """Return a body that moves, or a half-space, and the contacts that its shape has."""
+    content = _with_material(content, path)
+    given: Mapping[str, Any] = content if isinstance(content, Mapping) else {}
+    kind = given.get("kind", "body" if "shape" in given else "sphere")
     if not (isinstance(kind, str) and kind in KINDS):
         raise refuse(f"{path}.kind", kind, f"must be one of {', '.join(map(repr, KINDS))}")
-    moving = () if kind == "half-space" else MOTION
-    table = Table(_with_material(content, path), path, known=(*KINDS[kind], *moving))
     if kind == "half-space":
-        return HalfSpace(read_material(table))
-    shape: Sphere | RigidBody
+        return HalfSpace(read_material(Table(content, path, known=("kind", "material")))), []
+    shape: Any
+    contacts: list[dict[str, Any]] = []
     if kind == "sphere":
-        present = [key for key in ("radius", "mass", "gyration_ratio") if table.has(key)]
-        numbers = {key: table.number(key, remedy=unit_remedy(UNITS[key])) for key in present}
-        table.require("radius", "in m")
-        shape = table.make(Sphere, material=read_material(table), **numbers)
+        shape = read_sphere(Table(content, path, known=("kind", *SPHERE_KEYS, *MOTION)))
+    elif "shape" in given:
+        shape, contacts = _shaped(content, given, path)
     else:
-        numbers = {key: table.content[key] for key in RIGID_KEYS[:-1] if table.has(key)}
-        shape = table.make(RigidBody, material=read_material(table), **numbers)
-    vectors = {key: table.content[key] for key in MOTION if table.has(key)}
-    return table.make(Body, shape=shape, **vectors)
+        shape, _ = rigid_body(content, path, np.zeros(3), read_material, beside=MOTION)
+    table = Table(content, path, known=given)
+    vectors = {key: given[key] for key in MOTION if key in given}
+    return table.make(Body, shape=shape, **vectors), contacts
+
+
+def _shaped(
+    content: object, given: Mapping[str, Any], path: str
+) -> tuple[RigidBody, list[dict[str, Any]]]:
+    """Return the body of a shape, and normal, contact and gap of each of its contacts."""
+    for key, what in (("normal", "into what it lands on"), ("axis", "the direction of the rod")):
+        if key not in given and (key == "normal" or given["shape"] == "flat_rod"):
+            raise ValueError(f"{path}.{key}: is missing; {what}, such as {key} = [x, y, z]")
+    normal = np.asarray(real(f"{path}.normal", given["normal"]))
+    beside = ("normal", *MOTION)
+    body, contact, *gap = rigid_body(
+        content, path, normal, read_material, further=FLAT, beside=beside
+    )
+    gaps = np.ravel(gap[0]) if gap else np.zeros(1)
+    pairs = zip(np.reshape(contact, (-1, 3)), gaps.tolist(), strict=True)
+    return body, [{"normal": normal, "contact": each, "gap": off} for each, off in pairs]
 
 
 def _with_material(content: object, path: str) -> object:
@@ -101,17 +119,31 @@ def _with_material(content: object, path: str) -> object:
         raise ValueError(f"{path}.{error}") from error
 
 
-def _touch(content: object, path: str, walls: Mapping[str, HalfSpace]) -> Touch:
-    """Return a contact; the name of a half-space stands for it."""
+def _touches(
+    content: object,
+    path: str,
+    walls: Mapping[str, HalfSpace],
+    shaped: Mapping[str, list[dict[str, Any]]],
+) -> list[Touch]:
+    """Return a contact, or those that the shape of its first body has where it gives no normal.
+
+    The name of a half-space stands for it.
+    """
     table = Table(content, path, known=(*OTHERS, *NUMBERS))
-    for key in ("first", "second", "friction_coefficient", "normal"):
+    needed = ["first", "second", "friction_coefficient"]
+    first = table.content.get("first")
+    own = shaped.get(first, []) if isinstance(first, str) and not table.has("normal") else []
+    for key in needed if own else [*needed, "normal"]:
         table.require(key, "a contact needs first, second, friction_coefficient and normal")
     entries: dict[str, Any] = {key: table.content[key] for key in OTHERS if table.has(key)}
     present = [key for key in NUMBERS if table.has(key)]
     entries |= {key: table.number(key, remedy="one number") for key in present}
     if isinstance(entries["second"], str) and entries["second"] in walls:
         entries["second"] = walls[entries["second"]]
-    return table.make(Touch, **entries)
+    for key in ("contact", "gap"):
+        if own and key in entries:
+            raise ValueError(f"{table.at(key)}: follows from the shape; leave it out")
+    return [table.make(Touch, **entries, **each) for each in own or [{}]]
 
 
 def _vary(name: str, values: Numbers, bodies: dict[str, Body], touches: list[Touch]) -> None:

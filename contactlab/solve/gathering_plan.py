@@ -11,6 +11,7 @@ import numpy as np
 
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
+from contactlab.impact.body_contact import spin_about
 from contactlab.impact.gathering import Gathering
 from contactlab.numeric.types import Array, Mask
 from contactlab.outcome.motion import Motion
@@ -289,11 +290,8 @@ class _Words:
     def _turning(self) -> Iterator[Clause]:
         """Yield the caution of spin about a normal, whose friction the springs leave out."""
         for k, encounter in enumerate(self.gathering.assembly.met):
-            normal = np.stack(
-                [np.broadcast_to(n, self.scene.shape[:1]) for n in encounter.unit_normal()]
-            )
-            spin = (encounter.spin - encounter.target_spin) * normal.T
-            about = np.abs(spin.sum(axis=-1)) * np.asarray(self.scene.pair.radius)[:, k]
+            spin = spin_about(encounter, encounter.unit_normal())
+            about = np.abs(spin) * np.asarray(self.scene.pair.radius)[:, k]
             turns = about > TURNING * self.speed
             if turns.any():
                 text = (
