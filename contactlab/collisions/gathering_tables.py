@@ -35,8 +35,7 @@ def contacts_table(hit: GatheringResult) -> Rows:
     """Return headings and one row for each contact of each gathering."""
     columns = _components(hit, VECTORS_OF_CONTACTS)
     for name, unit in OF_CONTACTS:
-        heading = name if unit == "1" else f"{name}_{_plain(unit)}"
-        columns[heading] = getattr(hit, name)
+        columns[_heading(name, unit)] = getattr(hit, name)
     touches = [f"touches[{k}]" for k in range(len(hit.gathering.touches))]
     return _rows(hit, "contact", touches, columns)
 
@@ -44,15 +43,15 @@ def contacts_table(hit: GatheringResult) -> Rows:
 def _components(hit: GatheringResult, vectors: Iterable[tuple[str, str]]) -> dict[str, Array]:
     """Return the components of vectors, of names and units, by heading."""
     return {
-        f"{name}_{axis}_{_plain(unit)}": getattr(hit, name)[..., k]
+        _heading(f"{name}_{axis}", unit): getattr(hit, name)[..., k]
         for name, unit in vectors
         for k, axis in enumerate(AXES)
     }
 
 
-def _plain(unit: str) -> str:
-    """Return a unit as part of a heading."""
-    return unit.replace("/", "_per_").replace(" ", "_")
+def _heading(name: str, unit: str) -> str:
+    """Return the heading of a column, as results of one contact have it."""
+    return f"{name} ({unit})"
 
 
 def _rows(hit: GatheringResult, what: str, names: list[str], columns: dict[str, Array]) -> Rows:
@@ -73,8 +72,9 @@ def to_dict(hit: GatheringResult) -> dict[str, Any]:
     """Return a result with rows of bodies and contacts as plain numbers, lists and text."""
     tables = (("bodies", bodies_table(hit)), ("contacts", contacts_table(hit)))
     told: dict[str, Any] = {
-        name: [dict(zip(headings, map(json_value, row), strict=True)) for row in rows]
+        name: [dict(zip(keys, map(json_value, row), strict=True)) for row in rows]
         for name, (headings, rows) in tables
+        for keys in ([each.split(" ")[0] for each in headings],)
     }
     return told | {
         "energy": hit.energy.to_dict(),
@@ -109,7 +109,7 @@ def write_history_csv(hit: GatheringResult, path: str | Path) -> None:
     """Write one row for each instant and contact."""
     history: Any = hit.history
     columns = history.columns()
-    headings = ["contact", *(f"{name}_{_plain(history.unit(name))}" for name in columns)]
+    headings = ["contact", *(_heading(name, history.unit(name)) for name in columns)]
     count = len(hit.gathering.touches)
     rows = [
         [f"touches[{k}]", *(float(column[instant, k]) for column in columns.values())]

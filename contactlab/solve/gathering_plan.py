@@ -179,7 +179,8 @@ class _Words:
         if not isinstance(e, np.ndarray):
             return in_words(self.laws.normal)
         low, high = e.min(), e.max()
-        return f"{name_of(self.laws.normal)}, each contact with its e, {low:g} to {high:g}"
+        told = f"{low:g}" if low == high else f"{low:g} to {high:g}"
+        return f"{name_of(self.laws.normal)}, e of each contact {told}"
 
     def _ratio(self) -> Array:
         """Return the longest contact time over the shortest, of each gathering."""

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -78,11 +79,11 @@ def test_a_run_prints_a_row_for_each_body_and_contact(scene, capsys, tmp_path):
     rows = list(csv.DictReader(out.read_text().splitlines()))
     assert [row["body"] for row in rows] == ["first", "second", ""]
     assert [row["contact"] for row in rows] == ["", "", "touches[0]"]
-    assert float(rows[1]["velocity_x_m_per_s"]) == pytest.approx(1.0, abs=1e-6)
-    assert float(rows[2]["impulse_x_N_s"]) < 0.0
+    assert float(rows[1]["velocity_x (m/s)"]) == pytest.approx(1.0, abs=1e-6)
+    assert float(rows[2]["impulse_x (N s)"]) < 0.0
     course = list(csv.DictReader(history.read_text().splitlines()))
-    forces = [float(row["normal_force_N"]) for row in course]
-    assert max(forces) == pytest.approx(float(rows[2]["maximum_force_N"]))
+    forces = [float(row["normal_force (N)"]) for row in course]
+    assert max(forces) == pytest.approx(float(rows[2]["maximum_force (N)"]))
     assert figure.stat().st_size > 1000
 
 
@@ -104,8 +105,61 @@ def test_a_sweep_varies_speeds_and_gaps(scene, capsys, tmp_path):
     assert status == 0
     assert "gathering" in told
     rows = json.loads(out.read_text())["bodies"]
-    speeds = [row["velocity_x_m_per_s"] for row in rows if row["body"] == "second"]
+    speeds = [row["velocity_x"] for row in rows if row["body"] == "second"]
     np.testing.assert_allclose(speeds, [0.5, 1.0, 2.0], rtol=1e-4)
+
+
+FLAT = """
+[bodies.box]
+shape = "flat_box"
+sides = [0.1, 0.1, 0.04]
+corner_radius = 0.003
+reach = 1e-4
+tilt_deg = 0.005
+normal = [0, 0, -1]
+material = "steel"
+velocity = [0, 0, -1]
+
+[bodies.floor]
+kind = "half-space"
+material = "steel"
+
+[[touches]]
+first = "box"
+second = "floor"
+friction_coefficient = 0.3
+restitution = 0.8
+"""
+
+
+def test_a_shape_that_lands_flat_has_its_contacts(scene):
+    given = read_scene(scene(FLAT)).gathering
+    assert len(given.touches) == 4
+    gaps = [each.gap for each in given.touches]
+    lever = 0.094 * np.sin(np.radians(0.005))
+    np.testing.assert_allclose(gaps, [0.0, 0.0, lever, lever], atol=1e-12)
+    assert {each.restitution for each in given.touches} == {0.8}
+    np.testing.assert_allclose([each.contact[2] for each in given.touches], -0.02, atol=1e-5)
+    rod = FLAT.replace("flat_box", "flat_rod").replace("sides = [0.1, 0.1, 0.04]", "length = 0.2")
+    rod = rod.replace("corner_radius = 0.003", "radius = 0.01\naxis = [1, 0, 0]")
+    assert len(read_scene(scene(rod)).gathering.touches) == 2
+    tipped = FLAT.replace('"flat_box"', '"box"').replace("reach = 1e-4\n", "")
+    tipped = tipped.replace("tilt_deg = 0.005", "tilt_deg = 20\ncrown_radius = 1.0")
+    assert len(read_scene(scene(tipped)).gathering.touches) == 1
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "word"),
+    [
+        ("normal = [0, 0, -1]\n", "", "bodies.box.normal: is missing"),
+        ("reach = 1e-4\n", "", "bodies.box.reach: is missing"),
+        ('"flat_box"', '"cube"', "flat_box, flat_rod"),
+        ("friction", "gap = 1e-6\nfriction", "touches.0.gap: follows from the shape"),
+    ],
+)
+def test_a_shape_refuses_what_it_cannot_be(scene, before, after, word):
+    with pytest.raises(ValueError, match=re.escape(word)):
+        read_scene(scene(FLAT.replace(before, after, 1)))
 
 
 #: What is written in place of what, and a word of the refusal.
