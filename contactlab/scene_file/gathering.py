@@ -42,7 +42,7 @@ def read_gathering(document: Mapping[str, object], varied: Mapping[str, Numbers]
                     remedy="write [[touches]]")  # fmt: skip
     bodies: dict[str, Body] = {}
     walls: dict[str, HalfSpace] = {}
-    shaped: dict[str, list[dict[str, Any]]] = {}
+    shaped: dict[str, list[dict[str, object]]] = {}
     for name, content in tables.items():
         made, contacts = _body(content, f"bodies.{name}")
         if isinstance(made, HalfSpace):
@@ -69,7 +69,7 @@ def swept_path(name: str, *, where: str = "") -> str:
     raise ValueError(f"{where}{name}: {rule}; known: bodies.NAME.{SPEED}, {known}")
 
 
-def _body(content: object, path: str) -> tuple[Body | HalfSpace, list[dict[str, Any]]]:
+def _body(content: object, path: str) -> tuple[Body | HalfSpace, list[dict[str, object]]]:
     """Return a body that moves, or a half-space, and the contacts that its shape has."""
     content = _with_material(content, path)
     given: Mapping[str, Any] = content if isinstance(content, Mapping) else {}
@@ -79,7 +79,7 @@ def _body(content: object, path: str) -> tuple[Body | HalfSpace, list[dict[str, 
     if kind == "half-space":
         return HalfSpace(read_material(Table(content, path, known=("kind", "material")))), []
     shape: Any
-    contacts: list[dict[str, Any]] = []
+    contacts: list[dict[str, object]] = []
     if kind == "sphere":
         shape = read_sphere(Table(content, path, known=("kind", *SPHERE_KEYS, *MOTION)))
     elif "shape" in given:
@@ -92,8 +92,8 @@ def _body(content: object, path: str) -> tuple[Body | HalfSpace, list[dict[str, 
 
 
 def _shaped(
-    content: object, given: Mapping[str, Any], path: str
-) -> tuple[RigidBody, list[dict[str, Any]]]:
+    content: object, given: Mapping[str, object], path: str
+) -> tuple[RigidBody, list[dict[str, object]]]:
     """Return the body of a shape, and normal, contact and gap of each of its contacts."""
     for key, what in (("normal", "into what it lands on"), ("axis", "the direction of the rod")):
         if key not in given and (key == "normal" or given["shape"] == "flat_rod"):
@@ -123,7 +123,7 @@ def _touches(
     content: object,
     path: str,
     walls: Mapping[str, HalfSpace],
-    shaped: Mapping[str, list[dict[str, Any]]],
+    shaped: Mapping[str, list[dict[str, object]]],
 ) -> list[Touch]:
     """Return a contact, or those that the shape of its first body has where it gives no normal.
 

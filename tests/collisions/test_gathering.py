@@ -4,6 +4,9 @@ Velocities are in m/s and of impacts at v1 = 1 m/s. Where no source is named, th
 DOP853 at 1e-13, or of an independent program for springs, extrapolated.
 """
 
+import re
+from importlib.resources import files
+
 import numpy as np
 import pytest
 
@@ -117,6 +120,29 @@ def test_a_stiff_cloth_is_nearly_that_of_rigid_theory():
     hit = collide(cushion(ratio=1000.0, e=(0.98, 0.1)))
     np.testing.assert_allclose(hit.velocity[0], [0.7323, -0.9562, 0.0049], atol=2e-3)
     np.testing.assert_allclose(hit.spin[0], [-8.7, 27.9, 23.4], atol=0.05)
+
+
+@pytest.mark.slow
+def test_the_table_of_the_guide_is_what_a_cushion_does():
+    page = files("contactlab") / "guide" / "several-contacts.md"
+    rows = re.findall(
+        r"^\| (\d+) ((?:\| [\d.]+, [\d.]+ )+)\|$", page.read_text("utf-8"), re.MULTILINE
+    )
+    gaps = np.array([0.0, 1e-5, 1e-4, 1e-3])
+    ball = Sphere(0.0286, Material(young_modulus=5e9, poisson_ratio=0.34, density=1700.0))
+    moves = {"velocity": [1, 1, 0], "spin": np.array([-1, 1, 0]) / ball.radius}
+    rubber = HalfSpace(Material(young_modulus=5e6, poisson_ratio=0.48))
+    assert len(rows) == 3
+    for ratio, told in rows:
+        modulus = 5e6 / (1.0 - 0.48**2) * float(ratio) * (1.0 - 0.4**2)
+        cloth = HalfSpace(Material(young_modulus=modulus, poisson_ratio=0.4))
+        touches = [
+            Touch(0, rubber, 0.14, normal=[0, 0.9165, 0.4], restitution=0.9),
+            Touch(0, cloth, 0.2, normal=[0, 0, -1], restitution=0.5, gap=gaps),
+        ]
+        hit = collide(Gathering([Body(ball, **moves)], touches))
+        numbers = np.reshape(re.findall(r"[\d.]+", told), (-1, 2)).astype(float)
+        np.testing.assert_allclose(hit.velocity[:, 0, 1:] * [-1, 1], numbers, atol=6e-4)
 
 
 @pytest.mark.slow
