@@ -152,9 +152,10 @@ def _shape(item: Any) -> str:
     tilted = np.array([[0.8, 0.0, 0.6], [0.0, 1.0, 0.0], [-0.6, 0.0, 0.8]])
     upright = tilted[:, 2] if item.oriented == "axis" else tilted
     steel = Material.named("steel")
-    body, contact = item.make(
+    made: tuple[Any, ...] = item.make(
         **item.example, material=steel, normal=NORMAL, **{item.oriented: upright}
     )
+    body, contact = made[0], made[1]
     if not isinstance(body, RigidBody):
         return f"makes {type(body).__name__}, no RigidBody"
     return "" if float(np.dot(contact, NORMAL)) > 0.0 else "has its contact on the wrong side"

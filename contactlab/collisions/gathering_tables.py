@@ -3,69 +3,39 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from contactlab.collisions.gathered import (
-    OF_CONTACTS,
-    VECTORS_OF_BODIES,
-    VECTORS_OF_CONTACTS,
-    GatheringResult,
-)
-from contactlab.numeric.types import Array
-from contactlab.outcome.columns import json_value
+from contactlab.collisions.gathered import GatheringResult
+from contactlab.outcome.columns import csv_heading, json_value
 from contactlab.outcome.files import write_table, written
 
-#: Axes of vectors, and the entries of a batch that stand in its first columns.
-AXES = ("x", "y", "z")
 #: Headings and rows.
 Rows = tuple[list[str], list[list[Any]]]
 
 
 def bodies_table(hit: GatheringResult) -> Rows:
     """Return headings and one row for each body of each gathering."""
-    names = [*hit.gathering.names] or [str(k) for k in range(len(hit.gathering.bodies))]
-    return _rows(hit, "body", names, _components(hit, VECTORS_OF_BODIES))
+    return _rows(hit, "bodies")
 
 
 def contacts_table(hit: GatheringResult) -> Rows:
     """Return headings and one row for each contact of each gathering."""
-    columns = _components(hit, VECTORS_OF_CONTACTS)
-    for name, unit in OF_CONTACTS:
-        columns[_heading(name, unit)] = getattr(hit, name)
-    touches = [f"touches[{k}]" for k in range(len(hit.gathering.touches))]
-    return _rows(hit, "contact", touches, columns)
+    return _rows(hit, "contacts")
 
 
-def _components(hit: GatheringResult, vectors: Iterable[tuple[str, str]]) -> dict[str, Array]:
-    """Return the components of vectors, of names and units, by heading."""
-    return {
-        _heading(f"{name}_{axis}", unit): getattr(hit, name)[..., k]
-        for name, unit in vectors
-        for k, axis in enumerate(AXES)
-    }
-
-
-def _heading(name: str, unit: str) -> str:
-    """Return the heading of a column, as results of one contact have it."""
-    return f"{name} ({unit})"
-
-
-def _rows(hit: GatheringResult, what: str, names: list[str], columns: dict[str, Array]) -> Rows:
-    """Return headings and rows; of a batch each begins with the place of its gathering."""
-    shape = hit.gathering.shape
-    status: Any = np.broadcast_to(np.asarray(hit.status, dtype=object), shape)
-    first = ["gathering"] if shape else []
-    rows: list[list[Any]] = []
-    for number, index in enumerate(np.ndindex(shape)):
-        for k, name in enumerate(names):
-            numbers = [float(column[(*index, k)]) for column in columns.values()]
-            place = [number] if shape else []
-            rows.append([*place, name, *numbers, status[index].name])
-    return [*first, what, *columns, "status"], rows
+def _rows(hit: GatheringResult, rows: str) -> Rows:
+    """Return headings with units, and rows; of a batch each begins with the place of its batch."""
+    sheet = hit._sheet(rows)
+    places = np.indices(sheet.shape)
+    axes = zip(sheet.axes.items(), places, strict=True)
+    columns = {name: place if each is None else each[place] for (name, each), place in axes}
+    columns |= {name: np.broadcast_to(each, sheet.shape) for name, each in sheet.columns.items()}
+    headings = [csv_heading(name, sheet.units.get(name, ""), hit._scene) for name in columns]
+    each = (column.ravel().tolist() for column in columns.values())
+    return headings, [list(row) for row in zip(*each, strict=True)]
 
 
 def to_dict(hit: GatheringResult) -> dict[str, Any]:
@@ -109,7 +79,7 @@ def write_history_csv(hit: GatheringResult, path: str | Path) -> None:
     """Write one row for each instant and contact."""
     history: Any = hit.history
     columns = history.columns()
-    headings = ["contact", *(_heading(name, history.unit(name)) for name in columns)]
+    headings = ["contact", *(csv_heading(name, history.unit(name), hit._scene) for name in columns)]
     count = len(hit.gathering.touches)
     rows = [
         [f"touches[{k}]", *(float(column[instant, k]) for column in columns.values())]

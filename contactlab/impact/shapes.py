@@ -637,7 +637,7 @@ class Shape:
     """
 
     name: str
-    make: Callable[..., tuple[Any, ...]]
+    make: Callable[..., tuple[RigidBody, *tuple[Array, ...]]]
     needed: tuple[str, ...]
     further: tuple[str, ...] = ()
     oriented: str = "axes"

@@ -6,13 +6,12 @@ from collections.abc import Callable
 
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.taken import Taken
-from contactlab.numeric.types import Either
 
 #: What a law offers that loses energy, and what it offers if a restitution gives the loss.
 OF_LOSS = frozenset({"viscous", "similar"})
 
 
-def waived_of_loss(restitution: Either, loses: bool) -> frozenset[str]:
+def waived_of_loss(restitution: object, loses: bool) -> frozenset[str]:
     """Return the words of ``OF_LOSS`` that do not hold."""
     words = ("viscous", loses), ("similar", isinstance(restitution, float))
     return frozenset(word for word, holds in words if not holds)
