@@ -177,7 +177,7 @@ def _gathered(
     if simulation is not None:
         of_kind("simulation", simulation, Simulation, remedy="or leave it out", meant=INSTEAD)
     if not (isinstance(restitution, float) and restitution == 1.0):
-        remedy = "give it to each contact: Touch(..., restitution={e})"
+        remedy = "give it to each contact: Touch(..., restitution=...)"
         raise refuse("restitution", restitution, "belongs to each contact of a gathering", remedy)
     if separating != "refuse":
         rule = "belongs to encounters: contacts of a gathering may separate"

@@ -166,7 +166,9 @@ class Gathering:
         names the contact.
     """
 
-    bodies: tuple[Body, ...]
+    #: As it was given, which attrs.evolve passes on.
+    _given: Any = attrs.field(alias="bodies", repr=False)
+    bodies: tuple[Body, ...] = attrs.field(init=False)
     touches: tuple[Touch, ...]
     names: tuple[str, ...] = attrs.field(init=False)
     places: tuple[tuple[int, int | None], ...] = attrs.field(init=False, repr=False)
@@ -177,8 +179,10 @@ class Gathering:
     ) -> None: ...
 
     def __attrs_post_init__(self) -> None:
-        bodies: Any = self.bodies
+        bodies: Any = self._given
         names = tuple(bodies) if isinstance(bodies, Mapping) else ()
+        for name in names:
+            of_kind("bodies: name", name, str, remedy="give bodies by place as a list")
         bodies = tuple(bodies.values()) if names else _listed("bodies", bodies)
         touches = _listed("touches", self.touches)
         for name, each in zip(names or range(len(bodies)), bodies, strict=True):
@@ -203,7 +207,10 @@ class Gathering:
             if side == "second":
                 return None
             rule = "must be a body that moves, not a half-space"
-            raise refuse(argument, named, rule, "turn the normal, and name the half-space second")
+            remedy = "turn the normal, and name the half-space second"
+            if isinstance(self.touches[contact].second, HalfSpace):
+                remedy = "two half-spaces do not meet: name a body"
+            raise refuse(argument, named, rule, remedy)
         if isinstance(named, str) and named in self.names:
             return self.names.index(named)
         number = isinstance(named, int | np.integer) and not isinstance(named, bool)

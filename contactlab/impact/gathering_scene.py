@@ -151,9 +151,13 @@ class Assembly:
         least = RESTS * np.abs(velocity).max(axis=(-1, -2))[..., None]
         if (slow := ~(fast > least)).any():
             where = np.argwhere(slow[:, 0].reshape(self.gathering.shape))
-            rule = f"nothing approaches{first_of(where)}: the largest rate of approach is in m/s"
+            least = velocity[np.flatnonzero(slow)[0], :, 0]
+            k = int(least.argmax())
+            rule = (
+                f"nothing approaches{first_of(where)}: its rate of approach in m/s is the largest"
+            )
             remedy = "give velocities by which at least one contact closes, or turn its normal"
-            raise refuse("touches", float(fast[slow][0]), rule, remedy)
+            raise refuse(f"touches[{k}]", float(least[k]), rule, remedy)
         return np.asarray(fast)
 
     def _numbers(self) -> dict[str, Array]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import attrs
 import numpy as np
 
@@ -93,10 +91,7 @@ def _with_gaps(gathering: Gathering, laws: Laws | None, wider: Array) -> Array:
     for touch, more in zip(gathering.touches, rows, strict=True):
         gap = touch.gap + (0.0 if touch.loaded else 1.0) * more
         touches.append(attrs.evolve(touch, gap=gap))
-    bodies: Any = gathering.bodies
-    if gathering.names:
-        bodies = dict(zip(gathering.names, bodies, strict=True))
-    wide = Gathering(bodies, touches)
+    wide = attrs.evolve(gathering, touches=touches)
     with np.errstate(under="ignore"):
         _, motion = way_of(wide, laws).outcome(False, None)
     return bodies_after(wide, motion)[0]
@@ -123,7 +118,8 @@ def _bound(gathering: Gathering, laws: Laws) -> tuple[Laws, Scene]:
     """Return laws, and the scene with the options of each contact; refuse those of materials."""
     reads = any(each.material for law in laws for each in options_read(type(law)))
     for k, met in enumerate(gathering.assembly.met if reads else ()):
-        if met.body.material.properties or met.target.material.properties:
-            rule = "has properties of materials, which are those of one contact"
-            raise refuse(f"touches[{k}]", met, rule, "give the options to the laws")
+        if told := {**met.body.material.properties, **met.target.material.properties}:
+            rule = "are read for one contact, and laws of a gathering read none"
+            remedy = "give the options to the laws"
+            raise refuse(f"touches[{k}]: properties of materials", told, rule, remedy)
     return bound(laws, gathering.scene)

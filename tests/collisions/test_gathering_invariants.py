@@ -351,6 +351,14 @@ def test_a_weight_that_nothing_carries_is_told():
     assert any("g T/v1 = 0.056" in text for text in hit.cautions)
 
 
+def test_spin_about_a_normal_is_told_of_its_contact():
+    given = row(3)
+    turning = attrs.evolve(given.bodies[2], spin=[50.0, 0.0, 0.0])
+    given = Gathering([*given.bodies[:2], turning], given.touches)
+    (told,) = [str(each) for each in laws(12, 50).plan(given).cautions if "spin" in str(each)]
+    assert "spin about the normal of touches[1]" in told
+
+
 def test_contacts_that_are_near_are_told():
     hit = collide(cushion(), laws(12, 50))
     assert any("feel one another through the body" in text for text in hit.cautions)

@@ -12,6 +12,7 @@ from contactlab import (
     Gathering,
     NormalContact,
     NormalLaw,
+    RigidBody,
     Simulation,
     Sphere,
     Touch,
@@ -181,6 +182,30 @@ def test_every_normal_law_runs(name):
     if hit.status is Status.SUCCESS:
         np.testing.assert_allclose(hit.velocity.sum(axis=0), [1, 0, 0], atol=1e-14)
         assert hit.energy.end <= hit.energy.start * (1.0 + 1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", ["springs", "linear_spring", "mindlin_cap"])
+@pytest.mark.parametrize("name", [each for each in REGISTRY.names("normal") if ":" not in each])
+def test_one_contact_is_its_encounter_under_every_law(name, friction):
+    steps = create("integrator.symplectic", steps=60)
+    simulation = Simulation(normal=name, tangential=friction, integrator=steps)
+    turn, _ = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))
+    body = RigidBody(
+        mass=1.0, principal=[1e-3, 1.2e-3, 8e-4], axes=turn, material=STEEL, curvature_radius=0.02
+    )
+    ball, arm = Sphere(0.03, STEEL), [0.01, 0.02, -0.015]
+    moves = {"velocity": [3.0, 0.3, -0.1], "spin": [0.0, 6.0, 4.0]}
+    touch = Touch(0, 1, 0.2, normal=[1, 0, 0], contact=arm)
+    hit = collide(Gathering([Body(body, **moves), Body(ball)], [touch]), simulation)
+    alone = collide(
+        Encounter(body, ball, 0.2, normal=[1, 0, 0], contact=arm, **moves), simulation
+    ).check()
+    np.testing.assert_allclose(hit.velocity[0], alone.velocity, atol=3e-13)
+    np.testing.assert_allclose(0.03 * hit.spin[1], 0.03 * alone.target_spin, atol=3e-13)
+    for entry in ("friction_work", "normal_loss", "shear_loss"):
+        one, other = getattr(hit.energy, entry), getattr(alone.energy, entry)
+        assert one == pytest.approx(other, abs=1e-12)
 
 
 def test_restitutions_of_contacts_are_those_of_a_law_that_has_one_for_each():

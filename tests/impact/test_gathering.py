@@ -2,6 +2,7 @@
 
 import re
 
+import attrs
 import numpy as np
 import pytest
 
@@ -88,6 +89,9 @@ REFUSED = {
                     bodies=(Body(BALL, velocity=np.ones((2, 3))), RESTS)),
         "broadcast",
     ),
+    "a number as a name": (
+        lambda: Gathering({1: MOVES, 0: RESTS}, [Touch(1, 0, 0.1, normal=X)]), "bodies: name",
+    ),
     "no bodies": (lambda: Gathering([], [Touch(0, WALL, 0.1, normal=X)]), "bodies"),
     "no contacts": (lambda: Gathering([MOVES], []), "touches"),
     "one contact": (lambda: Gathering([MOVES], Touch(0, WALL, 0.1, normal=X)), "touches"),
@@ -150,16 +154,30 @@ REFUSED = {
         lambda: collide(two(Touch(0, 1, 0.1, normal=X), bodies=(Body(RELAXING, velocity=X), RESTS)),
                         Simulation(normal="viscoelastic", tangential="springs",
                                    integrator="symplectic")),
-        "of materials",
+        "properties of materials",
     ),
 }  # fmt: skip
+
+
+#: Refusals that have the number of a touch.
+OF_A_TOUCH = (
+    "bodies part", "rounding", "no place", "no name", "itself", "two half-spaces", "twice",
+    "against positions", "unlike topology", "loaded without force", "force that lifts",
+    "loaded and open", "two loads of a body", "velocity of a body as a wall",
+    "restitution beside laws", "a property of a material", "a contact of a sphere",
+    "a normal of length zero",
+)  # fmt: skip
 
 
 @pytest.mark.parametrize("case", REFUSED)
 def test_a_refusal_names_what_to_do(case):
     make, word = REFUSED[case]
-    with pytest.raises(ValueError, match=re.escape(word)):
+    with pytest.raises(ValueError, match=re.escape(word)) as refused:
         make()
+    sentence = str(refused.value)
+    assert re.fullmatch(r"[^\n]+: [^\n]+; [^\n]+", sentence)  # argument, rule, remedy
+    if case in OF_A_TOUCH:
+        assert re.match(r"touches\[\d\]", sentence)
 
 
 def test_a_batch_names_the_first_gathering_in_which_nothing_approaches():
@@ -182,6 +200,7 @@ def test_names_and_places_mean_the_same():
     named = Gathering({"a": MOVES, "b": RESTS}, [Touch("a", "b", 0.1, normal=X)])
     assert named.places == two(Touch(0, 1, 0.1, normal=X)).places == ((0, 1),)
     assert named.names == ("a", "b")
+    assert attrs.evolve(named, touches=named.touches).names == named.names
     hit = collide(named)
     assert hit["b"].velocity.tobytes() == hit.velocity[1].tobytes()
     with pytest.raises(ValueError, match="'a', 'b'"):
