@@ -186,7 +186,7 @@ def inverse_mass_of(bodies: Sequence[Side], axes: Sequence[Vector]) -> list[list
 
 
 def add_coupling(
-    inverse: list[list[Any]],
+    inverse: list[list[Real]],
     one: tuple[Side, Sequence[Vector]],
     other: tuple[Side, Sequence[Vector]],
 ) -> None:

@@ -182,7 +182,7 @@ class Assembly:
         }
         for reaches in self.reaches:
             for one, other in combinations(sorted(reaches), 2):
-                rows = [[0.0] * 3 for _ in range(3)]
+                rows: list[list[Real]] = [[0.0] * 3 for _ in range(3)]
                 pair = ((reaches[k], self.frames[k].axes) for k in (one, other))
                 add_coupling(rows, *pair)
                 block = join_components(rows, (self.count,))
