@@ -45,7 +45,7 @@ from contactlab_fit.parameters import (
     find_parameter,
     those_of,
 )
-from contactlab_fit.plausible import restitutions, unlikely_parameters
+from contactlab_fit.plausible import restitutions, trend_of_restitution, unlikely_parameters
 from contactlab_fit.problem import Problem, fewer, solve_problem
 from contactlab_fit.slips import SOME_LOSS, slips, state_assumptions
 from contactlab_fit.taken import taken
@@ -179,6 +179,7 @@ def _fit(
         if not causes:
             raise
         raise ValueError(f"{'. '.join(causes)}. As it is, {error}") from None
+    trend = () if slipped or diagnosis.slips else trend_of_restitution(every, values)
     notes = (*left_out, *slipped, *of_restitution, *outcome.notes)
     warned = (
         *cautions(problem, values, of_any_friction=unknown),
@@ -187,7 +188,7 @@ def _fit(
     aic = every.criterion(values)  # over all numbers, so that laws that leave some out compare
     outcome = attrs.evolve(
         outcome,
-        notes=(*said, *notes),
+        notes=(*said, *notes, *trend),
         cautions=warned,
         aic=aic,
         taken=taken(table, scene, problem.model),

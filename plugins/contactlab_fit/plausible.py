@@ -32,6 +32,13 @@ RADIANS = 1.58
 BOUNDS, SHARE = {"normal_restitution": (-0.1, 1.1), "beta0": (-1.1, 1.1)}, 1 / 3
 #: A mean restitution lies above or below 1 if scatter makes that with less than this chance.
 DOUBT = 0.01
+#: Quantities that tell the normal restitution, least impacts and range of a column whose line is
+#: looked at, and least change of the restitution that is told.
+OF_NORMAL = "normal_restitution", "rebound_normal_velocity"
+FEWEST, VARIES, LEAST_TREND = 4, 0.1, 0.005
+#: Ends of a table of the speed that is told, over those measured: a tilt that is looked for makes
+#: impacts slower or faster.
+BEYOND = 0.8, 1.2
 #: Additional bounds without spin before the impact.
 WITHOUT_SPIN = {"tangential_restitution": (-0.1, 1.1)}
 
@@ -110,6 +117,53 @@ def restitutions(problem: Problem, table: Measurements) -> list[str]:
             + tabulated.fit_restitution(scene, [p.name for p in problem.model.parameters])
         ]
     return []
+
+
+def trend_of_restitution(problem: Problem, values: Array) -> list[str]:
+    """Return a sentence if the normal restitution follows the speed or angle, and what takes it.
+
+    It is the line through the residuals that chance makes least.
+    """
+    from scipy.special import stdtr  # only a fit needs scipy
+
+    scene = problem.model.setup.scene
+    residuals = problem.residuals(values[None])
+    names = [name for name in OF_NORMAL if name in residuals]
+    if scene.inverse_mass is not None or scene.sphere is None or not names:
+        return []
+    (name, *_), speed = names, np.broadcast_to(scene.normal_speed, scene.shape)
+    scale = 1.0 if name == OF_NORMAL[0] else -speed
+    angle: Any = np.degrees(np.arctan2(np.abs(scene.tangential_velocity), speed))
+    rows = np.isfinite(residuals[name][0])
+    off, e = ((part / scale)[rows] for part in (residuals[name][0], problem.measured[name]))
+    found: list[tuple[float, str, Array]] = []
+    if rows.sum() < FEWEST or np.ptp(off) < LEAST_TREND:
+        return []
+    for column, x in (("the normal speed", speed[rows]), ("the angle of incidence", angle[rows])):
+        if np.ptp(x) <= VARIES * np.max(np.abs(x)):
+            continue
+        r = float(np.corrcoef(x, off)[0, 1])
+        freedom = len(x) - 2
+        t = abs(r) * math.sqrt(freedom / max(1.0 - r * r, NUMERICAL))
+        found.append((2.0 * float(stdtr(freedom, -t)), column, x))
+    chance, column, x = min(found, key=lambda one: one[0], default=(1.0, "", e))
+    if not chance < DOUBT:
+        return []
+    ends = float(x.min()), float(x.max())
+    low, high = np.polyval(np.polyfit(x, e, 1), ends)
+    takes = "fit the impacts at each angle alone, with # before the others"
+    if max(low, high) > 1.0:
+        takes = f"no law has more than 1: leave {name} out (--quantity), or check speeds and angles"
+    elif any(chance < DOUBT and "speed" in column for chance, column, _ in found):
+        speeds = BEYOND[0] * float(speed[rows].min()), BEYOND[1] * float(speed[rows].max())
+        line = np.clip(np.polyval(np.polyfit(speed[rows], e, 1), speeds), 0.0, 1.0)
+        pairs = ",".join(f"{v:.3g}:{one:.3g}" for v, one in zip(speeds, line, strict=True))
+        takes = f"--restitution {pairs}, a table of the normal speed, takes it in place of one e"
+    way, unit = "climbs" if high > low else "falls", "m/s" if "speed" in column else "degrees"
+    return [
+        f"{name}: the restitution {way} with {column}, from {low:.3g} at {ends[0]:.3g} to "
+        f"{high:.3g} at {ends[1]:.3g} {unit}; {takes}"
+    ]
 
 
 def _mean(e: Array, error: Array | None) -> tuple[float, float]:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import attrs
 import numpy as np
 
+from contactlab.impact.hertz import slips_throughout
 from contactlab.numeric.types import Array, Real
 from contactlab.registration.names import short_name
 from contactlab.registry.registry import REGISTRY
@@ -32,9 +33,10 @@ from contactlab_fit.problem import Problem, grid, solve_problem
 from contactlab_fit.readings import Reading, readings, turn_scene
 
 #: A mistake is reported if its correction makes the likelihood exp(CERTAIN/2) times greater, which
-#: chance does once in 20,000 times, and residuals this many times smaller. A sign is reported at
-#: once: numbers of slip throughout, turned, look like those of a greater friction.
-SMALLER, CERTAIN = 2.0, 20.0
+#: chance does once in 20,000 times, and residuals this many times smaller. A sign needs no such
+#: residuals, and if all impacts then slip throughout exp(SLIDING/2) is enough: turned, numbers look
+#: like those of a greater friction, but grow with the angle where those fall.
+SMALLER, CERTAIN, SLIDING = 2.0, 20.0, 6.0
 #: A reading is fitted if its residuals on the grid of starts are at most this many times the
 #: residuals of the fit: the friction coefficients of the grid are far apart.
 WORTH_FITTING = 3.0
@@ -145,10 +147,20 @@ def _better(problem: Problem, values: Array, candidates: Iterable[Reading]) -> l
             continue
         best = solve_problem(reading.problem, points[least])
         score = float(_scores(reading, best[None], problem)[0])
-        if score < own - (CERTAIN if reading.turned else max(CERTAIN, times)):
+        gain = max(CERTAIN, times)
+        if reading.turned:
+            gain = SLIDING if _slides(reading.problem, best) else CERTAIN
+        if score < own - gain:
             better.append(Read(reading, score, best))
     better.sort(key=lambda read: read.score)
     return [read for read in better if read.score - better[0].score < ALIKE][:LISTED]
+
+
+def _slides(problem: Problem, values: Array) -> bool:
+    """Return whether all impacts slip throughout."""
+    result = problem.model.impacts(values)
+    scene: Any = result.scene
+    return bool(np.all(slips_throughout(scene.psi1, scene.chi, result.normal_restitution)))
 
 
 def _first(problem: Problem) -> Array:
@@ -342,15 +354,15 @@ def _free_restitution(problem: Problem, values: Array) -> Wider:
     """Return the problem with a restitution to fit; None without a table of such impacts."""
     setup, parameters = problem.model.setup, problem.model.parameters
     laws: Any = setup.simulation or tabulated.with_loss(SOME_LOSS)
+    names = [parameter.name for parameter in parameters]
     own = getattr(setup.simulation and laws.normal, RESTITUTION, 1.0)
 
     def words(restitution: float) -> str:
         return (
             f"the impacts look as if their restitution were {restitution:.3g} in place of "
-            f"{own:.3g} ({tabulated.fit_restitution(setup.scene, [p.name for p in parameters])})"
+            f"{own:.3g} ({tabulated.fit_restitution(setup.scene, names)})"
         )
 
-    names = [parameter.name for parameter in parameters]
     table: Any = REGISTRY.law_class("normal.viscoelastic")
     low, high = table.chi_range
     chi = np.asarray(setup.scene.chi)
