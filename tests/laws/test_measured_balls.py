@@ -70,3 +70,46 @@ def test_the_table_of_the_guide():
     assert rms == pytest.approx(np.asarray(shown), abs=5.1e-3)
     constant = [0.2 - float(row[2]) for row in rows]
     assert np.sqrt(np.mean(np.square(constant))) == pytest.approx(0.17, abs=5e-3)
+
+
+BALLS = {
+    "steel": (208e9, 0.29, 0.0016, SOLID, 0.1),
+    "glass": (70e9, 0.22, 0.0016, SOLID, 0.1),
+    "rubber": (3e6, 0.45, 0.03, SOLID, 5.0),
+    "shell": (1e9, 0.4, 0.003, SHELL, 0.1),
+}
+WORDS = {
+    "small": "right within 0.075 (rms), by eleven pairs of small solid spheres (small-spheres)",
+    "balls": "by eight measured balls (eight-balls)",
+    "deep": "(superball)",
+    "metal": "metals lose energy by yield",
+}
+
+
+@pytest.mark.parametrize(
+    ("ball", "told"),
+    [
+        ("steel", {"small", "metal"}), ("glass", {"small"}), ("rubber", {"balls", "deep"}),
+        ("shell", {"balls"}),
+    ],
+)  # fmt: skip
+def test_a_caution_names_the_measured_set_that_resembles_the_scene(ball, told):
+    modulus, poisson_ratio, radius, gyration, speed = BALLS[ball]
+    material = Material(young_modulus=modulus, poisson_ratio=poisson_ratio, density=2000.0)
+    body = Sphere(radius, material, gyration_ratio=gyration**0.5)
+    scene = Scene(body, HalfSpace(material), 0.4, speed, 0.3 * speed)
+    said = " ".join(map(str, one_loss(0.9, 1.0).plan(scene).cautions))
+    assert {name for name, words in WORDS.items() if words in said} == told
+
+
+@pytest.mark.slow
+def test_the_size_of_small_spheres_is_that_of_the_measured_set():
+    (spheres,) = (one for one in SLOPES if one.name == "small-spheres")
+    rows = spheres.read().rows
+    found = []
+    for row in rows:
+        laws = one_loss(row.restitution, 1.0) if row.restitution < 1.0 else Simulation()
+        psi2 = laws.sweep(Scene.nondimensional(psi1=row.psi1, chi=row.chi)).check().psi2
+        found.append(row.slope_of(psi2, row.restitution) - row.beta0)
+    (size,) = re.findall(r"right within (\S+) \(rms\)", WORDS["small"])
+    assert np.sqrt(np.mean(np.square(found))) == pytest.approx(float(size), abs=0.003)

@@ -15,12 +15,18 @@ from contactlab.numeric.types import Array, Mask
 #: spheres and shells; below 0.9 it is at least the rms of eight measured balls.
 RESTITUTIONS = (0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 1.0)
 SIZES = (0.19, 0.16, 0.16, 0.16, 0.04, 0.02, 0.0)
+#: Off by rms over the eleven pairs of small solid spheres, their least restitution, and K² of a
+#: solid sphere within a margin.
+SMALL, LEAST_SMALL, SOLID, NEARLY = 0.075, 0.6, 0.4, 0.02
+#: Measured sets behind the sizes, by the names of ``contactlab validate --measured``.
+BALLS, SPHERES, DEEPER = "eight-balls", "small-spheres", "superball"
 #: chi of these spheres.
 CHI = (0.8, 1.8)
 #: A ball whose approach is deep gains so much beta0 for each z/R, least and most, from a depth on.
 LEAST_GAIN, MOST_GAIN, DEEP = 1.2, 1.9, 0.02
-#: Young's modulus in Pa from which a restitution is that of a metal, which loses by yield.
-METAL = 2e10
+#: Young's modulus in Pa and Poisson's ratio from which solids are metals, which lose by yield;
+#: glass has 0.2 to 0.25.
+METAL, LEAST_POISSON = 2e10, 0.26
 #: Restitutions closer to 1 than this need no caution.
 ELASTIC = 0.995
 
@@ -37,24 +43,49 @@ def cautions(scene: Scene, normal: NormalMotion, *, fitted: bool) -> tuple[str, 
     grips = np.logical_not(slips) & (e < ELASTIC)
     if not np.any(grips):
         return ()
-    of_bodies = (*_deep(scene, normal), *_metal(scene)) if name_bodies(scene) else ()
-    return (*(() if fitted else _trusted(np.asarray(scene.chi), e, grips)), *of_bodies)
+    deep = _deep(scene, normal) if name_bodies(scene) else ()
+    of_bodies = (*deep, *_metal(scene)) if name_bodies(scene) else ()
+    trusted = _trusted(np.asarray(scene.chi), e, grips, small=_solid(scene) and not deep)
+    return (*(() if fitted else trusted), *of_bodies)
 
 
-def _trusted(chi: Array, e: Array, grips: Mask) -> tuple[str, ...]:
-    """Return how far beta0 is trusted where it was measured, and where it was not."""
+def _solid(scene: Scene) -> bool:
+    """Return whether the first body is a solid sphere."""
+    if scene.sphere is None:
+        return False
+    return bool(np.all(np.abs(np.square(scene.sphere.gyration_ratio) - SOLID) <= NEARLY))
+
+
+def _trusted(chi: Array, e: Array, grips: Mask, *, small: bool) -> tuple[str, ...]:
+    """Return how far beta0 is trusted where it was measured, and where it was not.
+
+    Solid spheres whose contact is ``small`` have the size of such spheres, others that of balls.
+    """
     known = (e >= RESTITUTIONS[0]) & (chi >= CHI[0]) & (chi <= CHI[1])
     said = []
+    if small and np.any(within := grips & known & (e >= LEAST_SMALL)):
+        least = float(np.min(e, where=within, initial=1.0))
+        said.append(
+            (
+                least,
+                f"beta0 is right within {SMALL:g} (rms), by eleven pairs of small solid "
+                f"spheres ({SPHERES}).",
+            )
+        )
+        grips = grips & ~within
     if np.any(within := grips & known):
         least = float(np.min(e, where=within, initial=1.0))
         size = float(np.interp(least, RESTITUTIONS, SIZES))
-        said.append(f"beta0 is right within {size:.2g}, by eight measured balls.")
+        said.append(
+            (least, f"beta0 is right within {size:.2g}, by eight measured balls ({BALLS}).")
+        )
     if np.any(beyond := grips & ~known):
         least = float(np.min(e, where=beyond, initial=1.0))
         ends = f"e from {RESTITUTIONS[0]:g}, chi from {CHI[0]:g} to {CHI[1]:g}"
-        said.append(f"the error of beta0 is {OUTSIDE} ({ends}).")
+        said.append((least, f"the error of beta0 is {OUTSIDE} ({ends})."))
     head = "model: assumes equal damping in compression and shear. At e ="
-    return tuple(f"{head} {least:.2g} {each} If you have data, fit shear_loss." for each in said)
+    fit = "If you have data, fit shear_loss."
+    return tuple(f"{head} {least:.2g} {each} {fit}" for least, each in said)
 
 
 def _deep(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
@@ -67,17 +98,19 @@ def _deep(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
     size = f"{low:.2g} to {high:.2g} higher"
     if depth > DEEPEST:
         size = OUTSIDE
-    return (f"model: deep contact, z/R = {depth:.2g}. Measured beta0 is {size}.",)
+    return (f"model: deep contact, z/R = {depth:.2g}. Measured beta0 is {size} ({DEEPER}).",)
 
 
 def _metal(scene: Scene) -> tuple[str, ...]:
     """Return the caution of a restitution of metals; numbers of ``validate --measured``."""
     stiff = np.min(np.asarray(scene.pair.effective_modulus)) >= 0.5 * METAL
-    if not stiff:
+    materials = [body.material for body in name_bodies(scene).values()]
+    metals = (np.max(np.asarray(each.poisson_ratio)) >= LEAST_POISSON for each in materials)
+    if not (stiff and any(metals)):
         return ()
     return (
         "model: metals lose energy by yield, not in shear. One loss still met both pairs with a "
         "metal: beta0 of glass on aluminium is 0.31 ± 0.06 measured, 0.31 by the law, of acetate "
         "on aluminium 0.39 ± 0.07 and 0.39. Chrome steel, 0.54 ± 0.05, is above any elastic "
-        "sphere's.",
+        f"sphere's ({SPHERES}).",
     )
