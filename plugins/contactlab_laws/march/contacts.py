@@ -58,8 +58,11 @@ class TouchingContacts:
         self._impulse, self._moment = np.zeros((2, *scene.shape, 3))
         self._pushed, self._greatest = none, none
         self._touching = links.loaded
+        self.too_often: Any = np.zeros(scene.shape, dtype=bool)
         self._touches = links.loaded.astype(float)
         self._first = np.where(links.loaded, 0.0, math.nan)
+        self._least = CLOSING * np.asarray(scene.normal_speed)
+        self._holding = ~np.asarray(links.loaded)
         self._last = self._first
         # a gathering that forces push does not fly freely
         pulled: Any = links.pull.any(axis=(-1, -2), keepdims=True)
@@ -69,11 +72,6 @@ class TouchingContacts:
         """Return the steps after which a gathering is given up, without flights."""
         longest = np.max(np.broadcast_to(duration, self.scene.shape), axis=-1, keepdims=True)
         return LONGEST * self.scene.shape[-1] * np.ceil(longest / step)
-
-    @property
-    def too_often(self) -> Any:
-        """Gatherings one of whose contacts closed too often, for each contact."""
-        return whole(self._touches > MOST_TOUCHES)
 
     def after(
         self, step: Real, acting: Sequence[Real], which: Sequence[Mask], motion: Sequence[Real]
@@ -96,8 +94,9 @@ class TouchingContacts:
             self._moment += (self._pushed + 0.5 * step)[..., None] * impulse
             self._pushed = self._pushed + step
         met = closed & ~self._touching
-        self._touches = self._touches + met
         if met.any():
+            self._touches = self._touches + met
+            self.too_often = whole(self._touches > MOST_TOUCHES)
             self._first = np.where(met & np.isnan(self._first), time, self._first)
         self._last = np.where(closed, time, self._last)
         self._touching = closed
@@ -112,13 +111,14 @@ class TouchingContacts:
         One is over when nothing closes and no force is left. A loaded contact does not hold up the
         end.
         """
-        closes = alive & (rate > CLOSING * np.asarray(self.scene.normal_speed))
+        closes = alive & (rate > self._least)
         nears = closes & ~closed
-        holds = self._force > HOLDS * np.max(self._greatest, axis=-1, keepdims=True)
-        on = whole((closed & (holds | closes) & ~self.links.loaded) | nears) & alive
-        flies = on & ~whole(closed) & self._free
+        holds = self._force > HOLDS * self._greatest.max(axis=-1, keepdims=True)
+        lasts = (closed & (holds | closes) & self._holding) | nears
+        on = lasts.any(axis=-1, keepdims=True) & alive
         flight = np.zeros(self.scene.shape)
-        if flies.any():
+        touching = closed.any(axis=-1, keepdims=True)
+        if not touching.all() and (flies := on & ~touching & self._free).any():
             reach = np.where(nears, -approach / np.where(nears, rate, 1.0), math.inf)
             until = reach.min(axis=-1, keepdims=True) - BEFORE * step
             flight = np.where(flies, np.maximum(until, 0.0), 0.0)
