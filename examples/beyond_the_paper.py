@@ -60,7 +60,7 @@ for nu in (0.0, 0.3, 0.5):
 measured_by_others = Path(str(resources.files("contactlab.study"))) / "measured"
 elements = read_scene(measured_by_others / "finite-elements.toml")
 measured = elements.measured[0]
-element_psi1 = elements.scene_at(tangential_velocity=measured.x).psi1
+element_psi1 = np.asarray(elements.scene_at(tangential_velocity=measured.x).psi1)
 inside = (element_psi1 > 0.1) & (element_psi1 < 4.5)
 shown = element_psi1[inside]
 beyond = measured.values[inside] - rebound(shown, CHI)

@@ -58,8 +58,8 @@ billiard = Sphere(0.0286, ivory)
 
 def rolling(weight: float) -> Gathering:
     """Return a rolling ball that meets a cushion, with a weight in N on its cloth."""
-    moves = {"velocity": [1.0, 1.0, 0.0], "spin": np.array([-1.0, 1.0, 0.0]) / billiard.radius}
-    shot = Body(billiard, **moves, force=weight * down)
+    spin = np.array([-1.0, 1.0, 0.0]) / billiard.radius
+    shot = Body(billiard, velocity=[1.0, 1.0, 0.0], spin=spin, force=weight * down)
     return Gathering(
         {"ball": shot},
         [

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any, Generic, overload
 
 import attrs
 import numpy as np
@@ -22,7 +22,7 @@ from contactlab.numeric.checks import (
     refuse,
 )
 from contactlab.numeric.names import state_arguments
-from contactlab.numeric.types import Either, Numbers, Real
+from contactlab.numeric.types import Array, Each, Number, Numbers, Real
 
 #: K of a solid homogeneous sphere: K² = 2/5.
 SOLID_SPHERE_GYRATION_RATIO = math.sqrt(0.4)
@@ -43,9 +43,24 @@ def _material() -> Any:
     )
 
 
+class _SphereArguments:
+    """What a sphere takes: ``__init__`` as ``attrs.evolve`` is checked by, without overloads."""
+
+    __slots__ = ()
+
+    def __init__(
+        self,
+        radius: Numbers,
+        material: Material,
+        *,
+        mass: Numbers | None = None,
+        gyration_ratio: Numbers = SOLID_SPHERE_GYRATION_RATIO,
+    ) -> None: ...
+
+
 @state_arguments
 @attrs.frozen(init=False)
-class Sphere:
+class Sphere(_SphereArguments, Generic[Each]):
     """An elastic sphere.
 
     Parameters
@@ -65,21 +80,34 @@ class Sphere:
         If a value is out of range, or neither mass nor density is given.
     """
 
-    radius: Either = quantity("m", rule=RADIUS, empty=True)
-    material: Material = _material()
-    mass: Either = quantity("kg", rule=POSITIVE, default=None, kw_only=True, empty=True)
-    gyration_ratio: Either = quantity(
+    radius: Each | float = quantity("m", rule=RADIUS, empty=True)
+    material: Material[Each] = _material()
+    mass: Each | float = quantity("kg", rule=POSITIVE, default=None, kw_only=True, empty=True)
+    gyration_ratio: Each | float = quantity(
         "1", rule=GYRATION, default=SOLID_SPHERE_GYRATION_RATIO, kw_only=True
     )
 
-    def __init__(
-        self,
-        radius: Numbers,
-        material: Material,
-        *,
-        mass: Numbers | None = None,
-        gyration_ratio: Numbers = SOLID_SPHERE_GYRATION_RATIO,
-    ) -> None: ...
+    if TYPE_CHECKING:
+
+        @overload
+        def __new__(
+            cls,
+            radius: Number,
+            material: Material[float],
+            *,
+            mass: Number | None = ...,
+            gyration_ratio: Number = ...,
+        ) -> Sphere[float]: ...
+        @overload
+        def __new__(
+            cls,
+            radius: Numbers,
+            material: Material,
+            *,
+            mass: Numbers | None = ...,
+            gyration_ratio: Numbers = ...,
+        ) -> Sphere[Array]: ...
+        def __new__(cls, *_: object, **__: object) -> Sphere: ...  # noqa: D102
 
     # That of all numbers takes longer than a collision; equal spheres have equal masses.
     def __hash__(self) -> int:
@@ -105,7 +133,7 @@ class Sphere:
 
 @state_arguments
 @attrs.frozen(init=False)
-class HalfSpace:
+class HalfSpace(Generic[Each]):
     """An elastic body with a plane surface, so large that no impact changes its motion.
 
     Parameters
@@ -114,9 +142,9 @@ class HalfSpace:
         Elastic material; the density is not used.
     """
 
-    material: Material = _material()
+    material: Material[Each] = _material()
 
-    def __init__(self, material: Material) -> None: ...
+    def __init__(self, material: Material[Each]) -> None: ...
 
     def __hash__(self) -> int:
         modulus = self.material.shear_modulus
@@ -276,24 +304,24 @@ def _lost(*bodies: Sphere | HalfSpace) -> ValueError | None:
     return refuse(name, numbers[name], rule, "check its unit")
 
 
-def normal_compliance(material: Material) -> Either:
+def normal_compliance(material: Material) -> Real:
     """Return (1-nu)/(2G) = (1-nu²)/E, one body's part of 1/E*, in 1/Pa."""
     return (1.0 - material.poisson_ratio) / (2.0 * material.shear_modulus)
 
 
-def coupling_compliance(sphere: Material, target: Material) -> Either:
+def coupling_compliance(sphere: Material, target: Material) -> Real:
     """Return half the difference of (1-2nu)/(2G), which is Dundurs' beta over E*, in 1/Pa."""
     first = (1.0 - 2.0 * sphere.poisson_ratio) / (2.0 * sphere.shear_modulus)
     second = (1.0 - 2.0 * target.poisson_ratio) / (2.0 * target.shear_modulus)
     return 0.5 * (first - second)
 
 
-def shear_compliance(material: Material) -> Either:
+def shear_compliance(material: Material) -> Real:
     """Return (2-nu)/(4G), one body's part of 1/G*, in 1/Pa."""
     return (2.0 - material.poisson_ratio) / (4.0 * material.shear_modulus)
 
 
-def _inverse_tangential_mass(sphere: Sphere) -> Either:
+def _inverse_tangential_mass(sphere: Sphere) -> Real:
     """Return (1 + 1/K²)/m, one body's part of 1/M_t, in 1/kg, eq. (21)."""
     return (1.0 + 1.0 / sphere.gyration_ratio**2) / sphere.mass
 

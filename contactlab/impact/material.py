@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any, Generic, overload
 
 import attrs
 import numpy as np
@@ -16,7 +16,7 @@ import numpy as np
 from contactlab.numeric.checks import POISSON, POSITIVE, derived, of_kind, quantity, real, refuse
 from contactlab.numeric.named import NOTHING, named_numbers, split_heading
 from contactlab.numeric.names import arguments_told, nearest
-from contactlab.numeric.types import Either, Numbers
+from contactlab.numeric.types import Array, Each, Number, Numbers
 from contactlab.registration.bring import by_name, own_first
 from contactlab.registration.hooks import hookimpl
 
@@ -32,38 +32,10 @@ OTHER_NAMES = {
 }  # fmt: skip
 
 
-@arguments_told
-@attrs.frozen(init=False, kw_only=True, repr=False)
-class Material:
-    """A linear elastic, isotropic material.
+class _MaterialArguments:
+    """What a material takes, without overloads: ``attrs.evolve`` is checked by it."""
 
-    Parameters
-    ----------
-    shear_modulus, young_modulus : float
-        G and E in Pa; exactly one of the two is given, as E = 2 G (1 + nu).
-    poisson_ratio : float
-        nu, from -1 to 0.5.
-    density : float, optional
-        Density in kg/m³; needed only by a sphere without given mass. NaN in an array: not known.
-    yield_stress : float, optional
-        Y in Pa, from a tension test. Plans have a caution where the contact pressure exceeds
-        1.6 Y; no law uses this number. NaN in an array: not known.
-    properties : mapping of str to float, optional
-        Further numbers by name in SI units, ``{"relaxation_time": 1e-6}``, for laws whose options
-        say that they are read from the material: ``contactlab plugins show`` tells which. A name
-        may have its unit behind, ``"relaxation_time (s)"``, which is compared with the law's.
-
-    Raises
-    ------
-    ValueError
-        If a value is out of range, or both moduli or neither are given.
-    """
-
-    shear_modulus: Either = quantity("Pa", rule=POSITIVE)
-    poisson_ratio: Either = quantity("1", rule=POISSON)
-    density: Either = quantity("kg/m³", rule=POSITIVE, default=None, unknown=True)
-    yield_stress: Either = quantity("Pa", rule=POSITIVE, default=None, unknown=True)
-    properties: Mapping[str, Numbers] = attrs.field(default=NOTHING)
+    __slots__ = ()
 
     def __init__(
         self,
@@ -96,7 +68,7 @@ class Material:
             remedy = "give it in Pa"
             shear_modulus = derived("shear modulus", follows, remedy, young_modulus=young_modulus)
         shear = real("shear_modulus", shear_modulus, rule=POSITIVE, remedy="give it in Pa")
-        self.__attrs_init__(
+        self.__attrs_init__(  # type: ignore[attr-defined]
             shear_modulus=shear,
             poisson_ratio=ratio,
             density=density,
@@ -104,11 +76,71 @@ class Material:
             properties=named_numbers("properties", properties, taken=OWN_NUMBERS),
         )
 
+
+@arguments_told
+@attrs.frozen(init=False, kw_only=True, repr=False)
+class Material(_MaterialArguments, Generic[Each]):
+    """A linear elastic, isotropic material.
+
+    Parameters
+    ----------
+    shear_modulus, young_modulus : float
+        G and E in Pa; exactly one of the two is given, as E = 2 G (1 + nu).
+    poisson_ratio : float
+        nu, from -1 to 0.5.
+    density : float, optional
+        Density in kg/m³; needed only by a sphere without given mass. NaN in an array: not known.
+    yield_stress : float, optional
+        Y in Pa, from a tension test. Plans have a caution where the contact pressure exceeds
+        1.6 Y; no law uses this number. NaN in an array: not known.
+    properties : mapping of str to float, optional
+        Further numbers by name in SI units, ``{"relaxation_time": 1e-6}``, for laws whose options
+        say that they are read from the material: ``contactlab plugins show`` tells which. A name
+        may have its unit behind, ``"relaxation_time (s)"``, which is compared with the law's.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range, or both moduli or neither are given.
+    """
+
+    shear_modulus: Each | float = quantity("Pa", rule=POSITIVE)
+    poisson_ratio: Each | float = quantity("1", rule=POISSON)
+    density: Each | float | None = quantity("kg/m³", rule=POSITIVE, default=None, unknown=True)
+    yield_stress: Each | float | None = quantity("Pa", rule=POSITIVE, default=None, unknown=True)
+    properties: Mapping[str, Each | float] = attrs.field(default=NOTHING)
+
+    if TYPE_CHECKING:
+
+        @overload
+        def __new__(  # type: ignore[overload-overlap]  # a number is the first of both
+            cls,
+            *,
+            shear_modulus: Number | None = ...,
+            young_modulus: Number | None = ...,
+            poisson_ratio: Number,
+            density: Number | None = ...,
+            yield_stress: Number | None = ...,
+            properties: Mapping[str, Number] | None = ...,
+        ) -> Material[float]: ...
+        @overload
+        def __new__(
+            cls,
+            *,
+            shear_modulus: Numbers | None = ...,
+            young_modulus: Numbers | None = ...,
+            poisson_ratio: Numbers,
+            density: Numbers | None = ...,
+            yield_stress: Numbers | None = ...,
+            properties: Mapping[str, Numbers] | None = ...,
+        ) -> Material[Array]: ...
+        def __new__(cls, *_: object, **__: object) -> Material: ...  # noqa: D102
+
     def __repr__(self) -> str:
         told = [each for each in NAMES if each != "properties" or self.properties]
         return f"Material({', '.join(f'{each}={getattr(self, each)!r}' for each in told)})"
 
-    def property_named(self, name: str) -> tuple[Either, str] | None:
+    def property_named(self, name: str) -> tuple[Each | float, str] | None:
         """Return a property and the unit that was given with it, empty if none; None without it.
 
         Parameters
@@ -123,7 +155,7 @@ class Material:
         return None
 
     @classmethod
-    def named(cls, name: str) -> Material:
+    def named(cls, name: str) -> Material[float]:
         """Return a material of the collection by name.
 
         Parameters
@@ -139,9 +171,9 @@ class Material:
         return entry(name).material()
 
     @property
-    def young_modulus(self) -> Either:
+    def young_modulus(self) -> Each | float:
         """E = 2 G (1 + nu), in Pa."""
-        return 2.0 * self.shear_modulus * (1.0 + self.poisson_ratio)
+        return 2.0 * self.shear_modulus * (1.0 + self.poisson_ratio)  # type: ignore[return-value]
 
 
 NAMES = tuple(field.name for field in attrs.fields(Material))
@@ -190,7 +222,7 @@ class Entry:
     properties: Mapping[str, float] = attrs.field(factory=dict)
     properties_source: str = ""
 
-    def material(self) -> Material:
+    def material(self) -> Material[float]:
         """Return the entry as a ``Material``."""
         return Material(**self.numbers())
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic, Self, overload
 
 import attrs
 import numpy as np
@@ -28,7 +28,7 @@ from contactlab.numeric.checks import (
 )
 from contactlab.numeric.named import NOTHING
 from contactlab.numeric.names import state_arguments
-from contactlab.numeric.types import Array, Numbers, Real
+from contactlab.numeric.types import Array, Each, Index, Number, Numbers, Real
 from contactlab.numeric.vectors import entry, over
 
 if TYPE_CHECKING:
@@ -56,13 +56,47 @@ def _tensors(value: Numbers | None) -> Array | None:
     return np.asarray(batch.lock_arrays(np.array(value, dtype=np.float64)))
 
 
+class _SceneArguments:
+    """What a scene takes, without overloads: ``attrs.evolve`` is checked by it."""
+
+    __slots__ = ()
+
+    def __init__(
+        self,
+        sphere: Sphere | None,
+        target: Sphere | HalfSpace | None,
+        friction_coefficient: Numbers | LawOfSlip,
+        normal_speed: Numbers,
+        tangential_velocity: Numbers = 0.0,
+        spin: Numbers = 0.0,
+        *,
+        normal_spin: Numbers = 0.0,
+        pair: Pair | None = None,
+        unit_friction: bool = False,
+        has_units: bool = True,
+        encounter: object = None,
+        frame: Array | None = None,
+        along: tuple[float, float, float] | None = None,
+        inverse_mass: Numbers | None = None,
+        planar: bool = True,
+        options: Mapping[str, object] = NOTHING,
+        of_slip: OfSlip | None = None,
+        links: Links | None = None,
+    ) -> None: ...
+
+
 @state_arguments
 @attrs.frozen(init=False)
-class Scene(Batches):
+class Scene(_SceneArguments, Batches, Generic[Each]):
     """One oblique impact, or a batch of them, in SI units.
 
     The sphere moves towards the target, which is at rest and does not spin. Every
     number may be an array; the scene is then a batch of the broadcast ``shape``.
+
+    To type checkers a scene of numbers is a ``Scene[float]`` and one with an array a
+    ``Scene[Array]``, and so are the results of ``run``. Write ``Scene`` where a program does not
+    know, and where ``attrs.evolve`` puts arrays in the place of numbers, which no checker sees:
+    ``many: Scene = attrs.evolve(scene, spin=spins)``.
 
     Bodies of any shape have an inverse mass W in the frame (n, t1, t2) of their contact: the normal
     from the first body into the target, and two tangents. Where W couples, friction changes the
@@ -130,19 +164,19 @@ class Scene(Batches):
         the argument.
     """
 
-    sphere: Sphere | None = instance(
+    sphere: Sphere[Each] | None = instance(
         Sphere,
         remedy="make one: Sphere(...); of other bodies take Encounter(...).scene",
         optional=True,
     )
-    target: Sphere | HalfSpace | None = instance(
+    target: Sphere[Each] | HalfSpace[Each] | None = instance(
         HalfSpace, Sphere, remedy="make one: HalfSpace(material)", optional=True
     )
-    friction_coefficient: Real = friction()
-    normal_speed: Real = quantity("m/s", rule=POSITIVE)
-    tangential_velocity: Real = quantity("m/s", default=0.0)
-    spin: Real = quantity("rad/s", default=0.0)
-    normal_spin: Real = quantity("rad/s", default=0.0, kw_only=True)
+    friction_coefficient: Each | float = friction()
+    normal_speed: Each | float = quantity("m/s", rule=POSITIVE)
+    tangential_velocity: Each | float = quantity("m/s", default=0.0)
+    spin: Each | float = quantity("rad/s", default=0.0)
+    normal_spin: Each | float = quantity("rad/s", default=0.0, kw_only=True)
     # None only until __attrs_post_init__ computes the pair from the bodies.
     pair: Pair = instance(
         Pair, remedy="or leave it out", optional=True, default=None, kw_only=True, repr=False
@@ -170,28 +204,80 @@ class Scene(Batches):
         init=False, eq=False, repr=False, default=()
     )
 
-    def __init__(
-        self,
-        sphere: Sphere | None,
-        target: Sphere | HalfSpace | None,
-        friction_coefficient: Numbers | LawOfSlip,
-        normal_speed: Numbers,
-        tangential_velocity: Numbers = 0.0,
-        spin: Numbers = 0.0,
-        *,
-        normal_spin: Numbers = 0.0,
-        pair: Pair | None = None,
-        unit_friction: bool = False,
-        has_units: bool = True,
-        encounter: object = None,
-        frame: Array | None = None,
-        along: tuple[float, float, float] | None = None,
-        inverse_mass: Numbers | None = None,
-        planar: bool = True,
-        options: Mapping[str, object] = NOTHING,
-        of_slip: OfSlip | None = None,
-        links: Links | None = None,
-    ) -> None: ...
+    if TYPE_CHECKING:  # what checkers know of the numbers of one impact, and of a batch
+
+        @overload
+        def __new__(
+            cls,
+            sphere: Sphere[float],
+            target: Sphere[float] | HalfSpace[float],
+            friction_coefficient: Number | LawOfSlip,
+            normal_speed: Number,
+            tangential_velocity: Number = ...,
+            spin: Number = ...,
+            *,
+            normal_spin: Number = ...,
+        ) -> Scene[float]: ...
+        @overload
+        def __new__(
+            cls,
+            sphere: Sphere,
+            target: Sphere | HalfSpace,
+            friction_coefficient: Numbers | LawOfSlip,
+            normal_speed: Numbers,
+            tangential_velocity: Numbers = ...,
+            spin: Numbers = ...,
+            *,
+            normal_spin: Numbers = ...,
+        ) -> Scene[Array]: ...
+        @overload
+        def __new__(
+            cls,
+            sphere: Sphere | None,
+            target: Sphere | HalfSpace | None,
+            friction_coefficient: Numbers | LawOfSlip,
+            normal_speed: Numbers,
+            tangential_velocity: Numbers = ...,
+            spin: Numbers = ...,
+            *,
+            normal_spin: Numbers = ...,
+            pair: Pair | None = ...,
+            unit_friction: bool = ...,
+            has_units: bool = ...,
+            encounter: object = ...,
+            frame: Array | None = ...,
+            along: tuple[float, float, float] | None = ...,
+            inverse_mass: Numbers | None = ...,
+            planar: bool = ...,
+            options: Mapping[str, object] = ...,
+            of_slip: OfSlip | None = ...,
+            links: Links | None = ...,
+        ) -> Scene: ...
+        def __new__(cls, *_: object, **__: object) -> Scene: ...  # noqa: D102
+        @overload
+        def take(self, part: int | tuple[int, ...]) -> Scene: ...
+        @overload
+        def take(self, part: Index) -> Self: ...
+        def take(self, part: Index) -> Scene: ...  # noqa: D102
+        @property
+        def slip_velocity(self) -> Each | float: ...  # noqa: D102
+        @property
+        def psi_scale(self) -> Each | float: ...  # noqa: D102
+        def psi(self, velocity: Real) -> Each | float: ...  # noqa: D102
+        @property
+        def psi1(self) -> Each | float: ...  # noqa: D102
+        @property
+        def w1(self) -> Each | float: ...  # noqa: D102
+        @property
+        def chi_w(self) -> Each | float: ...  # noqa: D102
+        @property
+        def chi(self) -> Each | float: ...  # noqa: D102
+        @property
+        def lam(self) -> Each | float: ...  # noqa: D102
+        @property
+        def eta(self) -> Each | float: ...  # noqa: D102
+        @property
+        def rho(self) -> Each | float: ...  # noqa: D102
 
     def __attrs_post_init__(self) -> None:
         if self.sphere is not None and self.target is not None:
@@ -289,7 +375,7 @@ class Scene(Batches):
 
     def _of_materials(self) -> dict[str, Real]:
         """Return the yield stresses that are known, and the properties, by name."""
-        numbers = {}
+        numbers: dict[str, Real] = {}
         for name, body in (("sphere", self.sphere), ("target", self.target)):
             if body is not None and body.material.yield_stress is not None:
                 numbers[f"{name}.material.yield_stress"] = body.material.yield_stress
@@ -353,6 +439,32 @@ class Scene(Batches):
             rule = "the kinetic energy of the spin about the normal must be finite"
             raise refuse("normal_spin", self.normal_spin, rule, "give it in rad/s")
 
+    @overload
+    @classmethod
+    def at_angle(
+        cls,
+        sphere: Sphere[float],
+        target: Sphere[float] | HalfSpace[float],
+        friction_coefficient: Number | LawOfSlip,
+        *,
+        speed: Number,
+        angle_deg: Number,
+        spin: Number = ...,
+        normal_spin: Number = ...,
+    ) -> Scene[float]: ...
+    @overload
+    @classmethod
+    def at_angle(
+        cls,
+        sphere: Sphere,
+        target: Sphere | HalfSpace,
+        friction_coefficient: Numbers | LawOfSlip,
+        *,
+        speed: Numbers,
+        angle_deg: Numbers,
+        spin: Numbers = ...,
+        normal_spin: Numbers = ...,
+    ) -> Scene[Array]: ...
     @classmethod
     def at_angle(
         cls,
@@ -394,6 +506,40 @@ class Scene(Batches):
         along = fast * ahead, fast * aside
         return cls(sphere, target, friction_coefficient, *along, spin, normal_spin=normal_spin)
 
+    @overload
+    @classmethod
+    def nondimensional(  # type: ignore[overload-overlap]  # a number is the first of both
+        cls,
+        *,
+        psi1: Number,
+        chi: Number,
+        lam: Number = ...,
+        eta: Number | None = ...,
+        rho: Number | None = ...,
+        poisson_ratio: Number | None = ...,
+        coupling_number: Number | None = ...,
+        friction_coefficient: Number | None = ...,
+        cross_stiffness_ratio: Number = ...,
+        spin: Number = ...,
+        spin_inertia: Number = ...,
+    ) -> Scene[float]: ...
+    @overload
+    @classmethod
+    def nondimensional(
+        cls,
+        *,
+        psi1: Numbers,
+        chi: Numbers,
+        lam: Numbers = ...,
+        eta: Numbers | None = ...,
+        rho: Numbers | None = ...,
+        poisson_ratio: Numbers | None = ...,
+        coupling_number: Numbers | None = ...,
+        friction_coefficient: Numbers | None = ...,
+        cross_stiffness_ratio: Numbers = ...,
+        spin: Numbers = ...,
+        spin_inertia: Numbers = ...,
+    ) -> Scene[Array]: ...
     @classmethod
     def nondimensional(
         cls,
@@ -482,7 +628,7 @@ class Scene(Batches):
         return cls(None, None, **entries)
 
     @classmethod
-    def grid(cls, *bodies: Sphere | HalfSpace, **entries: Numbers) -> Scene:
+    def grid(cls, *bodies: Sphere | HalfSpace, **entries: Numbers) -> Scene[Array]:
         """Return the batch of all combinations of some entries, the last varying fastest.
 
         An example is ``Scene.grid(chi=[1.2, 1.4412], psi1=np.linspace(0, 6, 25))``. A list gives

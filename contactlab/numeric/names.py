@@ -96,7 +96,7 @@ def arguments_told(made: Class) -> Class:
 
     ``_remedy(name, value)`` of a class tells where an argument belongs that it does not have.
     """
-    return _telling(made, vars(made)["__init__"])
+    return _telling(made, made.__init__)  # type: ignore[misc]
 
 
 def state_arguments(made: Class) -> Class:
@@ -113,7 +113,7 @@ def _telling(made: Class, call: Callable[..., None]) -> Class:
     for name, each in [*vars(made).items()]:
         if isinstance(each, classmethod):
             setattr(made, name, classmethod(_told(made, each.__func__)))
-    stated = vars(made)["__init__"]
+    stated = made.__init__  # type: ignore[misc]
     made.__init__ = functools.wraps(stated)(_told(made, call))  # type: ignore[misc]
     return made
 

@@ -36,10 +36,10 @@ class ImpactResult(Answer, Generic[Each]):
     A batch can be indexed, sliced and iterated; each item is the result of one impact. Items keep
     the run time and the counters of the whole batch.
 
-    To type checkers the numbers of ``ImpactResult[float]`` are floats, and those of a sweep, an
-    ``ImpactResult[Array]``, are arrays. What ``run`` returns, and an item of a batch, they take for
-    either: no type tells whether a scene is one impact or a batch, in the plane or in space. A
-    program that knows may say so: ``result: ImpactResult[float] = simulation.run(scene)``.
+    To type checkers the numbers of ``ImpactResult[float]``, of a ``Scene[float]``, are floats, and
+    those of a batch, an ``ImpactResult[Array]``, are arrays. An item of a batch, and the result of
+    an ``Encounter``'s scene, they take for either: of bodies in space psi is a vector. A program
+    that knows may say so: ``result: ImpactResult[float] = simulation.run(scene)``.
     ``status`` is ``Any``: a ``Status``, or an array of them.
 
     Attributes
@@ -118,12 +118,12 @@ class ImpactResult(Answer, Generic[Each]):
     @property
     def psi_change(self) -> Each:
         """psi2 - psi1, without the rounding error of a huge psi1."""
-        return self.scene.psi(self.motion.slip_velocity_change)
+        return self.scene.psi(self.motion.slip_velocity_change)  # type: ignore[return-value]
 
     @property
     def psi2(self) -> Each:
         """Non-dimensional local angle of reflexion; a vector (..., 2) in space."""
-        return self.scene.psi(self.rebound_slip_velocity)
+        return self.scene.psi(self.rebound_slip_velocity)  # type: ignore[return-value]
 
     @property
     def compressions(self) -> Each:

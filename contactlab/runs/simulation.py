@@ -19,7 +19,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import taken
 from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import arguments_told
-from contactlab.numeric.types import Array, Numbers
+from contactlab.numeric.types import Array, Each, Numbers
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory, Recorder
 from contactlab.outcome.motion import Motion, without_failures
 from contactlab.outcome.plan import Plan
@@ -163,11 +163,11 @@ class Simulation:
 
     def run(
         self,
-        scene: Scene,
+        scene: Scene[Each],
         *,
         history: bool | str = False,
         estimate_error: bool = False,
-    ) -> ImpactResult:
+    ) -> ImpactResult[Each]:
         """Run one impact, or a batch scene at once.
 
         Parameters

@@ -83,7 +83,7 @@ class Decoupled(Way):
 
     def line(self, scene: Scene) -> Array:
         """Return the direction of slip at first touch, which slip keeps."""
-        return unit_slip(scene.slip_velocity)
+        return unit_slip(scene.slip_velocity)  # type: ignore[arg-type]  # vectors in space
 
     def _columns(self, normal: NormalMotion, answered: list[Answered], size: Real) -> PlanColumns:
         """Return the columns of the plan: why impacts are not marched, and the declared error.

@@ -226,10 +226,11 @@ def _slip_throughout() -> Finding:
 
 def _first_slip() -> Finding:
     scene, _, k = _sliding()
+    psi, slips = np.asarray(scene.psi1), np.asarray(scene.slip_velocity)
     off = []
     for place, each in enumerate(k):
         psi1 = 1.0 + 0.2 * (1 + place) * (each - 1.0)  # slips at first touch, stops before V = 0
-        slip = scene.slip_velocity[place] * psi1 / scene.psi1[place]
+        slip = slips[place] * psi1 / psi[place]
         start = attrs.evolve(scene.take(place), tangential_velocity=slip)
         history: Any = _exact_laws().run(start, history=True).check().history
         limit = float(start.friction_coefficient) * history.normal_force

@@ -41,6 +41,7 @@ PROGRAM = """
 import math
 from typing import Any, assert_type
 
+import attrs
 import matplotlib.pyplot as plt
 import numpy as np
 from numpy.typing import NDArray
@@ -54,7 +55,22 @@ ball, plane = Sphere(0.01, steel), HalfSpace(steel)
 scene = Scene.at_angle(ball, plane, friction_coefficient=0.2, speed=1.0, angle_deg=30, spin=20.0)
 simulation = Simulation(normal="hertz", tangential="springs")
 result = simulation.run(scene).check()
-assert_type(result, cl.ImpactResult)
+assert_type(steel, Material[float])
+assert_type(ball, Sphere[float])
+assert_type(plane, HalfSpace[float])
+assert_type(scene, Scene[float])
+assert_type(scene.psi1 + scene.lam + scene.normal_speed, float)
+assert_type(Scene(ball, plane, {0.1: 0.3, 2.0: 0.2}, 1, 2), Scene[float])
+assert_type(Scene(Sphere([0.01, 0.02], steel), plane, 0.2, 1.0), Scene[Array])
+soft = HalfSpace(Material(young_modulus=[1e9, 2e9], poisson_ratio=0.3))
+assert_type(Scene(ball, soft, 0.2, 1.0), Scene[Array])
+assert_type(attrs.evolve(scene, spin=3.0), Scene[float])
+assert_type(attrs.evolve(ball, mass=3.0), Sphere[float])
+assert_type(attrs.evolve(plane, material=steel), HalfSpace[float])
+evolved: Scene = attrs.evolve(scene, spin=np.linspace(0.0, 1.0, 3))
+assert_type(evolved.take(0), Scene)
+assert_type(simulation.run(evolved).psi2, Any)
+assert_type(result, cl.ImpactResult[float])
 many = simulation.sweep(Scene.grid(chi=[1.2, 1.4412], psi1=np.linspace(0, 6, 25)))
 assert_type(many.check()[1:], cl.ImpactResult[Array])
 assert_type(many.psi2, Array)
@@ -62,11 +78,11 @@ assert_type(many.energy.start, Array)
 told: cl.ImpactResult[float] = simulation.run(scene)
 assert_type(told.psi2, float)
 assert_type(told.energy, cl.EnergyLedger[float])
-assert_type(result.psi2, Any)
+assert_type(result.psi2, float)
 assert_type(result.impulse, Array)
 one: float = result.psi2 + result.psi1 * 2
 edge: float = (4.0 / 3.0 * math.pi * ball.radius**3 * round(ball.mass, 3)) ** (1 / 3)
-all_of_them: Array = simulation.run(Scene.grid(chi=[1, 2], psi1=[1, 2])).psi2
+assert_type(simulation.run(Scene.grid(chi=[1, 2], psi1=[1, 2])).psi2, Array)
 rows: list[tuple[float, float]] = [(each.psi1, each.psi2) for each in many]
 print(round(result.psi2, 3), f"{result.psi2:.3f}", max(result.psi2, 0.0), abs(result.psi2) < 1)
 print(math.degrees(result.rebound_angle), result.rebound_speed**2, round(result.motion.duration, 9))
@@ -79,6 +95,12 @@ plt.plot(many.psi1, many.psi2)
 plt.plot([result.psi1], [result.psi2], "o")
 told.psi2.shape  # refused
 many.psi2.is_integer()  # refused
+result.psi2.shape  # refused
+simulation.run(Scene.nondimensional(psi1=1, chi=2)).psi2[0]  # refused
+simulation.run(Scene.nondimensional(psi1=[1, 2], chi=2)).psi2.is_integer()  # refused
+scene.psi1.shape  # refused
+scene.normal_speed[0]  # refused
+ball.mass.shape  # refused
 result.psi3  # refused
 assert_type(rebound(1.2, 1.44), float)
 assert_type(rebound(1, 1.44, restitution=np.float32(0.9)), float)
