@@ -40,7 +40,7 @@ HTML pages in ``contactlab_pages``: each plugs in by entry points and hooks. The
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, overload
 
 from contactlab.numeric.names import imported_on_use
 
@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from contactlab.collisions.rebound import rebound
     from contactlab.contracts.contact import NormalContact
     from contactlab.contracts.integrator import CoupledIntegrator, Integrator
+    from contactlab.contracts.law import Law
     from contactlab.contracts.motion import ClosedFormMotion
     from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw, UnfollowedNormalLaw
     from contactlab.contracts.path import Cost, PathTangentialLaw, Stretch
@@ -83,6 +84,7 @@ if TYPE_CHECKING:
     from contactlab.paths.load_path import load_path
     from contactlab.registration.hooks import PluginError, hookimpl
     from contactlab.registration.manager import plugin_manager, register
+    from contactlab.registry.named_laws import IntegratorName, NormalName, TangentialName
     from contactlab.runs.simulation import Simulation
     from contactlab.scene_file import read_scene
     from contactlab.study.comparison import compare
@@ -144,7 +146,15 @@ __all__ = [
 ]
 
 
-def create(name: str, **options: object) -> Any:
+@overload
+def create(name: NormalName, **options: object) -> NormalLaw: ...
+@overload
+def create(name: TangentialName, **options: object) -> TangentialLaw: ...
+@overload
+def create(name: IntegratorName, **options: object) -> Integrator: ...
+@overload
+def create(name: str, **options: object) -> Law: ...
+def create(name: str, **options: object) -> Law:
     """Return a new law by name: ``create("tangential.annulus", annuli=50)``.
 
     Parameters

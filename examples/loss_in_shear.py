@@ -18,15 +18,13 @@ from contactlab import Scene, Simulation
 from contactlab.figures import law_style, name_curves, save
 
 RESTITUTION, CHI = 0.5, 49 / 34  # chi of a solid sphere, nu = 0.3
-damped = {
-    name: contactlab.create(f"normal.{name}", restitution=RESTITUTION)
-    for name in ("tsuji", "viscoelastic")
-}
+tsuji = contactlab.create("normal.tsuji", restitution=RESTITUTION)
+viscoelastic = contactlab.create("normal.viscoelastic", restitution=RESTITUTION)
 elastic_shear = contactlab.create("tangential.springs", shear_loss=0.0)
 LAWS = {
     "no loss": Simulation(),
-    "loss in pressure alone": Simulation(normal=damped["tsuji"], tangential=elastic_shear),
-    "one loss for both": Simulation(normal=damped["viscoelastic"]),
+    "loss in pressure alone": Simulation(normal=tsuji, tangential=elastic_shear),
+    "one loss for both": Simulation(normal=viscoelastic),
 }
 psi1 = np.linspace(0.2, 5.0, 241)
 scene = Scene.nondimensional(psi1=psi1, chi=CHI)

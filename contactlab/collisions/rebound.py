@@ -443,7 +443,9 @@ def laws_of(restitution: float) -> Simulation:
     tangential = composition.law("tangential", composition.RESTITUTION["tangential"])
     laws = composition.compose(
         composition.law("normal", composition.RESTITUTION["normal"], restitution=restitution),
-        attrs.evolve(tangential, table=True, **{str(tangential.resolution): SPRINGS}),
+        attrs.evolve(  # type: ignore[misc]  # a law with options is a class of attrs
+            tangential, table=True, **{str(tangential.resolution): SPRINGS}
+        ),
         composition.fixed_steps(4 * SPRINGS),
     )
     return Simulation.of(laws.changed(named=frozenset({"normal"})))
@@ -467,8 +469,7 @@ def _law(kind: str) -> Tabulated:
     from contactlab.registry import composition  # takes long to import
 
     names = composition.EXACT if kind == "tangential" else composition.RESTITUTION
-    law: Tabulated = composition.law(kind, names[kind])
-    return law
+    return composition.law(kind, names[kind])  # type: ignore[return-value]  # both have tables
 
 
 def _exact(psi1: Array, chi: Array) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
-from typing import Any
+from typing import Any, Literal, overload
 
 import attrs
 
@@ -107,7 +107,15 @@ RUNS = {
 }
 
 
-def law(kind: str, value: object, **options: object) -> Any:
+@overload
+def law(kind: Literal["normal"], value: object, **options: object) -> NormalLaw: ...
+@overload
+def law(kind: Literal["tangential"], value: object, **options: object) -> TangentialLaw: ...
+@overload
+def law(kind: Literal["integrator"], value: object, **options: object) -> Integrator: ...
+@overload
+def law(kind: str, value: object, **options: object) -> Law: ...
+def law(kind: str, value: object, **options: object) -> Law:
     """Return the law of ``kind`` that ``value`` names, made with ``options``; or a law as it is."""
     if isinstance(value, str):
         name = full_name(kind, value)
@@ -126,7 +134,7 @@ def law(kind: str, value: object, **options: object) -> Any:
 
 
 @lru_cache(maxsize=128)
-def _with_defaults(name: str, _: type[Law]) -> Any:
+def _with_defaults(name: str, _: type[Law]) -> Law:
     """Return the law of a name with its defaults; laws are immutable, so that one serves all."""
     # The class is part of the key: another plug-in may take the name over.
     return REGISTRY.create(name)
@@ -142,8 +150,7 @@ def exact(tolerance: float) -> dict[str, Any]:
 
 def fixed_steps(steps: int) -> Integrator:
     """Return an integrator with fixed steps."""
-    integrator: Integrator = law("integrator", FIXED_STEPS, steps=steps)
-    return integrator
+    return law("integrator", FIXED_STEPS, steps=steps)
 
 
 def compose(normal: object, tangential: object, integrator: object) -> Laws:

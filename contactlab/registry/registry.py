@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, overload
 
 from contactlab.contracts.law import Law, law_kind
 from contactlab.numeric.checks import of_kind, refuse
@@ -32,6 +32,12 @@ from contactlab.registration.names import (
     split_name,
 )
 from contactlab.registry.loading import IN_FILES, check_class, law_at, law_class
+
+if TYPE_CHECKING:
+    from contactlab.contracts.integrator import Integrator
+    from contactlab.contracts.normal import NormalLaw
+    from contactlab.contracts.tangential import TangentialLaw
+    from contactlab.registry.named_laws import IntegratorName, NormalName, TangentialName
 
 __all__ = [
     "BLOCK_VARIABLE", "KINDS", "REGISTRY", "PluginError", "PluginInfo", "PluginWarning", "Registry",
@@ -155,7 +161,15 @@ class Registry:
             self._meant[key] = info.qualified
         return self._loaded[self._meant[key]][0]
 
-    def create(self, name: str, **options: object) -> Any:
+    @overload
+    def create(self, name: NormalName, **options: object) -> NormalLaw: ...
+    @overload
+    def create(self, name: TangentialName, **options: object) -> TangentialLaw: ...
+    @overload
+    def create(self, name: IntegratorName, **options: object) -> Integrator: ...
+    @overload
+    def create(self, name: str, **options: object) -> Law: ...
+    def create(self, name: str, **options: object) -> Law:
         """Return a new law: ``create("tangential.annulus", annuli=50)``.
 
         Raises

@@ -15,6 +15,7 @@ from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.registration.names import KINDS, full_name, is_place, kind_of, short_name
+from contactlab.registry import composition
 from contactlab.registry.composition import DEFAULT_NORMAL, RESTITUTION
 from contactlab.registry.registry import REGISTRY, PluginError
 from contactlab.runs.simulation import Simulation
@@ -133,12 +134,8 @@ class Method:
         return Simulation(
             normal=normal or self.normal,
             restitution=self.restitution if own else None,
-            tangential=REGISTRY.create(
-                full_name("tangential", self.tangential), **options["tangential"]
-            ),
-            integrator=REGISTRY.create(
-                full_name("integrator", self.integrator), **options["integrator"]
-            ),
+            tangential=composition.law("tangential", self.tangential, **options["tangential"]),
+            integrator=composition.law("integrator", self.integrator, **options["integrator"]),
         )
 
 

@@ -11,9 +11,8 @@ from contactlab.contracts import TangentialLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array
-from contactlab.registration.names import full_name
+from contactlab.registry import composition
 from contactlab.registry.composition import DEFAULT_NORMAL, STEPPED, exact, fixed_steps
-from contactlab.registry.registry import REGISTRY
 from contactlab.runs.simulation import Simulation
 from contactlab.study.bench_methods import Method
 from contactlab.study.posed import pose
@@ -83,14 +82,12 @@ def error_map(method: Method, *, quick: bool = False) -> ErrorMap:
     """
     steps, chis = (QUICK_STEPS, QUICK_CHIS) if quick else (STEPS, CHIS)
     psi1, chi = (each.ravel() for each in np.meshgrid(INCIDENCES, chis, indexing="ij"))
-    law = REGISTRY.create(full_name("tangential", method.tangential))
+    law = composition.law("tangential", method.tangential)
     scene = pose(Scene.nondimensional(psi1=psi1, chi=chi), (law,))
     limit = _psi2(_limit(law), scene)
     rows = []
     for count in steps:
-        march = REGISTRY.create(
-            full_name("integrator", method.integrator), steps=count, refine=False
-        )
+        march = composition.law("integrator", method.integrator, steps=count, refine=False)
         errors = np.abs(_psi2(Simulation(tangential=law, integrator=march), scene) - limit)
         rows.append(errors.reshape(len(INCIDENCES), -1).max(axis=0))  # NaN if one is NaN
     return ErrorMap(

@@ -13,7 +13,8 @@ import numpy as np
 
 from contactlab.registration.bring import by_name
 from contactlab.registration.hooks import hookimpl
-from contactlab.registration.names import full_name, short_name
+from contactlab.registration.names import short_name
+from contactlab.registry import composition
 from contactlab.registry.composition import DEFAULT_NORMAL
 from contactlab.registry.registry import REGISTRY, PluginError
 from contactlab.runs.simulation import Simulation
@@ -231,7 +232,7 @@ def simulations_over(
                 words = ", ".join(f"{key}={value}" for key, value in options.items())
                 name += f", {normal} {words}".rstrip()
             try:
-                normal_law = REGISTRY.create(full_name("normal", normal), **options)
+                normal_law = composition.law("normal", normal, **options)
                 simulations[name] = Simulation(normal=normal_law, tangential=full)
             except (ValueError, PluginError) as error:
                 left_out[name] = str(error)

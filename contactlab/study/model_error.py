@@ -15,8 +15,7 @@ from contactlab.contracts import TangentialLaw, WholeImpactTangentialLaw
 from contactlab.impact.error_model import range_of
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array
-from contactlab.registration.names import full_name
-from contactlab.registry.registry import REGISTRY
+from contactlab.registry import composition
 from contactlab.runs.simulation import Simulation
 from contactlab.study.posed import pose
 from contactlab.study.stability_references import continuum, converges, reference_for
@@ -55,7 +54,7 @@ def model_error(law: str, chis: Sequence[float], incidences: Sequence[float]) ->
     chis, incidences : sequence of float
         Values of chi; values of psi1, over which the largest error is taken.
     """
-    tangential = REGISTRY.create(full_name("tangential", law))
+    tangential = composition.law("tangential", law)
     if converges(tangential):
         return None
     errors = [[_error(tangential, psi1, chi) for psi1 in incidences] for chi in chis]

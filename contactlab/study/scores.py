@@ -17,7 +17,7 @@ from contactlab.numeric.types import Real
 from contactlab.outcome.columns import QUANTITIES, csv_heading
 from contactlab.outcome.tables import number, time
 from contactlab.outcome.text_table import table
-from contactlab.registration.names import full_name, short_name
+from contactlab.registration.names import short_name
 from contactlab.registry import composition
 from contactlab.registry.registry import REGISTRY, PluginError
 from contactlab.runs.simulation import Simulation
@@ -88,7 +88,7 @@ def candidates(laws: LawChoice) -> Candidates:
     left_out: dict[str, str] = {}
     for name in [first, *(name for name in names if name != first)]:
         try:
-            law = REGISTRY.create(full_name("tangential", name))
+            law = composition.law("tangential", name)
         except (PluginError, ValueError) as error:
             left_out[name] = str(error)
             continue

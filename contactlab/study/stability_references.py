@@ -24,7 +24,8 @@ from contactlab.contracts.tangential import shares_loss
 from contactlab.impact.error_model import range_of
 from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.impact.scene import Scene
-from contactlab.registration.names import PROJECT, full_name, kind_of
+from contactlab.registration.names import PROJECT, kind_of
+from contactlab.registry import composition
 from contactlab.registry.composition import PREFERRED, exact, fixed_steps, misfit
 from contactlab.registry.registry import REGISTRY, PluginError
 from contactlab.runs.simulation import Simulation
@@ -139,7 +140,7 @@ def judging_laws(normal: NormalLaw, judged: TangentialLaw) -> list[type[Tangenti
     names = (name for name in ours if kind_of(name) == "tangential")
     for name in (*PREFERRED["elastic"], *names):
         try:
-            law = REGISTRY.create(full_name("tangential", name))
+            law = composition.law("tangential", name)
         except (ValueError, PluginError):  # blocked, broken, or an option has no default
             continue
         suits = converges(law) and requirements(law) <= {"radius"} and misfit(normal, law) is None

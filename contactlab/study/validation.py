@@ -21,6 +21,7 @@ from contactlab.registration.bring import sound
 from contactlab.registration.hooks import PluginError, guard, hookimpl, shortened
 from contactlab.registration.manager import Told
 from contactlab.registration.names import PROJECT
+from contactlab.registry import composition
 from contactlab.registry.registry import REGISTRY
 from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import read_scene
@@ -151,9 +152,9 @@ def contactlab_checks() -> Iterator[Callable[[], Finding]]:
     yield _hertz
     yield _rigid
     yield _ellipses
-    for composition in COMPOSITIONS:
-        if {f"tangential.{composition[0]}", f"integrator.{composition[2]}"} <= set(installed):
-            yield partial(_reference, *composition)
+    for named in COMPOSITIONS:
+        if {f"tangential.{named[0]}", f"integrator.{named[2]}"} <= set(installed):
+            yield partial(_reference, *named)
     if {"normal.viscoelastic", "tangential.springs", "integrator.symplectic"} <= set(installed):
         yield _loss
     if {"tangential.springs", "integrator.symplectic"} <= set(installed):
@@ -259,8 +260,8 @@ def _reference(
 ) -> Finding:
     """Return the finding of one composition against ``REFERENCE_PSI2``."""
     sim = Simulation(
-        tangential=REGISTRY.create(f"tangential.{tangential}", **options),
-        integrator=REGISTRY.create(f"integrator.{integrator}", **settings),
+        tangential=composition.law("tangential", tangential, **options),
+        integrator=composition.law("integrator", integrator, **settings),
     )
     off = [
         sim.sweep(Scene.nondimensional(psi1=np.array(REFERENCE_PSI1), chi=chi)).psi2
@@ -274,12 +275,10 @@ def _reference(
 
 def _loss() -> Finding:
     law = partial(REGISTRY.create, "normal.viscoelastic")
-    parts = {
-        "tangential": REGISTRY.create("tangential.springs", springs=LOSS_SPRINGS),
-        "integrator": REGISTRY.create("integrator.symplectic", steps=LOSS_STEPS),
-    }
+    springs = REGISTRY.create("tangential.springs", springs=LOSS_SPRINGS)
+    march = REGISTRY.create("integrator.symplectic", steps=LOSS_STEPS)
     off = [
-        Simulation(normal=law(restitution=e), **parts)
+        Simulation(normal=law(restitution=e), tangential=springs, integrator=march)
         .sweep(Scene.nondimensional(psi1=np.array(REFERENCE_PSI1), chi=chi))
         .psi2
         - np.array(expected)

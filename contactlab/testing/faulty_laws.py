@@ -190,7 +190,9 @@ class SpoiledHertz(ClosedFormNormalLaw):
     api_version: ClassVar[int] = 2
     offers: ClassVar[frozenset[str]] = frozenset({"radius", "hertzian_pressure", "elastic_hertz"})
 
-    law: ClosedFormNormalLaw = attrs.field(factory=lambda: REGISTRY.create("normal.hertz"))
+    law: ClosedFormNormalLaw = attrs.field(  # type: ignore[assignment]  # Hertz's law is one
+        factory=lambda: REGISTRY.create("normal.hertz")
+    )
 
     def start(self, scene: Scene) -> Any:
         """Return the state of Hertz's law."""

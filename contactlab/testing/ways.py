@@ -152,7 +152,7 @@ def fitting(
     integrator: Integrator, tangential: tuple[TangentialLaw, ...], normal: NormalLaw | str
 ) -> Iterator[Simulation]:
     """Iterate over simulations with the tangential laws that the integrator can run."""
-    normal_law = REGISTRY.create(normal) if isinstance(normal, str) else normal
+    normal_law = composition.law("normal", normal)
     for law in tangential:
         if composition.misfit(normal_law, law, integrator) is None:
             yield Simulation(normal=normal_law, tangential=law, integrator=integrator)

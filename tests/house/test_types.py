@@ -4,12 +4,15 @@ import inspect
 import re
 import subprocess
 import sys
+from typing import get_args
 
 import pytest
 
 import contactlab
 from contactlab.cli.guide import pages as guide_pages
 from contactlab.cli.guide import text
+from contactlab.registration.names import PROJECT
+from contactlab.registry.named_laws import IntegratorName, NormalName, TangentialName
 from contactlab.registry.registry import REGISTRY
 from tests.present import ROOT, needs_sources
 
@@ -71,6 +74,12 @@ evolved: Scene = attrs.evolve(scene, spin=np.linspace(0.0, 1.0, 3))
 assert_type(evolved.take(0), Scene)
 assert_type(simulation.run(evolved).psi2, Any)
 assert_type(result, cl.ImpactResult[float])
+assert_type(cl.create("tangential.annulus", annuli=60), cl.TangentialLaw)
+assert_type(cl.create("normal.viscoelastic", restitution=0.9), cl.NormalLaw)
+assert_type(cl.create("integrator.symplectic"), cl.Integrator)
+Simulation(normal=cl.create("tangential.springs"))  # refused
+Simulation(tangential=cl.create("integrator.adaptive"))  # refused
+cl.create("normal.hertz").springs  # refused
 many = simulation.sweep(Scene.grid(chi=[1.2, 1.4412], psi1=np.linspace(0, 6, 25)))
 assert_type(many.check()[1:], cl.ImpactResult[Array])
 assert_type(many.psi2, Array)
@@ -219,6 +228,14 @@ def programs():
         beside = re.compile(rf"^from ({'|'.join(scripts)}) import", re.MULTILINE)
         for name, code in scripts.items():
             yield f"{folder}_{name}", beside.sub(rf"from {folder}_\1 import", code)
+
+
+def test_checkers_know_the_kind_of_every_law_that_comes_with_the_package():
+    kinds = NormalName, TangentialName, IntegratorName
+    named = {name for kind in kinds for name in get_args(kind)}
+    own = {info.name for info in REGISTRY.installed() if info.distribution == PROJECT}
+    assert own <= named  # a folder of plugins may be taken out
+    assert all(name.startswith(("normal.", "tangential.", "integrator.")) for name in named)
 
 
 @needs_sources
