@@ -280,8 +280,8 @@ class Collision(Answer, Generic[Each]):
                 impulse[self.collided] = -in_space(axes, self.known.impulse)
             return impulse
         contact, pair = self.encounter.meeting(), self.encounter.pair
-        push: Any = pair.normal_mass * (self.normal_velocity - contact.approach)
-        drag: Any = pair.tangential_mass * self.slip_velocity_change
+        push: Real = pair.normal_mass * (self.normal_velocity - contact.approach)
+        drag: Real = pair.tangential_mass * self.slip_velocity_change
         parts = zip(contact.normal, contact.along, strict=True)
         return np.stack([np.broadcast_to(push * n + drag * t, shape) for n, t in parts], axis=-1)
 

@@ -13,7 +13,7 @@ from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import LEAST_IMPULSE
 from contactlab.numeric.arrays import chosen, every, finite, lock_arrays, plain, spread
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Array, Mask, Real
 from contactlab.numeric.vectors import LEAST, components, three
 
 #: Velocities and spins of both bodies.
@@ -45,11 +45,11 @@ def rebounding(
     end: Any = 4.0 * chi + 1.0
     with np.errstate(all="ignore"):
         # m/s for each unit of psi, eq. (29)
-        unit: Any = part.friction_coefficient * contact.approach / pair.stiffness_ratio
+        unit: Real = part.friction_coefficient * contact.approach / pair.stiffness_ratio
         # without slip and friction 0/0 is NaN, in place of which fmin takes the other number
-        psi1: Any = np.fmin(np.divide(contact.slip, unit), end)
+        psi1: Real = np.fmin(np.divide(contact.slip, unit), end)
         psi1 = chosen(contact.approach >= LEAST, psi1, 0.0)
-        psi2: Any = rebound(psi1, chi, restitution=restitution)
+        psi2: Real = rebound(psi1, chi, restitution=restitution)
         change = (psi2 - psi1) * unit
         work = -pair.tangential_mass * change * (contact.slip + 0.5 * change)
     return -restitution * contact.approach, change, chosen(work <= 0.0, 0.0, work)
@@ -93,7 +93,7 @@ def strike(
     columns, flags = numbers.reshape(3, -1), collided.reshape(-1)
     for where, part in encounter.parts():
         contact, pair = part.meeting(), part.pair
-        meets: Any = contact.approach >= LEAST
+        meets: Mask = contact.approach >= LEAST
         met = every(meets)
         if strict and not met:
             raise encounter.separate()

@@ -37,7 +37,7 @@ class NormalContact(NamedTuple):
     @property
     def complete(self) -> NormalContact:
         """The same contact, with max(P, 0) as friction load if it had none."""
-        force: Any = self.force
+        force: Real = self.force
         load = self.friction_load
         if load is not None:
             return self

@@ -47,7 +47,7 @@ class SampledMotion(NormalMotion):
     ) -> None:
         self.law, self.scene = law, scene
         shape = scene.shape
-        touch: Any = np.broadcast_to(scene.normal_speed, (1, *shape))
+        touch: Array = np.broadcast_to(scene.normal_speed, (1, *shape))
         zero = np.zeros((1, *shape))
         column = (len(np.asarray(time)), *shape)
 

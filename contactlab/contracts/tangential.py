@@ -163,8 +163,8 @@ class TangentialLaw(Law, kind="tangential"):
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
         """Return the whole-impact answers: by default for central impacts and for mu = 0."""
-        slip: Any = scene.slip_velocity
-        friction: Any = scene.friction_coefficient
+        slip: Real = scene.slip_velocity
+        friction: Real = scene.friction_coefficient
         central, smooth = slip == 0.0, friction == 0.0
         if kinetics.turns(scene) and "normal_spin" in claims(self):
             central = central & (scene.normal_spin == 0.0)

@@ -97,7 +97,7 @@ class Tabulated(ABC):
 
     @staticmethod
     @abstractmethod
-    def rebound_error(*impact: Any) -> Any:
+    def rebound_error(*impact: Any) -> Real:
         """Return the bound of the error of psi2 over max(1, abs(psi1)).
 
         Parameters
@@ -239,7 +239,7 @@ def sliding(
 
     def course(load_impulse: Real, load: Real) -> tuple[Real, Real]:
         change = friction * load_impulse / mass
-        acting: Any = 1.0
+        acting: Real = 1.0
         if stops:
             acting = change < speed
             change = np.minimum(change, speed)

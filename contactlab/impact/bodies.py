@@ -271,7 +271,7 @@ class Pair:
             curvature = curvature + 1.0 / target.radius
             inverse_normal = inverse_normal + 1.0 / target.mass
             inverse_tangential = inverse_tangential + _inverse_tangential_mass(target)
-        spin: Any = 0.0
+        spin: Real = 0.0
         if turning:
             spheres = [body for body in (sphere, target) if isinstance(body, Sphere)]
             spin = sum(inverse_turning_mass(body, 1.0 / curvature) for body in spheres)

@@ -11,7 +11,7 @@ import numpy as np
 from contactlab.impact.cautions import OUTSIDE
 from contactlab.impact.scene import Scene
 from contactlab.impact.table import between_nodes, read_rows
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 #: Shift of psi2 by one-way coupling, to 0.002, by the half-space law; its builder is
 #: ``python -m table_builders coupling build``. The nodes are psi1, chi, nu, and Lambda.
@@ -43,14 +43,14 @@ def nodes() -> Nodes:
     return Nodes((np.r_[0.0, psi1], chi, poisson, np.r_[0.0, numbers]), size)
 
 
-def coupling_number(scene: Scene) -> Any:
+def coupling_number(scene: Scene) -> Real:
     """Return Lambda = kappa beta/mu, beta Dundurs' constant; infinite without friction."""
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-        strength: Any = np.abs(scene.pair.stiffness_ratio * scene.pair.dundurs_beta)
+        strength: Real = np.abs(scene.pair.stiffness_ratio * scene.pair.dundurs_beta)
         return np.where(strength == 0.0, 0.0, np.divide(strength, scene.friction_coefficient))
 
 
-def coupling_shift(scene: Scene) -> Any:
+def coupling_shift(scene: Scene) -> Real:
     """Return the size of the shift of psi2 by one-way coupling, without unit.
 
     The size is linear between the nodes of a table of half-space solutions. A shift of 0.005 or

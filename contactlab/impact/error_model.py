@@ -16,6 +16,7 @@ import numpy as np
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import chosen, greater
+from contactlab.numeric.types import Real
 
 #: An answer is coarse if its numerical error is more than this share of the range.
 COARSE = 0.25
@@ -36,7 +37,7 @@ def range_of(scene: Scene) -> Range:
     speed: Any = kinetics.slip_speed(scene)
     lesser: Any = np.minimum if scene.shape else min
     with np.errstate(over="ignore", under="ignore"):
-        friction: Any = scene.friction_coefficient * scene.normal_speed
+        friction: Real = scene.friction_coefficient * scene.normal_speed
         width = lesser(kinetics.most_slip_change(scene), 2.0 * speed)
         return Range(friction / scene.pair.stiffness_ratio, width, speed)
 

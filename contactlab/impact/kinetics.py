@@ -92,13 +92,13 @@ class Motions:
         return rim(self, self.normal_spin)
 
     @property
-    def chi_w(self) -> Any:
+    def chi_w(self) -> Real:
         """chi_w = (kappa/2) M_n a²/J, inertia ratio of spin about the normal; 0 without spin."""
         pair, size = self.pair, self._size()
         inertia = pair.normal_mass * pair.inverse_spin_mass
         return 0.5 * pair.stiffness_ratio * inertia * size * size
 
-    def _size(self) -> Any:
+    def _size(self) -> Real:
         """Return C of eq. (9), the largest contact radius of an elastic Hertz impact over R."""
         pair = self.pair
         return size_ratio(pair.normal_mass, pair.effective_modulus, pair.radius, self.normal_speed)
@@ -138,7 +138,7 @@ class Motions:
     @property
     def rho(self) -> Real:
         """Rho = mu²/kappa, on an ellipse that along t1."""
-        mu: Any = self.friction_coefficient
+        mu: Real = self.friction_coefficient
         rho: Real = mu * mu / self.pair.stiffness_ratio
         return rho
 
@@ -315,7 +315,7 @@ def coupling(scene: Motions, factor: Real) -> Any:
         return np.asarray(factor)[..., None] * W[..., 0, 1:] / W[..., :1, 0]
 
 
-def tangent(scene: Motions, vectors: Array) -> Any:
+def tangent(scene: Motions, vectors: Array) -> Real:
     """Return vectors of the tangent plane, (..., 2), as this scene has its slip.
 
     Parameters

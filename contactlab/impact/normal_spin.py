@@ -157,7 +157,7 @@ def normal_spin(scene: Scene, *, answered: Mask = False) -> NormalSpin | None:
         return None
     central = scene.central
     with np.errstate(all="ignore"):
-        radius: Any = hertz_scales(central).radius
+        radius: Real = hertz_scales(central).radius
         w = np.where(acts, np.abs(omega) * radius * central.psi_scale, 0.0)
         inertia = 0.5 * central.pair.stiffness_ratio * central.pair.normal_mass
         chi_w = inertia * inverse * (radius / central.pair.radius) ** 2

@@ -386,12 +386,12 @@ class Scene(_SceneArguments, Batches, Generic[Each]):
 
     def _check_scales(self) -> None:
         """Refuse scenes whose numbers overflow, or lose digits by underflow."""
-        friction: Any = self.friction_coefficient
-        speed: Any = self.normal_speed
+        friction: Real = self.friction_coefficient
+        speed: Real = self.normal_speed
         with np.errstate(all="ignore"):
             energy = 0.5 * self.pair.normal_mass * (speed * speed)
             unit = friction * speed / self.pair.stiffness_ratio
-            slip: Any = kinetics.slip_speed(self)
+            slip: Real = kinetics.slip_speed(self)
             slip_energy = 0.5 * self.pair.tangential_mass * (slip * slip)
             momentum = friction * self.pair.normal_mass * speed
             tiny = (unit < LEAST_VELOCITY) & (slip < LEAST_VELOCITY)

@@ -40,7 +40,7 @@ def between_nodes(entries: Sequence[Real], axes: Sequence[Array], values: Array)
     places = [_place(*pair) for pair in zip(entries, axes, strict=True)]
     found: Any = 0.0
     for corner in itertools.product((0, 1), repeat=len(places)):
-        weight: Any = 1.0
+        weight: Real = 1.0
         for (_, share), up in zip(places, corner, strict=True):
             weight = weight * (share if up else 1.0 - share)
         nodes = tuple(low + up for (low, _), up in zip(places, corner, strict=True))

@@ -251,7 +251,7 @@ def chosen(condition: Mask, if_true: Real | complex, if_false: Real | complex) -
     return if_true if condition else if_false
 
 
-def quotient(dividend: Real, divisor: Real) -> Any:
+def quotient(dividend: Real, divisor: Real) -> Real:
     """Return a quotient; infinite where the divisor is 0, and NaN of 0/0."""
     if isinstance(dividend, float) and isinstance(divisor, float):
         return dividend / divisor if divisor else dividend * math.inf

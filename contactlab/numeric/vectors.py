@@ -151,7 +151,7 @@ def square_root(square: Kind) -> Kind:
     return math.sqrt(square) if isinstance(square, float) else np.sqrt(square)
 
 
-def hypotenuse(one: Real, other: Real) -> Any:
+def hypotenuse(one: Real, other: Real) -> Real:
     """Return the length of vectors of two components, of floats as a float."""
     floats = isinstance(one, float) and isinstance(other, float)
     return math.hypot(one, other) if floats else np.hypot(one, other)

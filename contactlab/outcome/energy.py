@@ -221,7 +221,7 @@ def raise_errors(
     speed: Any = scene.normal_speed
     rate: Any = BOOKS_TELL * np.asarray(off)
     with np.errstate(all="ignore"):
-        slip: Any = rate * speed * np.asarray(scene.psi_scale)
+        slip: Real = rate * speed * np.asarray(scene.psi_scale)
         psi2 = np.where(doubted, np.maximum(columns.psi2_error, slip), columns.psi2_error)
         own = columns.restitution_error
         restitution = np.where(doubted, np.maximum(own, rate), own)

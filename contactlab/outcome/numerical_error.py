@@ -55,7 +55,7 @@ def error_cautions(result: WithPlan) -> list[str]:
         contradicted = estimate > CONTRADICTS * declared
         unit, width, _ = range_of(result.scene)
         error = np.where(np.isnan(estimate), declared, estimate)  # a bound may be far larger
-        share: Any = error * np.divide(unit, width)
+        share: Real = error * np.divide(unit, width)
         share = np.where(result.plan.marched, share, 0.0)
     cautions = []
     if contradicted.any():

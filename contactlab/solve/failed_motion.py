@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -65,7 +64,7 @@ class UnfollowedMotion(_UnknownMotion):
     def __init__(self, law: Law, scene: Scene, rate: Real) -> None:
         super().__init__(law, scene)
         self.final_rate = batch.spread(rate, scene.shape)
-        lost: Any = scene.normal_speed - self.final_rate
+        lost: Real = scene.normal_speed - self.final_rate
         self.total_load_impulse = batch.spread(scene.pair.normal_mass * lost, scene.shape)
 
     def take(self, part: Index) -> UnfollowedMotion:

@@ -12,6 +12,7 @@ from contactlab.contracts import ClosedFormNormalLaw, claims
 from contactlab.contracts.status import Status
 from contactlab.impact.error_model import LARGEST_SHARE, range_of
 from contactlab.impact.scene import Scene
+from contactlab.numeric.types import Real
 from contactlab.outcome.motion import Motion, sound
 from contactlab.outcome.plan import MARCHED, Plan, PlanColumns
 from contactlab.outcome.result import ImpactResult
@@ -206,7 +207,7 @@ def _of_bodies(simulation: Simulation, result: ImpactResult) -> tuple[float, flo
     if not all(np.isfinite(number).all() for number in numbers):
         return np.nan, UNDECLARED, ["a number that is not finite"]
     if "books" not in law.expected_failures:
-        start: Any = books.start
+        start: Real = books.start
         bound: Any = law.books_bound(result.scene.central)
         bound = max(BODIES_BOOKS, bound if np.isfinite(bound) else 0.0)
         if books.end > start * (1.0 + BODIES_GAIN):

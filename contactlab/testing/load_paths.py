@@ -125,8 +125,8 @@ class Bench:
     @classmethod
     def of(cls, shape: tuple[int, ...] = (), units: Units | None = None) -> Bench:
         """Return a bench; the contacts of a batch differ in friction and in the bodies."""
-        friction: Any = FRICTION
-        sizes: Any = 1.0
+        friction: Real = FRICTION
+        sizes: Real = 1.0
         if shape:
             friction = np.linspace(0.1, 0.7, math.prod(shape)).reshape(shape)
             sizes = bodies(*shape)

@@ -213,7 +213,7 @@ class AngleOffset(Parameter):
     def applied(self, setup: Setup, value: Real) -> Setup:
         """Return the scene with corrected angles."""
         scene = setup.scene
-        angle: Any = np.arctan2(scene.tangential_velocity, scene.normal_speed)
+        angle: Real = np.arctan2(scene.tangential_velocity, scene.normal_speed)
         return setup._replace(scene=turn_scene(scene, angle - np.radians(value), ()))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from contactlab.contracts import NormalMotion
 from contactlab.impact import kinetics
 from contactlab.impact.coupling import coupling_number
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab_halfspace.axisymmetric import STEPS, follow_all
 from contactlab_halfspace.instants import Instants, instants, units
 from contactlab_halfspace.march import Followed, follow, join_impacts
@@ -74,10 +74,10 @@ class Matter(NamedTuple):
         """Return the numbers of the impacts of a normal motion, of shape () or (impacts,)."""
         scene = normal.scene
         pair, count = scene.pair, max(math.prod(scene.shape), 1)
-        kappa: Any = pair.stiffness_ratio
+        kappa: Real = pair.stiffness_ratio
         unit = units(normal)
         momentum = np.atleast_1d(pair.normal_mass * scene.normal_speed)
-        inertia: Any = 0.5 * kappa * pair.normal_mass * pair.inverse_spin_mass
+        inertia: Real = 0.5 * kappa * pair.normal_mass * pair.inverse_spin_mass
         columns = (
             scene.psi1,
             scene.chi,

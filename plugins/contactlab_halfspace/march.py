@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab_halfspace.pressure import Answering, Prescribed
 from contactlab_halfspace.slips import begun, move_slips, rest
 from contactlab_halfspace.splitting import settle
@@ -91,7 +91,7 @@ def follow(
         contact, new = pressure.contact(k), np.zeros(zero.shape)
         fixed = displaced + duration * (psi1 + change[k - 1] - gain * shares[k - 1] * early)
         slowing, share, force, surface = duration * gain * late, shares[k - 1], 0.0, zero[:2]
-        turning: Any = 0.0
+        turning: Real = 0.0
         acted = moment
         if table.spins:
             rotation += duration * (w1 + slowed - chi_w * pressure.impulse(k) * moment)

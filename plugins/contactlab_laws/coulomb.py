@@ -118,8 +118,8 @@ class Frictionless(WholeImpactTangentialLaw, CoupledTangentialLaw):
     ) -> TangentialMotion:
         """Return the velocities that the impulse of the frictionless approach gives."""
         W: Any = scene.inverse_mass
-        speed: Any = scene.normal_speed
-        rate: Any = normal.final_rate
+        speed: Real = scene.normal_speed
+        rate: Real = normal.final_rate
         impulse = scene.pair.normal_mass * (speed - rate)
         drag = -np.asarray(impulse)[..., None] * W[..., 0, 1:]
         entries = (

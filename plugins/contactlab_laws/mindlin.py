@@ -295,7 +295,7 @@ class MindlinCap(CausalTangentialLaw):
         """Return the force after the step, and the work of the mean force on the slip."""
         if isinstance(state, InPlane):
             return moved_in_plane(self, state, increment, before, after)
-        stiffness: Any = state.modulus * after.radius
+        stiffness: Real = state.modulus * after.radius
         cap = state.friction_coefficient * after.friction_load
         # x + (x == 0) divides without a branch and without a warning, one impact and many alike
         compliance = (stiffness > 0.0) / (stiffness + (stiffness == 0.0))

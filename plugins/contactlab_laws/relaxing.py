@@ -62,7 +62,7 @@ class Relaxing(NormalLaw):
 
     def start(self, scene: Scene) -> Parts:
         """Return stiffness and relaxation time of the pair; the law has no memory."""
-        time: Any = number_in(self, "relaxation_time", scene)
+        time: Real = number_in(self, "relaxation_time", scene)
         if time is None:
             unit = hertz_scales(scene).approach / scene.normal_speed
             time = self.number_of(self.restitution_in(scene)) * unit

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import attrs
 import numpy as np
@@ -77,12 +77,12 @@ class Thornton(NormalLaw):
     def respond(self, state: State, approach: Real, rate: Real) -> tuple[NormalContact, State]:
         """Return force and radius, and the state with the deepest approach."""
         stiffness, radius, yielding, deepest_before = state
-        deepest: Any = np.maximum(deepest_before, approach)
+        deepest: Real = np.maximum(deepest_before, approach)
         # While elastic, the greatest force is Hertz's and ``flatter`` is 1.
         plastic = np.maximum(deepest, yielding)
         greatest = yielding**1.5 + 1.5 * yielding**0.5 * (plastic - yielding)
         flatter = plastic**1.5 / greatest  # R_p/R, the forces over k
-        compression: Any = deepest / flatter - (deepest - approach)  # z - z_p
+        compression: Real = deepest / flatter - (deepest - approach)  # z - z_p
         inside = compression * np.logical_not(compression <= 0.0)
         contact = NormalContact(
             force=stiffness * flatter**0.5 * inside**1.5,

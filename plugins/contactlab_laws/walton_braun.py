@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import attrs
 import numpy as np
@@ -60,7 +60,7 @@ class WaltonBraun(NormalLaw):
         deepest = np.maximum(state.deepest, approach)
         share = self.restitution * self.restitution
         # (z - z_p)/e², which is z while loading.
-        compression: Any = deepest - (deepest - approach) / share
+        compression: Real = deepest - (deepest - approach) / share
         pressing = np.logical_not(compression <= 0.0)
         spring = compression * pressing
         contact = NormalContact(

@@ -106,9 +106,9 @@ class Annulus(PartialSlip, AllStepsTangentialLaw):
     ) -> tuple[TangentialResponse, State]:
         """Return the force (22) after the step."""
         scales, hertz, memory = state
-        radius: Any = after.radius / scales.radius
+        radius: Real = after.radius / scales.radius
         pressure = self._pressure(scales, radius, after.friction_load, hertz=hertz)
-        slip: Any = increment.displacement * scales.displacement
+        slip: Real = increment.displacement * scales.displacement
         answers: Any
         *answers, memory = step.advance(self._tables(), memory, slip, radius, pressure)
         if not memory.lag.shape[:-1]:
@@ -144,7 +144,7 @@ class Annulus(PartialSlip, AllStepsTangentialLaw):
         if hertz:
             return scales.pressure(radius, load)
         table = self._tables()
-        carried: Any = hertz_pressure(table, radius) @ table.weight  # beta³ to within about n^-1.5
+        carried: Real = hertz_pressure(table, radius) @ table.weight  # beta³ to within about n^-1.5
         return load / (scales.normal_force * carried + (carried == 0.0))
 
     def _tables(self) -> Tables:

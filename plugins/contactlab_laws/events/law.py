@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import attrs
 import numpy as np
@@ -21,6 +21,7 @@ from contactlab.contracts import (
 from contactlab.impact.error_model import psi_magnitude
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Rule, quantity
+from contactlab.numeric.types import Real
 from contactlab_laws.events.scaled import show, solve
 
 #: Rounding allows no more than the first; with the second the answer still has three digits.
@@ -52,7 +53,7 @@ class Events(Integrator):
 
     def errors(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Errors:
         """Return the tolerance, and what the law declares for itself."""
-        own: Any = tangential.errors(scene, normal, np.inf).psi2
+        own: Real = tangential.errors(scene, normal, np.inf).psi2
         return Errors(self.tolerance * psi_magnitude(scene) + own)
 
     def integrate(

@@ -23,7 +23,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.path import LINEAR_BELOW
 from contactlab.contracts.status import Status
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 #: Below this friction may stop no slip at all, however slow, and nothing is scaled.
 LEAST_INERTIA = 1e-99
@@ -73,8 +73,8 @@ def solve(law: PathTangentialLaw, normal: ClosedFormMotion, tolerance: float) ->
             scene.pair.stiffness_ratio,
             scene.friction_coefficient,
         )
-        force: Any = normal.maximum_force
-        approach: Any = normal.maximum_approach
+        force: Real = normal.maximum_force
+        approach: Real = normal.maximum_approach
         unit, limit = friction * speed / kappa, friction * force
         velocity = abs(scene.slip_velocity) / unit if unit else 0.0
         inertia = kappa * (force / speed) * (approach / speed) / scene.pair.tangential_mass

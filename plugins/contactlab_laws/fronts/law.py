@@ -77,7 +77,7 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
     rebound = staticmethod(rebound)
 
     @staticmethod
-    def rebound_error(*_: Any) -> Any:
+    def rebound_error(*_: Any) -> Real:
         """Return that of the table."""
         return ERROR
 

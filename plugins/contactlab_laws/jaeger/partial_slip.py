@@ -9,7 +9,7 @@ import numpy as np
 
 from contactlab.contracts import NormalMotion, SteppedTangentialLaw, WholeImpact
 from contactlab.impact.scene import Scene
-from contactlab.numeric.types import Real
+from contactlab.numeric.types import Array, Real
 from contactlab_laws.jaeger.gross_slip import gross_slip
 
 #: Phases at which the friction load is compared with Hertz's, and the relative tolerance.
@@ -63,7 +63,7 @@ class Scales(NamedTuple):
     @property
     def metres(self) -> Real:
         """Metres of displacement per scaled unit, 1/``displacement``; 0 without friction."""
-        scaled: Any = np.asarray(self.displacement)
+        scaled: Array = np.asarray(self.displacement)
         metres: Real = (scaled > 0.0) / (scaled + (scaled == 0.0))
         return metres
 

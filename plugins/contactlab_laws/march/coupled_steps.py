@@ -61,7 +61,7 @@ def _ended(normal: NormalMotion) -> Mask:
     return np.asarray(np.asarray(normal.status, dtype=object) == Status.SUCCESS)
 
 
-def approach_duration(normal: NormalMotion) -> Any:
+def approach_duration(normal: NormalMotion) -> Real:
     """Return the duration of the approach without friction in s, in which steps are counted.
 
     An approach that never ends counts as Hertz's impact that is as deep.

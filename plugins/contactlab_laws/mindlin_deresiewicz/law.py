@@ -110,7 +110,7 @@ class MindlinDeresiewicz(PartialSlip, CausalTangentialLaw):
     ) -> tuple[TangentialResponse, State]:
         """Return the force after the step, and the work of the slipping annuli."""
         shape, scales = np.shape(increment.displacement), state.scales
-        radius: Any = after.radius / scales.radius
+        radius: Real = after.radius / scales.radius
         pressure = scales.pressure(radius, after.friction_load)
         columns = np.broadcast_arrays(
             increment.displacement * scales.displacement, radius, pressure

@@ -132,9 +132,9 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
             return known
         # A spring slips on while psi exceeds w' = (l - w)/A: the rate of approach if bodies of
         # Kelvin and Voigt part, less than nothing in unloading under any law.
-        friction: Any = scene.friction_coefficient * normal.total_load_impulse
-        reduced: Any = abs(scene.slip_velocity) - friction / scene.pair.tangential_mass
-        least: Any = 0.0
+        friction: Real = scene.friction_coefficient * normal.total_load_impulse
+        reduced: Real = abs(scene.slip_velocity) - friction / scene.pair.tangential_mass
+        least: Real = 0.0
         if "kelvin_voigt" in normal.claims:
             least = normal.final_rate * scene.friction_coefficient / scene.pair.stiffness_ratio
         where = (abs(scene.psi1) >= 1.0) & (reduced >= least)

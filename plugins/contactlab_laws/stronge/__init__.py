@@ -8,7 +8,7 @@ slip of sign s f = s p. ``stages`` follows one impact, ``batch`` many.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import attrs
 import numpy as np
@@ -69,7 +69,7 @@ class Stronge(WholeImpactTangentialLaw):
         pair = scene.pair
         ratio = pair.stiffness_ratio if self.stiffness_ratio is None else self.stiffness_ratio
         with np.errstate(all="ignore"):
-            unit: Any = scene.friction_coefficient * scene.normal_speed / ratio
+            unit: Real = scene.friction_coefficient * scene.normal_speed / ratio
             incidence = np.abs(scene.slip_velocity) / unit
             frequency = np.sqrt(ratio * pair.normal_mass / pair.tangential_mass)
             # e from the velocities: adhesion changes the friction load's impulse.

@@ -52,7 +52,7 @@ class Rebound(NamedTuple):
     def of(cls, contact: Contact, frequency: Real) -> Rebound:
         """Return what a contact leaves at separation."""
         # With e = 0 the load ends at once and the spring, which still holds energy, loses it.
-        held: Any = frequency * contact.force
+        held: Real = frequency * contact.force
         return cls(contact.change, contact.work + 0.5 * held * held)
 
 
