@@ -108,8 +108,11 @@ def restituted(normal: object, restitution: object) -> Any:
     if takes_restitution(type(found)):
         if isinstance(normal, str):
             return composition.law("normal", normal, restitution=e)
-        if attrs.has(type(found)) and isinstance(found.restitution, Taken | None):
-            return attrs.evolve(found, restitution=e)
+        if attrs.has(type(found)) and isinstance(
+            found.restitution,  # type: ignore[attr-defined]  # which the law takes
+            Taken | None,
+        ):
+            return attrs.evolve(found, restitution=e)  # type: ignore[misc]
     rule = f"stands beside normal = {REGISTRY.short_name(found)}, which "
     rule += "has one" if takes_restitution(type(found)) else "does not take it"
     raise refuse("restitution", restitution, rule, f"leave out one of them; {own} takes it")
