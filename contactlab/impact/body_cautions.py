@@ -14,6 +14,7 @@ from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.rigid_body import FLAT, RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import for_share
+from contactlab.numeric.taken import Taken
 from contactlab.numeric.types import Array, Real
 
 #: Mass over that of a solid sphere, or ellipsoid, below which it is a shell, with a wall below a
@@ -132,7 +133,8 @@ def units_of_bodies(encounter: Encounter) -> list[str]:
             told = f"the contact of the {name} is {_most(length):.4g} m from the centre of mass"
             said.append(f"unit: {told}: are lengths in mm?")
         radius = _curvature(body)
-        if radius >= CURVED and (size is None or radius > OVER_SIZE * _most(size)):
+        taken = isinstance(body.curvature_radius, Taken)
+        if radius >= CURVED and not taken and (size is None or radius > OVER_SIZE * _most(size)):
             said.append(f"unit: {name}.curvature_radius = {radius:.4g} m: is the radius in mm?")
         gyration = np.sqrt(np.trace(body.inertia, axis1=-2, axis2=-1) / (3.0 * mass))
         over = gyration / np.maximum(length, 1e-300)
@@ -151,6 +153,32 @@ def units_of_bodies(encounter: Encounter) -> list[str]:
             told = f"the {name} spins at {_most(turning):.4g} rad/s: is the spin in turns a minute?"
             told += f" The contact moves {rim / _most(speed):.3g} times as fast as the centre."
             said.append(f"unit: {told}")
+    return said
+
+
+def taken_of_bodies(encounter: Encounter, *, several: bool = False) -> list[str]:
+    """Return one sentence for each radius of curvature that nobody gave.
+
+    It moves velocities where there are ``several`` contacts at once.
+    """
+    said = []
+    for name, body in (("body", encounter.body), ("target", encounter.target)):
+        if not (isinstance(body, RigidBody) and isinstance(body.curvature_radius, Taken)):
+            continue
+        radius = f"using {body.curvature_radius:.3g} m"
+        if body.cross_radius is None:
+            when = "as contacts act together" if several else "under laws of a rate or of yield"
+            said.append(
+                f"{name}: no curvature_radius given, {radius}, that of a solid ball of this mass. "
+                f"It moves the duration, the force, and velocities {when}. "
+                "Set your own: curvature_radius=..."
+            )
+        else:
+            said.append(
+                f"{name}: no crown_radius given, {radius} along the edge, ten times the longest "
+                "side. Between 1 and 100 times it moves velocities by less than 0.01 of that of "
+                "approach. Set your own: crown_radius=..."
+            )
     return said
 
 

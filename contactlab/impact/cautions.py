@@ -241,9 +241,9 @@ def unit_slips(scene: Scene) -> list[str]:
         met = scene.encounter
         if met is None or met.of_spheres:
             return slips
-        from contactlab.impact.body_cautions import units_of_bodies  # spheres need none of this
+        from contactlab.impact import body_cautions  # spheres need none of this
 
-        return [*slips, *units_of_bodies(met)]
+        return [*slips, *body_cautions.units_of_bodies(met), *body_cautions.taken_of_bodies(met)]
     speed = math.hypot(_most(scene.normal_speed), _most(abs(scene.tangential_velocity)))
     spin = _most(abs(scene.spin))
     rim = _most(scene.sphere.radius) * spin

@@ -23,6 +23,7 @@ from contactlab.numeric.checks import (
     refuse,
 )
 from contactlab.numeric.names import state_arguments
+from contactlab.numeric.taken import Taken
 from contactlab.numeric.types import Array, Either, Index, Numbers, Real
 from contactlab.numeric.vectors import components, dot
 
@@ -73,8 +74,8 @@ def _array(unit: str, trailing: tuple[int, ...]) -> Any:
 
 def _radius(value: Numbers | None, field: attrs.Attribute[object]) -> Real | None:
     """Return a radius of curvature in m: infinite if flat, negative if hollow."""
-    if value is None and field.default is None:
-        return None
+    if (value is None and field.default is None) or type(value) is Taken:
+        return value
     flat = _flat(value)
     remedy = "in m; math.inf if flat, negative if hollow"
     if not np.any(flat):
@@ -100,7 +101,7 @@ def _flat(value: object) -> Any:
     return np.isinf(array) if known else False
 
 
-def _curvature_field(default: object = attrs.NOTHING) -> Any:
+def _curvature_field(*, default: None) -> Any:
     """Return an attrs field for a radius of curvature."""
     converter = attrs.Converter(_radius, takes_field=True)
     metadata = {"unit": "m", "range": CURVED.sentence}
@@ -123,10 +124,12 @@ class RigidBody:
         Inertia about the centre of mass, in kg m².
     material : Material
         Elastic material of the surface.
-    curvature_radius : float or array
+    curvature_radius : float or array, optional
         Radius of curvature of the surface at the contact, in m: ``math.inf`` for a flat surface,
         negative for a hollow one. With ``cross_radius`` the principal radius along
-        ``curvature_axis``.
+        ``curvature_axis``. Of a round contact it moves duration and force alone, and no velocity
+        under elastic laws or a restitution: by default it is that of a solid ball of this mass,
+        and the plan says so.
     principal : array, shape (..., 3), optional
         Principal moments of inertia, in kg m².
     axes : array, shape (..., 3, 3), optional
@@ -155,7 +158,7 @@ class RigidBody:
     material: Material = instance(
         Material, remedy="make one, Material(...), or by its name: Material.named('steel')"
     )
-    curvature_radius: Either = _curvature_field()
+    curvature_radius: Either = _curvature_field(default=None)
     principal: Any = _array("kg m²", (3,))
     axes: Any = _array("1", (3, 3))
     cross_radius: Either = _curvature_field(default=None)
@@ -172,7 +175,7 @@ class RigidBody:
         mass: Numbers,
         inertia: Numbers | None = None,
         material: Material,
-        curvature_radius: Numbers,
+        curvature_radius: Numbers | None = None,
         principal: Numbers | None = None,
         axes: Numbers | None = None,
         cross_radius: Numbers | None = None,
@@ -181,6 +184,8 @@ class RigidBody:
     ) -> None: ...
 
     def __attrs_post_init__(self) -> None:
+        if self.curvature_radius is None:
+            object.__setattr__(self, "curvature_radius", self._ball_radius())  # it is frozen
         if (self._inertia is None) == (self.principal is None):
             rule = "give one of the two"
             remedy = "inertia=(..., 3, 3), or principal=(..., 3) with axes=(..., 3, 3)"
@@ -224,6 +229,17 @@ class RigidBody:
             raise refuse("curvature_axis", axis.tolist(), rule, "give cross_radius= too")
         if axis is not None and not axis.any(axis=-1).all():
             raise refuse("curvature_axis", axis.tolist(), "must not be zero")
+
+    def _ball_radius(self) -> Taken:
+        """Return the radius in m of a solid ball of this mass, or refuse what it cannot be."""
+        remedy = "give it in m"
+        if self.cross_radius is not None or self.curvature_axis is not None:
+            raise refuse("curvature_radius", None, "is needed beside cross_radius", remedy)
+        density = self.material.density
+        if not (isinstance(self.mass, float) and isinstance(density, float)):
+            rule = "is taken from one mass and one density, which are not there"
+            raise refuse("curvature_radius", None, rule, remedy)
+        return Taken(math.cbrt(self.mass / density / (4.0 / 3.0 * math.pi)))
 
     @property
     def crossing(self) -> Either:

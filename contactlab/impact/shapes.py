@@ -21,6 +21,7 @@ from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.arrays import lock_arrays
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, real, refuse
 from contactlab.numeric.names import SHAPES, function_told
+from contactlab.numeric.taken import Taken
 from contactlab.numeric.types import Array, Numbers, Real
 from contactlab.registration.bring import by_name
 from contactlab.registration.hooks import hookimpl
@@ -38,6 +39,8 @@ UNIT = {
 }
 #: Cosine of the normal with an edge or face below which the contact is a line or a face.
 FLUSH = 1e-9
+#: Radius of curvature of an edge that nobody gave, over the longest side.
+CROWN = 10.0
 #: Gauss points along the quarter circle of a rim: more change nothing.
 RIM_POINTS = 32
 #: Square of the first root of cos x cosh x = 1: bending of a rod with free ends.
@@ -91,7 +94,7 @@ def _stack(made: list[tuple[RigidBody, Array]], shape: tuple[int, ...]) -> tuple
     bodies = RigidBody.alike([body for body, _ in made])
     columns: dict[str, Any] = {
         "inertia": np.array([body.inertia for body in bodies]).reshape(*shape, 3, 3),
-        "curvature_radius": np.reshape([body.curvature_radius for body in bodies], shape),
+        "curvature_radius": _radii([body.curvature_radius for body in bodies], shape),
     }
     if bodies[0].cross_radius is not None:
         columns["cross_radius"] = np.reshape([body.cross_radius for body in bodies], shape)
@@ -99,6 +102,15 @@ def _stack(made: list[tuple[RigidBody, Array]], shape: tuple[int, ...]) -> tuple
         columns["curvature_axis"] = np.reshape(axes, (*shape, 3))
     body = attrs.evolve(bodies[0], principal=None, axes=None, **columns)
     return body, np.reshape([contact for _, contact in made], (*shape, 3))
+
+
+def _radii(radii: list[Any], shape: tuple[int, ...]) -> Any:
+    """Return radii as an array, or one number that nobody gave."""
+    taken = [isinstance(each, Taken) for each in radii]
+    if any(taken) and not all(taken):
+        rule = "is needed where some poses touch with an edge, and others with a corner"
+        raise refuse("crown_radius", None, rule, "give it in m")
+    return radii[0] if all(taken) else np.reshape(radii, shape)
 
 
 @function_told
@@ -283,16 +295,17 @@ def box(
         default.
     crown_radius : float, optional
         Radius of curvature of the edges along their length, in m, at least half the longest side.
-        With it the box touches with an edge where the normal is nearly at right angles to it; by
-        default with corners only.
+        With it the box touches with an edge where the normal is nearly at right angles to it. By
+        default it touches with corners; where an edge lies flat on the surface, ten times the
+        longest side is taken, and the plan says so. ``flat_box`` gives both ends of an edge for a
+        ``Gathering``.
     mass : float, optional
         In kg.
 
     Raises
     ------
     ValueError
-        If the contact is a line along an edge without ``crown_radius``, or a face, or a number is
-        out of range.
+        If a face touches, or a number is out of range.
     """
     edges, corner = _three("sides", sides), _size("corner_radius", corner_radius)
     if corner > 0.5 * edges.min():
@@ -305,9 +318,7 @@ def box(
         remedy = "tilt the box; as it lands flat flat_box gives its corners for a Gathering"
         raise refuse("normal", turn @ outward, "contact along a face of the box", remedy)
     if flush and crown == math.inf:
-        rule = "contact along a line: an edge of the box touches"
-        remedy = "tilt the box, give crown_radius=, or flat_box gives both ends for a Gathering"
-        raise refuse("normal", turn @ outward, rule, remedy)
+        crown = Taken(CROWN * float(edges.max()))
     contact = np.sign(outward) * (0.5 * edges - corner) + corner * outward
     curvature: dict[str, Any] = {"curvature_radius": corner}
     along = int(np.argmin(np.abs(outward)))

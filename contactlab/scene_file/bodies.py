@@ -51,8 +51,7 @@ def rigid_body(
     if name is None:
         table = Table(content, path, known=("kind", "shape", *RIGID_KEYS, *beside))
         numbers = {key: table.content[key] for key in RIGID_KEYS if table.has(key)}
-        for key in ("mass", "curvature_radius"):
-            table.require(key, "or name a shape: " + ", ".join(known))
+        table.require("mass", "or name a shape: " + ", ".join(known))
         return table.make(RigidBody, **numbers | {"material": material(table)}), None
     if not (isinstance(name, str) and name in known):
         raise refuse(f"{path}.shape", name, "is no shape", "known: " + ", ".join(known))

@@ -11,6 +11,7 @@ import numpy as np
 
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
+from contactlab.impact.body_cautions import taken_of_bodies
 from contactlab.impact.body_contact import spin_about
 from contactlab.impact.gathering import Gathering
 from contactlab.numeric.types import Array, Mask
@@ -311,6 +312,7 @@ class _Words:
             laws = self.laws.normal, self.laws.tangential
             told = [text for law in laws for text in ask(law, law.cautions, alone, normal)]
             told += NormalLaw.cautions(self.laws.normal, alone, normal)
+            told += taken_of_bodies(encounter, several=True)
             for text in dict.fromkeys(told):
                 said.setdefault(text, []).append(k)
         for text, numbers in said.items():
