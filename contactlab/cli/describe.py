@@ -31,7 +31,7 @@ def describe(
     collision: Collision | None,
 ) -> str:
     """Return the report of one impact or a sweep, with vectors if ``collision`` is given."""
-    cautions = "\n".join(f"caution:  {text}" for text in error_cautions(result))
+    cautions = "\n".join(f"caution: {text}" for text in error_cautions(result))
     if result.scene.shape:
         shown = {name: (entry_unit(name), values) for name, values in varied.items()}
         body = [table(*sweep_section(result, shown)), largest_imbalance(result)]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Generic
@@ -30,7 +32,14 @@ from contactlab.outcome.columns import json_value
 from contactlab.outcome.energy import EnergyLedger, books
 from contactlab.outcome.plan import Plan, PlanColumns
 from contactlab.outcome.result import ImpactResult
-from contactlab.outcome.sheet import Sheet, along_axes, batch_axes, names_of
+from contactlab.outcome.sheet import (
+    MOST_TOLD,
+    Sheet,
+    along_axes,
+    batch_axes,
+    moving,
+    names_of,
+)
 from contactlab.runs.simulation import Simulation
 
 if TYPE_CHECKING:
@@ -322,6 +331,22 @@ class Collision(Answer, Generic[Each]):
             return f"Collision({count} encounters collided; {outcome})"
         outcome = outcome if self.collided else "separate, passed through"
         return f"Collision(velocity={self.velocity}, spin={self.spin}; {outcome})"
+
+    def _first_lines(self) -> list[str]:
+        """Return ``repr``, and how the bodies move, of a batch in its first encounters."""
+        shape, both = self.encounter.shape, not isinstance(self.encounter.target, HalfSpace)
+        lines = [repr(self)]
+        if not shape and not both:
+            return lines  # which tells it
+        for index in itertools.islice(np.ndindex(shape), MOST_TOLD):
+            where = f"encounter {', '.join(map(str, index))}, " if shape else ""
+            lines.append(moving(f"{where}body", self.velocity[index], self.spin[index]))
+            if both:
+                motion = self.target_velocity[index], self.target_spin[index]
+                lines.append(moving(f"{where}target", *motion))
+        if (more := math.prod(shape) - MOST_TOLD) > 0:
+            lines.append(f"  ... and {more} more: to_dataframe()")
+        return lines
 
     def _statuses(self) -> tuple[Any, Any]:
         return (Status.SUCCESS, "") if self.known is None else self.known._statuses()

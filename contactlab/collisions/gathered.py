@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Mapping
 from functools import cached_property
@@ -24,7 +25,14 @@ from contactlab.outcome.energy import EnergyLedger
 from contactlab.outcome.gathering_energy import gathering_ledger
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory, Recorder
 from contactlab.outcome.motion import Motion, without_failures
-from contactlab.outcome.sheet import Sheet, along_axes, batch_axes, names_of
+from contactlab.outcome.sheet import (
+    MOST_TOLD,
+    Sheet,
+    along_axes,
+    batch_axes,
+    moving,
+    names_of,
+)
 from contactlab.registry.composition import versions
 from contactlab.runs.simulation import Simulation
 from contactlab.solve.coupled import Coupled
@@ -258,6 +266,20 @@ class GatheringResult(Answer):
         if self.gathering.shape:
             told = f"{np.prod(self.gathering.shape)} gatherings of {told}"
         return f"GatheringResult({told}; {statuses_told(self.status)})"
+
+    def _first_lines(self) -> list[str]:
+        """Return ``repr``, and how the bodies move, of a batch in its first gathering."""
+        bodies = len(self.gathering.bodies)
+        names = [*self.gathering.names] or [f"bodies[{k}]" for k in range(bodies)]
+        first = (0,) * len(self.gathering.shape)
+        where = f"gathering {', '.join(map(str, first))}, " if first else ""
+        told = [
+            moving(f"{where}{name}", self.velocity[(*first, k)], self.spin[(*first, k)])
+            for k, name in enumerate(names[:MOST_TOLD])
+        ]
+        if len(told) < math.prod(self.velocity.shape[:-1]):
+            told.append("  ... and more: to_dataframe()")
+        return [repr(self), *told]
 
     def to_dict(self) -> dict[str, Any]:
         """Return the vectors of bodies and the numbers of contacts as plain lists."""

@@ -273,7 +273,7 @@ class Plan:
         """Return the plan in words, a line a sentence."""
         lines = [f"computed: {sentence}" for sentence in self.computed]
         lines += [f"left out: {sentence}" for sentence in self.left_out]
-        lines += [f"caution:  {sentence}" for sentence in self.cautions]
+        lines += [f"caution: {sentence}" for sentence in self.cautions]
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:

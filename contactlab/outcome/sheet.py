@@ -11,6 +11,8 @@ import numpy as np
 from contactlab.contracts.status import Status, Statuses, succeeded
 from contactlab.numeric.types import AnyArray, Array
 
+#: Bodies, or encounters, whose motion is told in words.
+MOST_TOLD = 6
 #: Axes of vectors in space.
 AXES = ("x", "y", "z")
 
@@ -58,3 +60,9 @@ def names_of(statuses: Statuses, shape: tuple[int, ...]) -> AnyArray:
         return np.full(shape, Status.SUCCESS.name)
     each = np.ravel(np.array(statuses, dtype=object))
     return np.broadcast_to(np.array([status.name for status in each]).reshape(shape), shape)
+
+
+def moving(name: str, velocity: Array, spin: Array) -> str:
+    """Return how a body moves, in a line: velocity in m/s and spin in rad/s."""
+    told = (f"({', '.join(f'{number + 0.0:.6g}' for number in each)})" for each in (velocity, spin))
+    return f"  {name}: velocity {next(told)} m/s, spin {next(told)} rad/s"

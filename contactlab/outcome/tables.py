@@ -10,6 +10,7 @@ import numpy as np
 
 from contactlab.impact import kinetics
 from contactlab.impact.bodies import HalfSpace, Sphere
+from contactlab.impact.cautions import size_of_contact
 from contactlab.impact.hertz import semi_axes
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.types import Real
@@ -63,8 +64,13 @@ def time(seconds: float) -> str:
 
 
 def answer(result: ImpactResult) -> list[tuple[str, str]]:
-    """Return psi2 of one impact, its numerical error and the run time, as (name, words)."""
+    """Return psi2 of one impact, its numerical error and the run time, as (name, words).
+
+    Of bodies the dimensionless groups come with it.
+    """
+    groups = _groups(result.scene) if has_bodies(result.scene) else []
     return [
+        *((name, number(value)) for name, value in groups),
         *((name, number(value, digits=10)) for name, value in _each("psi2", result.psi2)),
         ("numerical error of psi2", error_words(result)),
         ("run time", time(result.run_time)),
@@ -258,15 +264,18 @@ def _each(name: str, value: Real) -> list[tuple[str, Any]]:
     return [(part, float(each)) for part, each in components(name, value, ())]
 
 
+def _groups(scene: Scene) -> list[tuple[str, Any]]:
+    """Return the dimensionless groups but psi1, by name."""
+    groups = [*kinetics.groups(scene).items()][1:]
+    return [each for name, group in groups for each in _each(name, group)]
+
+
 def _contact(result: ImpactResult) -> list[Row]:
     """Return restitutions, duration and maxima of the contact."""
     scene, motion = result.scene, result.motion
+    groups = [] if has_bodies(scene) else _groups(scene)
     rows: list[Row] = [
-        *(
-            [part, value, "1"]
-            for name, group in [*kinetics.groups(scene).items()][1:]
-            for part, value in _each(name, group)
-        ),
+        *([name, value, "1"] for name, value in groups),
         ["normal restitution e", result.normal_restitution, "1"],
         ["tangential restitution e_t", result.tangential_restitution, "1"],
         ["contact time", motion.duration, "s"],
@@ -280,6 +289,7 @@ def _contact(result: ImpactResult) -> list[Row]:
     ]
     if not has_bodies(scene):
         return rows
+    size = size_of_contact(scene, motion.maximum_radius)
     sizes: list[Row] = [["largest contact radius", motion.maximum_radius, "m"]]
     if scene.pair.axis_ratio != 1.0:
         axes: Any = zip(("t1", "t2"), semi_axes(scene.pair), strict=True)
@@ -291,7 +301,7 @@ def _contact(result: ImpactResult) -> list[Row]:
     return [
         *rows,
         *sizes,
-        ["largest contact radius over R, C (9)", motion.maximum_radius / scene.pair.radius, "1"],
+        ["largest contact radius over R, C (9)", size, "1"],
         ["largest normal force", motion.maximum_force, "N"],
     ]
 

@@ -170,3 +170,23 @@ def test_animate_draws_an_impact_of_numbers(run, tmp_path, monkeypatch):
     scene.write_text("[nondimensional]\npsi1 = 1.0\nchi = 1.5\nlam = 0.4\neta = 0.4\n")
     assert run("animate", scene, "--out", out).status == 0
     assert out.read_bytes()[:6] == b"GIF89a"
+
+
+def test_velocities_stand_before_the_numbers_of_the_theory(run, file):
+    """And the size of the contact has one value, in the table and in the caution."""
+    rod = (
+        '[body]\nshape = "rod"\nlength = 0.1\nradius = 0.01\ntilt_deg = 30\nend_radius = 0.03\n'
+        'material = "steel"\n[target]\nkind = "half-space"\nmaterial = "steel"\n[impact]\n'
+        "friction_coefficient = 0.3\nvelocity = [5.0, 0.0, -40.0]\nnormal = [0, 0, -1]\n"
+    )
+    told = run("run", file(rod)).out
+    lines = told.splitlines()
+    places = [
+        next(place for place, line in enumerate(lines) if line.split()[:1] == [word])
+        for word in ("velocity", "spin", "chi", "lam", "psi2", "computed:")
+    ]
+    assert places == sorted(places)
+    (size,) = (line.split()[-2] for line in lines if "over R, C (9)" in line)
+    (caution,) = (line for line in lines if "a/R = " in line)
+    assert float(size) == pytest.approx(float(caution.partition("a/R = ")[2][:5]), rel=5e-3)
+    assert "caution:  " not in told

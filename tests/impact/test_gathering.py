@@ -156,12 +156,6 @@ REFUSED = {
                                    integrator="symplectic")),
         "properties of materials",
     ),
-    "an array for a law": (
-        lambda: create("normal.tsuji", restitution=[0.9, 0.8]), "restitution",
-    ),
-    "a restitution of each impact": (
-        lambda: collide(row(3), Simulation(restitution=[0.9, 0.8])), "one number",
-    ),
 }  # fmt: skip
 
 

@@ -161,7 +161,7 @@ def test_outermost_annuli_stick_falsely_while_few_are_in_contact(psi1, took):
         time, share = stuck_share(result)
         spread = time[np.argmax(share > 0.999)] - time[np.argmax(share > 0.1)]
         assert spread == pytest.approx(expected, abs=0.01)
-        assert ("caution:  stick and slip of annuli" in str(result.plan)) is (result is annuli)
+        assert ("caution: stick and slip of annuli" in str(result.plan)) is (result is annuli)
     assert annuli.psi2 == pytest.approx(exact.psi2, abs=0.006)
     without = impact(psi1, CHI, 50, 1000, history=True)
     assert "stick and slip of annuli" not in str(without.plan)

@@ -186,6 +186,26 @@ def test_a_history_keeps_its_axes_when_it_is_copied():
     assert attrs.evolve(history).last_axis == "contact"
 
 
+def test_collisions_and_gatherings_tell_how_bodies_move():
+    hits = results()["collision of balls"][0]
+    told = str(hits).splitlines()[1:]
+    assert (
+        told[0] == "  encounter 0, body: velocity (0.398021, 0, 0) m/s, spin (0, 25.4947, 0) rad/s"
+    )
+    assert hits.velocity[0] == pytest.approx([0.398021, 0.0, 0.0], abs=1e-6)
+    assert told[3].startswith("  encounter 1, target: velocity (0, 0, 0) m/s")
+    assert "target: velocity" in str(results()["collision of one ball"][0])
+    rod = results()["collision of one rod"][0]
+    assert f"velocity={rod.velocity}" in str(rod)
+    speed = [(0.0, 0.0, -1.0)] * 7
+    many = collide(contactlab.Encounter(BALL, PLATE, 0.2, normal=DOWN, velocity=speed))
+    assert "... and 1 more: to_dataframe()" in str(many)
+    several = results()["gathering"][0]
+    told = str(several).splitlines()[3]
+    assert told.startswith("  bodies[2]: velocity (0.994551, ")
+    assert several.velocity[2, 0] == pytest.approx(0.994551, abs=1e-6)
+
+
 #: Cells of a notebook, each of which ends with a result.
 CELLS = (
     "import numpy as np\n"
