@@ -175,7 +175,7 @@ def test_animate_draws_an_impact_of_numbers(run, tmp_path, monkeypatch):
 def test_velocities_stand_before_the_numbers_of_the_theory(run, file):
     """And the size of the contact has one value, in the table and in the caution."""
     rod = (
-        '[body]\nshape = "rod"\nlength = 0.1\nradius = 0.01\ntilt_deg = 30\nend_radius = 0.03\n'
+        '[body]\nshape = "rod"\nlength = 0.1\nradius = 0.01\ntilt_deg = 30\n'
         'material = "steel"\n[target]\nkind = "half-space"\nmaterial = "steel"\n[impact]\n'
         "friction_coefficient = 0.3\nvelocity = [5.0, 0.0, -40.0]\nnormal = [0, 0, -1]\n"
     )
