@@ -6,11 +6,14 @@ To add a file format, add a writer and a line in ``WRITERS``.
 from __future__ import annotations
 
 import csv
+import importlib
+import itertools
 import json
 import math
 import zipfile
 import zlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import IO, Any, TextIO
 
@@ -22,6 +25,8 @@ from contactlab.outcome.columns import columns, csv_heading, json_value
 from contactlab.outcome.files import write_table, written
 from contactlab.outcome.result import ImpactResult
 
+#: Rows of a CSV file from which pyarrow is worth its import, and that are made at once.
+MANY = 50_000
 #: A column of an npz is compressed if so many numbers of it shrink to this share.
 SAMPLE, WORTH_WHILE = 8192, 0.5
 
@@ -45,10 +50,58 @@ def write_csv(result: ImpactResult, path: str | Path) -> None:
 
 def print_csv(result: ImpactResult, stream: TextIO) -> None:
     """Write what ``write_csv`` writes into a stream."""
-    table = columns(result)
+    table, shape = columns(result), result.scene.shape
     headings = [csv_heading(name, unit, result.scene) for name, unit, _ in table]
-    cells = [_spread(values, result.scene.shape) for _, _, values in table]
-    csv.writer(stream, lineterminator="\n").writerows([headings, *zip(*cells, strict=True)])
+    csv.writer(stream, lineterminator="\n").writerow(headings)
+    cells = [_cells(values, shape) for _, _, values in table]
+    rows = math.prod(shape)
+    lines = _lines_of_many if rows >= MANY and find_spec("pyarrow") else _lines
+    for first in range(0, rows, MANY):
+        part = [each if isinstance(each, str) else each[first : first + MANY] for each in cells]
+        stream.writelines(f"{line}\n" for line in lines(part, min(MANY, rows - first)))
+
+
+def _cells(value: object, shape: tuple[int, ...]) -> Any:
+    """Return a column as an array, words quoted; one text where all impacts have the same."""
+    array = np.asarray(math.nan if value is None else value)
+    array = np.broadcast_to(array, shape).ravel() if array.dtype != object else _flat(value, shape)
+    words = array.dtype.kind == "U"
+    bits = array.view(np.int64) if array.dtype == np.float64 else array  # -0.0 is not 0.0
+    if not array.size or (bits[1:] == bits[0]).all():
+        return _quoted(array[0]) if words else repr(array[0].item())
+    if not words:
+        return array
+    different, places = np.unique(array, return_inverse=True)
+    return np.array([*map(_quoted, different)])[places]
+
+
+def _quoted(word: str) -> str:
+    """Return a word as a cell of a CSV file."""
+    return '"' + word.replace('"', '""') + '"' if set(word) & set(',"\r\n') else str(word)
+
+
+def _lines(cells: Sequence[Any], rows: int) -> Iterator[str]:
+    """Return the lines of a CSV file, each number with the shortest digits that give it back."""
+    texts: list[Iterable[str]] = [
+        itertools.repeat(each, rows) if isinstance(each, str)
+        else each.tolist() if each.dtype.kind == "U" else map(repr, each.tolist())
+        for each in cells
+    ]  # fmt: skip
+    return map(",".join, zip(*texts, strict=True))
+
+
+def _lines_of_many(cells: Sequence[Any], rows: int) -> list[str]:
+    """Return the same numbers by pyarrow, which writes 1 for 1.0, and them twice as fast."""
+    if all(isinstance(each, str) for each in cells):  # no column tells how many rows there are
+        return list(_lines(cells, rows))
+    pyarrow, compute = map(importlib.import_module, ("pyarrow", "pyarrow.compute"))
+    texts = [
+        pyarrow.scalar(each) if isinstance(each, str)
+        else pyarrow.array(each).cast(pyarrow.string())
+        for each in cells
+    ]  # fmt: skip
+    lines: list[str] = compute.binary_join_element_wise(*texts, ",").to_pylist()
+    return lines
 
 
 def write_history_csv(result: ImpactResult, path: str | Path) -> None:
