@@ -44,20 +44,21 @@ def test_a_long_csv_gives_every_number_back(tmp_path, monkeypatch, alone):
     """By pyarrow where it is, and without; the bits of each number, and words with commas."""
     if alone:
         monkeypatch.setitem(sys.modules, "pyarrow", None)
-    psi1 = np.random.default_rng(1).uniform(-6.0, 6.0, 100_001)
+    psi1 = np.random.default_rng(1).uniform(-6.0, 6.0, 50_001)
     psi1[:4] = 0.0, -0.0, 5e-324, 1e22
     result = Simulation().sweep(Scene.nondimensional(psi1=psi1, chi=1.4))
     words = Column("word", "", value=lambda one: np.where(one.psi1 > 0.0, 'a,"b"', "c"))
     with column(words):
         write_csv(result, tmp_path / "a.csv")
-    rows = table(tmp_path / "a.csv")
-    told = np.array([float(row["psi1 (1)"]) for row in rows])
-    assert told.tobytes() == psi1.tobytes()
-    told = np.array([float(row["psi2 (1)"]) for row in rows])
-    assert told.tobytes() == result.psi2.tobytes()
-    assert [row["word"] for row in rows[3:6]] == ['a,"b"' if x > 0.0 else "c" for x in psi1[3:6]]
-    assert {row["status"] for row in rows} == {"SUCCESS"}
-    assert {row["chi (1)"] for row in rows} == {"1.4"}
+    lines = (tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()
+    names, *rows = csv.reader(lines)
+    columns = dict(zip(names, zip(*rows, strict=True), strict=True))
+    for name in ("psi1", "psi2"):
+        told = np.array(columns[f"{name} (1)"], dtype=float)
+        assert told.tobytes() == getattr(result, name).tobytes()
+    assert columns["word"] == tuple('a,"b"' if x > 0.0 else "c" for x in psi1)
+    assert set(columns["status"]) == {"SUCCESS"}
+    assert set(columns["chi (1)"]) == {"1.4"}
 
 
 def test_history_csv(tmp_path):
