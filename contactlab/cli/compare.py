@@ -28,7 +28,14 @@ import attrs
 import numpy as np
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.scene import add_file, add_groups, check_alone, read, restituted
+from contactlab.cli.scene import (
+    add_file,
+    add_groups,
+    check_alone,
+    read,
+    restituted,
+    settle_chi,
+)
 from contactlab.impact.scene import Scene
 from contactlab.numeric.names import nearest
 from contactlab.outcome.columns import find_quantity, json_value
@@ -167,6 +174,7 @@ def _answering(
 
 def _file(arguments: argparse.Namespace, defaults: Mapping[str, float] | None) -> SceneFile:
     """Return the scene file, the default one, or a nameless one from psi1 and chi."""
+    settle_chi(arguments)
     parameters = {name: getattr(arguments, name) for name in ("psi1", "chi")}
     varied = {name: value for name, value in parameters.items() if np.ndim(value)}
     missing = [f"--{name}" for name, value in parameters.items() if value is None]

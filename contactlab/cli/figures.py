@@ -14,11 +14,11 @@ import functools
 from pathlib import Path
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.scene import compose_laws
+from contactlab.cli.scene import add_ball, compose_laws
 from contactlab.outcome.files import write_table
 from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.scene_file import LawChoice
-from contactlab.study.paper_figures import CAPTIONS, FigureData, paper_data
+from contactlab.study.paper_figures import CAPTIONS, SOLID, FigureData, paper_data
 
 
 @hookimpl
@@ -41,6 +41,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         help="format of the pictures",
     )
     shared.add_look(parser)
+    add_ball(parser, "the paper's 0.3 by default")
     shared.add_laws(parser)
     shared.add_progress(parser)
     return shared.check_outputs_first(execute)
@@ -49,19 +50,25 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
 def execute(arguments: argparse.Namespace) -> int:
     """Write the figures and print their paths."""
     simulation = compose_laws(arguments, LawChoice(tangential="annulus", integrator="paper"))
+    names = ("poisson_ratio", "gyration_ratio")
+    given = {name: value for name in names if (value := getattr(arguments, name)) is not None}
+    ball = SOLID._replace(**given)
+    chi = ball.chi  # refuses what no sphere has
     shared.make_folder("--out", arguments.out)
     with shared.progress(arguments.progress, "figures") as progress:
         from contactlab.figures.files import save  # matplotlib only when drawing
         from contactlab.figures.paper import draw_paper
 
         for done, number in enumerate(arguments.only, start=1):
-            data = paper_data()[number](simulation)
+            data = paper_data()[number](simulation, ball)
             numbers, picture = (
                 arguments.out / f"figure-{number}.{end}" for end in ("csv", arguments.format)
             )
             _write_csv(numbers, data)
             save(picture, functools.partial(draw_paper, data=data), **shared.look(arguments))
-            caption = [f"  Figure {number}. {CAPTIONS[number]}"] if number in CAPTIONS else []
+            caption = (
+                [f"  Figure {number}. {CAPTIONS[number].format(chi)}"] if number in CAPTIONS else []
+            )
             print(picture, numbers, *caption, sep="\n")
             if progress is not None:
                 progress(done, len(arguments.only))

@@ -70,6 +70,39 @@ def add_groups(parser: argparse.ArgumentParser, *, ranges: bool = True) -> None:
         ("chi", "inertia ratio (38): 1.4412 for a solid sphere, nu = 0.3"),
     ):
         parser.add_argument(f"--{name}", type=convert or shared.finite, metavar=metavar, help=words)
+    add_ball(parser, "in place of --chi, with --gyration-ratio")
+
+
+def add_ball(parser: argparse.ArgumentParser, words: str) -> None:
+    """Add Poisson's ratio and radius of gyration of a sphere, which give chi."""
+    words = f"Poisson's ratio of sphere and half-space, {words}"
+    parser.add_argument("--poisson-ratio", type=shared.finite, metavar="NU", help=words)
+    words = "radius of gyration of the sphere over its radius, 0.6325 if solid"
+    parser.add_argument("--gyration-ratio", type=shared.finite, metavar="K", help=words)
+
+
+def settle_chi(arguments: argparse.Namespace) -> None:
+    """Set chi of a sphere by Poisson's ratio and radius of gyration, where they are given."""
+    given = {
+        "--poisson-ratio": arguments.poisson_ratio,
+        "--gyration-ratio": arguments.gyration_ratio,
+    }
+    named = [option for option, value in given.items() if value is not None]
+    if not named:
+        return
+    if arguments.scene:
+        told = f"{arguments.scene} is a scene already; leave out the file, or the options"
+        raise ValueError(f"{', '.join(named)}: {told}")
+    if arguments.chi is not None:
+        raise ValueError(f"--chi, {', '.join(named)}: say the same; leave out --chi, or the others")
+    if len(named) < len(given):
+        (lacking,) = given.keys() - {*named}
+        told = "0.6325 of a solid sphere" if "gyration" in lacking else "0.3 of steel"
+        raise ValueError(f"{lacking}: must be given beside {named[0]} ({told})")
+    from contactlab.study.paper_figures import chi_of_gyration  # few commands need it
+
+    arguments.chi = chi_of_gyration(arguments.gyration_ratio, arguments.poisson_ratio)
+    arguments.poisson_ratio = arguments.gyration_ratio = None  # done
 
 
 def numbers(text: str) -> Any:
@@ -92,7 +125,8 @@ def numbers(text: str) -> Any:
 
 
 def check_alone(arguments: argparse.Namespace) -> None:
-    """Refuse psi1 or chi beside a scene file."""
+    """Refuse psi1 or chi beside a scene file; find chi of a sphere of numbers."""
+    settle_chi(arguments)
     if arguments.scene and not (arguments.psi1 is None and arguments.chi is None):
         if getattr(arguments, "csv", False) and not arguments.scene.endswith(".toml"):
             raise ValueError(

@@ -21,7 +21,7 @@ from contactlab.outcome.style import (
     ordered_colours,
     zero_line,
 )
-from contactlab.study.paper_figures import FIXED_PSI1, SOLID_CHI, FigureData, chi_of_gyration
+from contactlab.study.paper_figures import FIXED_PSI1, FigureData, chi_of_gyration
 
 #: chi of solid spheres: nu = 0.5 and nu = 0 in eq. (38).
 SOLID_CHI_RANGE = (3.5 / 3.0, 3.5 / 2.0)
@@ -47,7 +47,7 @@ def curves(axes: Axes, data: FigureData) -> Axes:
 def figure_1(axes: Axes, data: FigureData) -> Axes:
     """Draw the forces over the contact at several angles of incidence."""
     lines = _forces(axes, data)
-    axes.text(0.02, 0.03, rf"$\chi$ = {SOLID_CHI:.4f}", transform=axes.transAxes)
+    axes.text(0.02, 0.03, rf"$\chi$ = {data.ball.chi:.4f}", transform=axes.transAxes)
     names = [f"{curve.parameter:g}" for curve in data.curves[1:]]
     return _write_values(axes, lines, r"$\psi_1$", names, title=r"$\psi_1$")
 
@@ -57,7 +57,7 @@ def figure_2(axes: Axes, data: FigureData) -> Axes:
     lines = _reflexion(axes, data)
     axes.set_xlabel(label("psi1"))
     axes.set_xlim(0.0, data.curves[0].x[-1])
-    full_slip = 4.0 * SOLID_CHI - 1.0
+    full_slip = 4.0 * data.ball.chi - 1.0
     for place in (1.0, full_slip):
         axes.axvline(place, color=QUIET, linewidth=0.8, linestyle=":", zorder=0)
     top = 1.7  # room for the words above the curves
@@ -66,14 +66,19 @@ def figure_2(axes: Axes, data: FigureData) -> Axes:
     words[0.5 * (full_slip + data.curves[0].x[-1])] = "slips\nthroughout"
     for place, text in words.items():
         axes.text(place, top, text, ha="center", va="top", **ASIDE)
-    axes.text(0.98, 0.03, rf"$\chi$ = {SOLID_CHI:.4f}", ha="right", transform=axes.transAxes)
+    axes.text(0.98, 0.03, rf"$\chi$ = {data.ball.chi:.4f}", ha="right", transform=axes.transAxes)
     _name_reflexion(axes, lines)
     return axes
 
 
 def figure_3(axes: Axes, data: FigureData) -> Axes:
     """Draw the forces over the contact for several radii of gyration."""
-    lines = _forces(axes, data, name=lambda ratio: f"{ratio:.3g}  ({chi_of_gyration(ratio):.2f})")
+    nu = data.ball.poisson_ratio
+
+    def name(ratio: float) -> str:
+        return f"{ratio:.3g}  ({chi_of_gyration(ratio, nu):.2f})"
+
+    lines = _forces(axes, data, name=name)
     axes.text(0.02, 0.03, rf"$\psi_1$ = {FIXED_PSI1}", transform=axes.transAxes)
     names = [f"{curve.parameter:.3g}" for curve in data.curves[1:]]
     return _write_values(axes, lines, "$K$", names, title=r"$K$  ($\chi$)")

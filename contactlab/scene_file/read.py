@@ -21,6 +21,7 @@ from contactlab.numeric.types import Numbers, Real
 from contactlab.outcome.files import content
 from contactlab.scene_file.build import build_scene
 from contactlab.scene_file.entries import (
+    BODY_SECTIONS,
     CARTESIAN,
     POLAR,
     entry_path,
@@ -234,6 +235,11 @@ def _scene_with(
         if is_option(path):
             size = np.broadcast_shapes(size, np.shape(np.asarray(values)))
             continue
+        bodies = [section for section in BODY_SECTIONS if section in tables]
+        if path.startswith("nondimensional.") and bodies and "nondimensional" not in tables:
+            rule = f"is a number of a scene without bodies, and [{bodies[0]}] is one of bodies"
+            remedy = f"vary angle_deg or tangential_velocity; or for {name} write no [{bodies[0]}]"
+            raise ValueError(f"{name}: {rule}; {remedy}")
         tables = replace_entry(tables, path, real(path, values))
     scene, encounter = build_scene(tables)
     if not size or scene.shape:

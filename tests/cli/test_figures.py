@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 
 import numpy as np
 import pytest
@@ -111,3 +112,43 @@ def test_figure_4_oscillates_about_the_rigid_theory(simulation):
     assert 1e-6 < np.abs(elastic.y - exact.y)[elastic.x < 4.0].max() < 0.03
     signs = np.sign(elastic.y[elastic.x > 0.35])
     assert np.sum(np.diff(signs) != 0) >= 4
+
+
+def test_figures_of_another_sphere(run, tmp_path):
+    """chi = (1 + 1/K²) (1 - nu)/(2 - nu), eq. (38) of a sphere on its own material."""
+    given = "--poisson-ratio", "0.45", "--gyration-ratio", "0.5"
+    ran = run("figures", "--out", tmp_path, "--only", "2", *FEW, *given)
+    chi = 5.0 * 0.55 / 1.55
+    assert f"chi = {chi:.5g}" in ran.out
+    rows = list(csv.DictReader((tmp_path / "figure-2.csv").read_text().splitlines()))
+    rigid = [row for row in rows if row["curve"] == "rigid-body theory"]
+    end = rigid[-1]
+    assert float(end["psi1"]) > 4.0 * chi
+    assert float(end["psi2"]) == pytest.approx(float(end["psi1"]) - 4.0 * chi)
+    assert "must lie in (0, 1]" in run("figures", "--out", tmp_path, "--gyration-ratio", "2").err
+
+
+@pytest.mark.parametrize("command", ["run", "sweep", "compare"])
+def test_a_sphere_by_its_numbers_has_the_scene_of_its_chi(run, command):
+    psi1 = "--psi1", "0.2:5:4" if command != "run" else "1.2"
+    by_numbers = run(command, *psi1, "--poisson-ratio", "0.45", "--gyration-ratio", "0.5", "--json")
+    by_chi = run(command, *psi1, "--chi", repr(5.0 * 0.55 / 1.55), "--json")
+    one, other = (json.loads(ran.out) for ran in (by_numbers, by_chi))
+    if command == "compare":
+        one, other = (each["laws"]["fronts"]["values"] for each in (one, other))
+    assert one["psi2"] == pytest.approx(other["psi2"], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--poisson-ratio", "0.45"), "--gyration-ratio: must be given beside --poisson-ratio"),
+        (("--gyration-ratio", "0.5"), "--poisson-ratio: must be given beside --gyration-ratio"),
+        (("--poisson-ratio", "0.3", "--gyration-ratio", "0.5", "--chi", "1"), "say the same"),
+        (("--poisson-ratio", "0.7", "--gyration-ratio", "0.5"), "poisson_ratio = 0.7"),
+    ],
+)
+def test_what_is_no_sphere_is_refused(run, words, told):
+    ran = run("compare", "--psi1", "1", *words)
+    assert ran.status == 2
+    assert told in ran.err

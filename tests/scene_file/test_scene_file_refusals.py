@@ -150,7 +150,7 @@ def test_at_odds(tmp_path, line, named):
         ("friction_coefficient = [0.1, -0.1]", "impact.friction_coefficient"),
         ("angle_deg = [1.0, 2.0]\nspeed = [1.0]", "angle_deg 2, speed 1"),
         ("angel_deg = [1.0]", "'angle_deg'"),
-        ("psi1 = [1.0]", "nondimensional"),
+        ("psi1 = [1.0]", "angle_deg"),
         ("'impact.speed' = [1.0]\nspeed = [1.0]", "the same entry"),
         ("sphere.radius = [0.0]", "sphere.radius"),
         ("angle_deg = {start = 0, stop = 5}", "sweep.angle_deg.count"),
@@ -238,3 +238,13 @@ def test_numbers_too_large_to_compute_with(tmp_path):
     message = refusal(tmp_path, document(**{"sphere.radius": "1e200"}))
     assert "sphere" in message
     assert "too large" in message or "finite" in message
+
+
+@pytest.mark.parametrize("name", ["psi1", "chi", "nondimensional.psi1"])
+def test_a_number_of_no_bodies_beside_bodies_is_refused_as_it_was_written(tmp_path, name):
+    told = refusal(tmp_path, document() + f"[sweep]\n{name} = [1.0, 2.0]\n")
+    assert f": {name}: is a number of a scene without bodies, and [sphere] is one of" in told
+    assert "vary angle_deg" in told
+    swept = document(without=("impact.angle_deg",)) + "[sweep]\nangle_deg = [1.0, 2.0]\n"
+    (tmp_path / "good.toml").write_text(swept, encoding="utf-8")
+    assert contactlab.read_scene(tmp_path / "good.toml").scene.shape == (2,)  # the remedy
