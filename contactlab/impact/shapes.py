@@ -104,13 +104,13 @@ def _stack(made: list[tuple[RigidBody, Array]], shape: tuple[int, ...]) -> tuple
     return body, np.reshape([contact for _, contact in made], (*shape, 3))
 
 
-def _radii(radii: list[Any], shape: tuple[int, ...]) -> Any:
+def _radii(radii: list[Real], shape: tuple[int, ...]) -> Any:
     """Return radii as an array, or one number that nobody gave."""
     taken = [isinstance(each, Taken) for each in radii]
     if any(taken) and not all(taken):
         rule = "is needed where some poses touch with an edge, and others with a corner"
         raise refuse("crown_radius", None, rule, "give it in m")
-    return radii[0] if all(taken) else np.reshape(radii, shape)
+    return radii[0] if all(taken) else np.array(radii).reshape(shape)
 
 
 @function_told

@@ -15,16 +15,19 @@ import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
-from typing import IO, Any, TextIO
+from typing import IO, Any, TextIO, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts.status import Status, succeeded
+from contactlab.numeric.types import AnyArray
 from contactlab.outcome.columns import columns, csv_heading, json_value
 from contactlab.outcome.files import write_table, written
 from contactlab.outcome.result import ImpactResult
 
+#: A column of texts or numbers, or one text that all rows have.
+Cells: TypeAlias = "str | AnyArray"
 #: Rows of a CSV file from which pyarrow is worth its import, and that are made at once.
 MANY = 50_000
 #: A column of an npz is compressed if so many numbers of it shrink to this share.
@@ -61,7 +64,7 @@ def print_csv(result: ImpactResult, stream: TextIO) -> None:
         stream.writelines(f"{line}\n" for line in lines(part, min(MANY, rows - first)))
 
 
-def _cells(value: object, shape: tuple[int, ...]) -> Any:
+def _cells(value: object, shape: tuple[int, ...]) -> Cells:
     """Return a column as an array, words quoted; one text where all impacts have the same."""
     array = np.asarray(math.nan if value is None else value)
     array = np.broadcast_to(array, shape).ravel() if array.dtype != object else _flat(value, shape)
@@ -80,7 +83,7 @@ def _quoted(word: str) -> str:
     return '"' + word.replace('"', '""') + '"' if set(word) & set(',"\r\n') else str(word)
 
 
-def _lines(cells: Sequence[Any], rows: int) -> Iterator[str]:
+def _lines(cells: Sequence[Cells], rows: int) -> Iterator[str]:
     """Return the lines of a CSV file, each number with the shortest digits that give it back."""
     texts: list[Iterable[str]] = [
         itertools.repeat(each, rows) if isinstance(each, str)
@@ -90,7 +93,7 @@ def _lines(cells: Sequence[Any], rows: int) -> Iterator[str]:
     return map(",".join, zip(*texts, strict=True))
 
 
-def _lines_of_many(cells: Sequence[Any], rows: int) -> list[str]:
+def _lines_of_many(cells: Sequence[Cells], rows: int) -> list[str]:
     """Return the same numbers by pyarrow, which writes 1 for 1.0, and them twice as fast."""
     if all(isinstance(each, str) for each in cells):  # no column tells how many rows there are
         return list(_lines(cells, rows))
