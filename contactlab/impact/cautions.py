@@ -10,7 +10,7 @@ import numpy as np
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.hertz import elongation_of, hertz_scales, peak_pressure, semi_axes
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import for_share
+from contactlab.numeric.arrays import for_share, some
 from contactlab.numeric.types import Real
 from contactlab.numeric.vectors import rows
 
@@ -171,9 +171,9 @@ def yield_unknown(scene: Scene) -> tuple[str, Any, Real]:
     where: dict[str, Any] = {}
     for name, body in name_bodies(scene).items():
         stress = body.material.yield_stress
-        missing = np.asarray(True if stress is None else np.isnan(stress))
-        if missing.any():
-            where[f"the {name}"] = np.broadcast_to(missing, scene.shape)
+        missing: Any = True if stress is None else np.isnan(stress)
+        if some(missing):
+            where[f"the {name}"] = np.broadcast_to(missing, scene.shape) if scene.shape else missing
     if not where:
         return "", False, 0.0
     have = "has" if len(where) == 1 else "have"

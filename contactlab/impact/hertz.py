@@ -50,7 +50,7 @@ def peak_pressure(scene: Scene) -> Real:
 def semi_axes(pair: Pair) -> tuple[Real, Real]:
     """Return the semi-axes along t1 and t2 over the radius of the circle as stiff (theory §16)."""
     ratio = pair.axis_ratio
-    if np.all(np.equal(ratio, 1.0)):
+    if ratio == 1.0 if isinstance(ratio, float) else np.all(np.equal(ratio, 1.0)):
         return 1.0, 1.0
     from contactlab.impact.elliptic import of_axes  # scipy, which few scenes need
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Protocol
 
 import numpy as np
@@ -31,6 +32,10 @@ class WithPlan(WithScene, Protocol):
 
 def error_words(result: WithPlan) -> str:
     """Return the numerical error of psi2 in words, estimated and declared."""
+    if result.psi2_error_estimate is None and isinstance(result.plan.psi2_error, float):
+        error = result.plan.psi2_error  # one number for all: no array is made
+        told = "not declared" if math.isnan(error) else f"at most {error:.1g}, declared"
+        return "; ".join(["not estimated", told, *_of_spin(result.plan)])
     estimate, declared = _errors(result)
     parts = []
     if np.isfinite(estimate).any():
@@ -43,13 +48,18 @@ def error_words(result: WithPlan) -> str:
         parts.append(f"{_largest(declared, 'at most')}, declared{_missing(declared)}")
     else:
         parts.append("not declared")
-    if any(clause.code == NORMAL_SPIN for clause in result.plan.left_out):
-        parts.append(WITHOUT_SPIN)
-    return "; ".join(parts)
+    return "; ".join([*parts, *_of_spin(result.plan)])
+
+
+def _of_spin(plan: Plan) -> list[str]:
+    """Return that spin about the normal is left out, if it is."""
+    return [WITHOUT_SPIN] if any(clause.code == NORMAL_SPIN for clause in plan.left_out) else []
 
 
 def error_cautions(result: WithPlan) -> list[str]:
     """Return cautions about a false declared error and about coarse answers."""
+    if _is_fine(result):
+        return []
     estimate, declared = _errors(result)
     with np.errstate(all="ignore"):
         contradicted = estimate > CONTRADICTS * declared
@@ -71,6 +81,17 @@ def error_cautions(result: WithPlan) -> list[str]:
             f"{np.nanmax(share):.2g} of the range. Use a finer resolution."
         )
     return cautions
+
+
+def _is_fine(result: WithPlan) -> bool:
+    """Return whether a single answer has no estimate and a small declared error, by floats."""
+    plan = result.plan
+    if result.scene.shape or result.psi2_error_estimate is not None:
+        return False
+    if not plan.marched:  # nobody steps
+        return True
+    unit, width, _ = range_of(result.scene)
+    return isinstance(plan.psi2_error, float) and bool(plan.psi2_error * unit <= COARSE * width)
 
 
 def _errors(result: WithPlan) -> tuple[Array, Array]:
