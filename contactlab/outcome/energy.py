@@ -16,7 +16,6 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import of_each, plain, some
 from contactlab.numeric.names import attributes_told
 from contactlab.numeric.types import Each, Mask, Real
-from contactlab.outcome.columns import json_value
 from contactlab.outcome.motion import Motion, all_finite
 from contactlab.outcome.plan import PlanColumns
 
@@ -88,6 +87,8 @@ class EnergyLedger(Generic[Each]):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the entries and the relative imbalance as plain numbers or lists."""
+        from contactlab.outcome.columns import json_value  # a run needs none of this
+
         entries = attrs.asdict(self) | {"relative_imbalance": self.relative_imbalance}
         return {name: json_value(value) for name, value in entries.items()}
 

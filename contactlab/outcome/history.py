@@ -13,7 +13,6 @@ from contactlab.contracts.tangential_motion import Sample
 from contactlab.impact.scene import Scene
 from contactlab.numeric.names import attributes_told
 from contactlab.numeric.types import Array, Index
-from contactlab.outcome.columns import components, json_value
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.tabled import Plotted
 
@@ -51,6 +50,8 @@ class History(Plotted):
 
     def columns(self) -> dict[str, Array]:
         """Return the columns with one number for each instant, by name."""
+        from contactlab.outcome.columns import components  # runs keep no history
+
         named = ((name, getattr(self, name)) for name in _names())
         parts = (components(name, column, self.time.shape) for name, column in named)
         return {name: column for part in parts for name, column in part}
@@ -82,6 +83,8 @@ class History(Plotted):
 
     def to_dict(self) -> dict[str, Any]:
         """Return columns and fields by name as plain lists, None for numbers not finite."""
+        from contactlab.outcome.columns import json_value
+
         return super().to_dict() | {name: json_value(each) for name, each in self.fields.items()}
 
     def __repr__(self) -> str:

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from contactlab.numeric.arrays import consecutive, every, merge_parts, share, some, taken
 from contactlab.numeric.types import Index, Real
-from contactlab.outcome.columns import json_value
 
 Mask = NDArray[np.bool_]
 T = TypeVar("T")
@@ -284,6 +283,8 @@ class Plan:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the sentences as plain lists, and the declared error."""
+        from contactlab.outcome.columns import json_value  # a run needs none of this
+
         words = {kind: list(map(str, getattr(self, kind))) for kind in KINDS}
         errors = ("psi2_error", "restitution_error")
         return {**words, **{name: json_value(getattr(self, name)) for name in errors}}

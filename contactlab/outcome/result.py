@@ -18,7 +18,6 @@ from contactlab.outcome.answer import Answer, statuses_told
 from contactlab.outcome.energy import EnergyLedger, ledger
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory
 from contactlab.outcome.motion import Motion
-from contactlab.outcome.numerical_error import error_cautions, error_words
 from contactlab.outcome.plan import Plan
 
 if TYPE_CHECKING:
@@ -328,6 +327,8 @@ class ImpactResult(Answer, Generic[Each]):
         return draw_result(axes, self, x, y, width=width)
 
     def _first_lines(self) -> list[str]:
+        from contactlab.outcome.numerical_error import error_words  # for words alone
+
         return [repr(self), f"numerical error of psi2: {error_words(self)}"]
 
     def _statuses(self) -> tuple[Any, Any]:
@@ -347,6 +348,8 @@ class ImpactResult(Answer, Generic[Each]):
     @property
     def cautions(self) -> list[str]:
         """Cautions that ``str`` shows: about the numerical error, then those of the plan."""
+        from contactlab.outcome.numerical_error import error_cautions  # for words alone
+
         return [*error_cautions(self), *map(str, self.plan.cautions)]
 
     def _sheet(self) -> Sheet:

@@ -98,10 +98,10 @@ def test_running_a_law_imports_no_other_law():
 #: What one elastic impact of spheres loads beside laws, contracts and numbers: nothing of bodies of
 #: other shapes, of spin about the normal, of sweeps and files, of normal laws without closed form.
 OF_A_RUN = """
-acceptance answer answers batches bodies bound bring capability cautions columns composition
+acceptance answer answers batches bodies bound bring capability cautions composition
 decoupled energy error_model failed_motion groups hertz history hooks installed inverse_mass
 kinetics
-law_classes law_words loading manager material motion names normal_motion numerical_error
+law_classes law_words loading manager material motion names normal_motion
 of_speed plan planning registry result scene simulation solve tabled way
 """
 
