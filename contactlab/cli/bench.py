@@ -1,8 +1,9 @@
-"""Measure error against run time of every law and integrator.
+"""Measure error against processor time: every question by every way to its answer.
 
 Examples
 --------
   contactlab bench --quick
+  contactlab bench --question "plane with e"
   contactlab bench --figure bench.png --out bench.csv
   contactlab bench --tangential springs,annulus --normal tsuji
   contactlab bench --markdown --figure bench.png > bench.md
@@ -20,15 +21,18 @@ from contactlab.outcome.columns import json_value
 from contactlab.outcome.tables import time
 from contactlab.outcome.text_table import table
 from contactlab.registration.hooks import Execute, hookimpl
-from contactlab.study.bench_methods import methods
-from contactlab.study.benchmark import Benchmark, Row
+from contactlab.study.benchmark import TIMES, Benchmark, Row
+from contactlab.study.questions import questions
 from contactlab.study.work_precision import bench
 
 
 @hookimpl
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
-    """Add the laws, the size, and the outputs."""
+    """Add the laws, the question, the size, and the outputs."""
     shared.add_report(parser)
+    parser.add_argument(
+        "--question", metavar="NAME", help="one question, by the name that the report prints"
+    )
     parser.add_argument(
         "--markdown", action="store_true", help="print a row or two for each law, as Markdown"
     )
@@ -40,13 +44,11 @@ def execute(arguments: argparse.Namespace) -> int:
     for name in ("json", "csv"):
         if getattr(arguments, name) and arguments.markdown:
             raise ValueError(f"--{name}, --markdown: cannot be combined; leave out one")
-    laws = shared.chosen_laws(arguments)
-    chosen = methods(laws)
+    asked = questions(shared.chosen_laws(arguments), arguments.question)
     with shared.progress(arguments.progress, "bench") as progress:
         benchmark = bench(
-            chosen,
+            asked,
             quick=arguments.quick,
-            with_rebound=not laws,
             time_limit=arguments.time_limit,
             progress=progress,
         )
@@ -74,9 +76,19 @@ def _draw(path: Path, benchmark: Benchmark, **look: Unpack[shared.Drawing]) -> b
         print("no figure drawn: nothing was measured", file=sys.stderr)
         return False
     from contactlab.figures.files import save  # matplotlib only when drawing
-    from contactlab.figures.work_precision import work_precision
+    from contactlab.figures.work_precision import COLUMNS, HEIGHT, work_precision
 
-    save(path, lambda axes: work_precision(axes, benchmark), columns=2, **look)
+    count = len(benchmark.by_question())
+    columns = min(count, COLUMNS)
+    rows = -(-count // columns)
+    save(
+        path,
+        lambda axes: work_precision(axes, benchmark),
+        rows=rows,
+        columns=columns,
+        heights=(HEIGHT,) * rows,
+        **look,
+    )
     return True
 
 
@@ -86,49 +98,46 @@ def _content(benchmark: Benchmark) -> dict[str, object]:
 
 
 def markdown(benchmark: Benchmark) -> str:
-    """Return the short table, a row or two for each law, as Markdown."""
-    lines = [["law, integrator", "resolution", "psi2 rms", "worst", "beyond spheres",
-              "energy books", "one impact", "each of many"], ["---"] * 8]  # fmt: skip
+    """Return the short table, a row or two for each law of each question, as Markdown."""
+    lines = [["question", "law, integrator", "resolution", "rms", "worst", "energy books",
+              "one impact", "each of many"], ["---"] * 8]  # fmt: skip
     for row in benchmark.short():
         law, _, integrator = row.method.partition(" / ")
         name = f"`{law}`" + f", `{integrator}`" * bool(integrator)
-        errors = (row.error_rms, row.error_worst, row.elsewhere_rms, row.books_worst)
+        errors = (row.error_rms, row.error_worst, row.books_worst)
         numbers = [f"{value:.1e}" if value == value else "-" for value in errors]
-        lines.append([name, row.options, *numbers, *_times(row)])
-    text = "\n".join(f"| {' | '.join(line)} |" for line in lines)
-    return (
-        text
-        if benchmark.complete
-        else f"{text}\n\nnot complete: {shared.say_why_incomplete(benchmark)}"
-    )
+        lines.append([row.question, name, row.options, *numbers, *_times(row)])
+    return _ended("\n".join(f"| {' | '.join(line)} |" for line in lines), benchmark)
 
 
 def _times(row: Row) -> list[str]:
-    """Return the run time of one impact alone and in a sweep, a dash for NaN."""
+    """Return the time of one impact alone and of each of many, a dash for NaN."""
     return [time(value) if value == value else "-" for value in (row.time_s, row.sweep_time_s)]
 
 
 def _report(benchmark: Benchmark) -> str:
-    """Return the full table and the orders of convergence."""
-    front = benchmark.front()
-    lines = []
-    for row in benchmark.rows:
-        times = _times(row)
-        errors = [
-            row.error_rms, row.error_worst, row.elsewhere_rms, row.force_error_rms, row.books_worst
-        ]  # fmt: skip
-        note = "front" if row in front else "" if row.ok else f"{row.failed} x {row.status}"
-        lines.append([row.method, row.options, *errors, *times, note])
-    headings = [
-        "method", "resolution", "psi2 rms", "worst", "elsewhere", "force", "books", "one",
-        "of many", "note",
-    ]  # fmt: skip
-    text = table(headings, lines, digits=2)
-    orders = [[name, order] for name, order in benchmark.orders.items() if order == order]
+    """Return a table for each question, and the orders of convergence."""
+    headings = ["method", "resolution", "rms", "worst", "books", "one", "of many", "note"]
+    parts = []
+    for question, rows in benchmark.by_question().items():
+        fronts = {word: benchmark.front(question, word) for word in TIMES}
+        lines = []
+        for row in rows:
+            on = [word for word, front in fronts.items() if row in front]
+            note = f"front {', '.join(on)}" if on else ""
+            if not row.ok:
+                note = f"{row.failed} x {row.status}"
+            errors = [row.error_rms, row.error_worst, row.books_worst]
+            lines.append([row.method, row.options, *errors, *_times(row), note])
+        parts.append(f"{question}\n{table(headings, lines, digits=2)}")
+    orders = [[name, order] for name, order in benchmark.orders.items()]
     if orders:
-        text += "\n\n" + table(["method", "order observed"], orders, digits=3)
-    return (
-        text
-        if benchmark.complete
-        else f"{text}\n\nnot complete: {shared.say_why_incomplete(benchmark)}"
-    )
+        parts.append(table(["method", "order observed"], orders, digits=3))
+    return _ended("\n\n".join(parts), benchmark)
+
+
+def _ended(text: str, benchmark: Benchmark) -> str:
+    """Return a report, and why it is not complete if it is not."""
+    if benchmark.complete:
+        return text
+    return f"{text}\n\nnot complete: {shared.say_why_incomplete(benchmark)}".lstrip()

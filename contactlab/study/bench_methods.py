@@ -106,7 +106,7 @@ class Method:
                 if steps is not None:
                     options["integrator"][steps] = max(per_part * value, LEAST_STEPS)
             elif law is not None:
-                options["tangential"][law] = max(round(value**-0.5) // per_part, LEAST_PARTS)
+                options["tangential"][law] = round(LEAST_PARTS * (TOLERANCES[0] / value) ** 0.5)
             if all(
                 accepts(full_name(kind, getattr(self, kind)), options[kind]) for kind in options
             ):

@@ -14,49 +14,51 @@ GOOD, ALIKE, FINER = 1e-3, 2.0, 10.0
 
 @attrs.frozen(kw_only=True)
 class Row:
-    """One method at one resolution.
+    """One door to the answer of one question, at one resolution.
 
     Attributes
     ----------
-    method, options : str
-        Law and integrator; their options in words.
+    question, method, options : str
+        ``method`` is a function, or law and integrator; ``options`` are theirs in words.
     error_rms, error_worst : float
-        Rms and largest error of psi2 over the scenes; NaN if a run failed.
-    force_error_rms : float
-        Rms error of F over mu P_max along the impact, against the exact history; NaN if a run
-        failed.
-    elsewhere_rms : float
-        Rms error of psi2 over the scenes beyond solid spheres; NaN if a run failed.
+        Rms and largest error over the impacts, in psi2 unless the question says otherwise; NaN if
+        a run failed, and of a limit that answers nothing.
     books_worst : float
         Largest imbalance over the energy at the start; NaN if a run failed.
     time_s, sweep_time_s : float
-        Run time per impact, by itself and in a sweep, in s.
+        Processor time of one impact alone, and of each of many, in s.
     converges : bool
         Whether the law claims to converge to the continuum, or comes nearer to it by a factor of
         ``ALIKE`` over its resolutions; if not, no finer step helps.
+    limit : bool
+        True for what no door can beat, a copy of the numbers or one line of NumPy.
     failed : int
-        Number of scenes without an answer.
+        Number of impacts without an answer.
     status : str
         ``SUCCESS``, the first failure's name, or ``NOT_RUN``.
     """
 
+    question: str = "sphere"
     method: str
     options: str = ""
     error_rms: float = np.nan
     error_worst: float = np.nan
-    force_error_rms: float = np.nan
     books_worst: float = np.nan
     time_s: float = np.nan
     sweep_time_s: float = np.nan
     failed: int = 0
     status: str = "SUCCESS"
-    elsewhere_rms: float = np.nan
     converges: bool = True
+    limit: bool = False
 
     @property
     def ok(self) -> bool:
-        """Whether every scene has an answer."""
+        """Whether every impact has an answer."""
         return self.failed == 0
+
+
+#: Times of a row, by the words for them.
+TIMES = {"alone": "time_s", "of many": "sweep_time_s"}
 
 
 @attrs.frozen(kw_only=True)
@@ -72,11 +74,24 @@ class Benchmark:
     complete: bool
     interrupted: bool = False
 
-    def front(self) -> list[Row]:
-        """Return the Pareto front: rows that no other row beats in both error and time."""
+    def by_question(self) -> dict[str, list[Row]]:
+        """Return the rows of each question."""
+        found: dict[str, list[Row]] = {}
+        for row in self.rows:
+            found.setdefault(row.question, []).append(row)
+        return found
+
+    def front(self, question: str, time: str = "alone") -> list[Row]:
+        """Return the Pareto front of a question: rows that no row beats in both error and time.
+
+        ``time`` is a key of ``TIMES``; limits are left out.
+        """
+        column = TIMES[time]
+        rows = [row for row in self.rows if row.question == question and row.ok and not row.limit]
+        rows = [row for row in rows if getattr(row, column) == getattr(row, column)]
         best: list[Row] = []
         least = np.inf
-        for row in sorted((row for row in self.rows if row.ok), key=lambda row: row.time_s):
+        for row in sorted(rows, key=lambda row: (getattr(row, column), row.error_rms)):
             if row.error_rms < least:
                 best.append(row)
                 # Errors below rounding are equally good.
@@ -84,20 +99,25 @@ class Benchmark:
         return best
 
     def short(self) -> list[Row]:
-        """Return one or two rows of each law, the most accurate law first.
+        """Return one or two rows of each law of each question, the most accurate law first.
 
         One is the quickest row with an error up to ``GOOD``, or ``ALIKE`` times the least of its
         law. Before it stands the most accurate row, if its error is smaller by ``FINER``.
         """
-        by_law: dict[str, list[Row]] = {}
-        for row in self.rows:
-            if row.ok:
-                by_law.setdefault(row.method.partition(" / ")[0], []).append(row)
-        chosen = []
-        for rows in by_law.values():
-            best = min(rows, key=lambda row: (row.error_rms, row.time_s))
-            limit = max(GOOD, ALIKE * best.error_rms)
-            quick = min((row for row in rows if row.error_rms <= limit), key=lambda row: row.time_s)
-            finer = best.error_rms * FINER <= quick.error_rms
-            chosen.append([best, quick] if finer and best.time_s > quick.time_s else [quick])
-        return [row for rows in sorted(chosen, key=lambda rows: rows[0].error_rms) for row in rows]
+        return [row for rows in self.by_question().values() for row in _shortened(rows)]
+
+
+def _shortened(of_question: list[Row]) -> list[Row]:
+    """Return one or two rows of each law of a question."""
+    by_law: dict[str, list[Row]] = {}
+    for row in of_question:
+        if row.ok and not row.limit:
+            by_law.setdefault(row.method.partition(" / ")[0], []).append(row)
+    chosen = []
+    for rows in by_law.values():
+        best = min(rows, key=lambda row: (row.error_rms, row.time_s))
+        limit = max(GOOD, ALIKE * best.error_rms)
+        quick = min((row for row in rows if row.error_rms <= limit), key=lambda row: row.time_s)
+        finer = best.error_rms * FINER <= quick.error_rms
+        chosen.append([best, quick] if finer and best.time_s > quick.time_s else [quick])
+    return [row for rows in sorted(chosen, key=lambda rows: rows[0].error_rms) for row in rows]

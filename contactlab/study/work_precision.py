@@ -1,326 +1,187 @@
-"""Error against run time: every method at every resolution, against the exact solution.
+"""Error against run time: every question by every door, against its true answer.
 
-Errors and times come from separate runs. A time is the least of repeated runs after a warm-up,
-which other load of the machine disturbs least. A failed run is a gap with its status, and is never
-dropped.
+Errors and times come from separate calls. A time is of the processor, the least of repeated calls.
+A failed call is a gap with its status, and is never dropped.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Sequence
-from functools import lru_cache, partial
-from typing import Any, NamedTuple
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
 
 import attrs
 import numpy as np
 
-from contactlab.collisions.rebound import rebound
-from contactlab.contracts.law import claims
-from contactlab.impact.scene import Scene
-from contactlab.outcome.result import ImpactResult
-from contactlab.registry import composition
-from contactlab.runs.simulation import Simulation
-from contactlab.study.bench_methods import Method, Options, scenes
+from contactlab.numeric.types import Array
 from contactlab.study.benchmark import ALIKE, ROUNDING, Benchmark, Row
-from contactlab.study.posed import need_units, pose
-from contactlab.study.stability_references import converges, reference_for
+from contactlab.study.doors import Answer, Call, Door
+from contactlab.study.questions import Posed, Question
 from contactlab.study.time_limit import TimeLimitError, end_of, in_time
 
-#: Tolerance of the exact answers: finer than the default, which is measured too.
-EXACT_TOLERANCE = 1e-12
-#: Repeats of a timed run; fewer after ``LONG`` seconds at one resolution of a method.
-REPEATS, LONG = 5, 1.0
-#: Impacts in the sweep whose time per impact is measured: fewer, but ``FEWEST``, if they would take
-#: longer one by one than ``SWEEP_BUDGET`` seconds.
-SWEEP, FEWEST, SWEEP_BUDGET = 1000, 50, 2.0
-#: Multiples of this number spread evenly over [0, 1].
-GOLDEN = 0.6180339887498949
-#: Name of the row of ``contactlab.rebound``, and its calls for one time.
-REBOUND, CALLS = "rebound()", 20
-#: A method with a longer run time per impact, in s, is not refined further.
-SLOW, SLOW_QUICK = 0.1, 0.05
+#: Repeats of a timed call, and the least time of one in s: a shorter call is made several times.
+REPEATS, LEAST_TIME = 5, 5e-4
+#: A door is not called again for a time after so many seconds. A batch is of as many impacts as it
+#: answers in this time one by one; of fewer it is not timed.
+LONG, LONG_QUICK, FEWEST = 2.0, 0.08, 3
+#: Processor time of one impact, in s, from which on a door is not refined further.
+SLOW, SLOW_QUICK = 0.1, 0.02
 #: A method whose log error falls by less than this over its resolutions has no order.
 LEAST_GAIN = 0.5
 
 
 def bench(
-    methods: Sequence[Method],
+    questions: Sequence[Question],
     *,
     quick: bool = False,
-    with_rebound: bool = False,
     time_limit: float | None = None,
     progress: Callable[[int, int], object] | None = None,
 ) -> Benchmark:
-    """Return errors and run times of every method at every resolution.
+    """Return errors and times of every door of every question.
 
     Parameters
     ----------
-    methods : sequence of Method
+    questions : sequence of Question
     quick : bool
-        Fewer scenes and resolutions.
-    with_rebound : bool
-        Whether ``contactlab.rebound`` is measured too, before the methods.
+        Fewer impacts and resolutions.
     time_limit : float, optional
         Seconds of clock after which the report ends; ``complete`` then is False.
     progress : callable, optional
-        Called as ``progress(done, total)`` after each resolution.
+        Called as ``progress(done, total)`` after each question.
 
     Returns
     -------
     Benchmark
-        Ctrl-C keeps the resolutions that are done.
+        Ctrl-C keeps the doors that are done.
     """
     until = end_of(time_limit)
-    resolutions = [
-        (method, resolution) for method in methods for resolution in method.resolutions(quick=quick)
-    ]
     rows: list[Row] = []
-    slow: set[str] = set()
-    limit = SLOW_QUICK if quick else SLOW
-    interrupted = False
+    interrupted = complete = False
     try:
-        keys = {_limit(method) for method in methods}
-        truths = in_time(lambda: {key: _truths(*key, quick=quick) for key in keys}, until)
-        if with_rebound:
-            rows.append(in_time(partial(_rebound_row, quick=quick), until))
-        for done, (method, resolution) in enumerate(resolutions, start=1):
-            if method.name in slow:
-                rows.append(_left_out(method, resolution))
-            else:
-                row = partial(_row, method, resolution, truths[_limit(method)], quick=quick)
-                rows.append(in_time(row, until))
-            if rows[-1].time_s > limit:
-                slow.add(method.name)
+        for done, question in enumerate(questions, start=1):
+            posed = in_time(partial(question.pose, quick), until)
+            _ask(question, posed, rows, until, quick=quick)
             if progress is not None:
-                progress(done, len(resolutions))
+                progress(done, len(questions))
+        complete = True
     except TimeLimitError:
         pass
     except KeyboardInterrupt:
         interrupted = True
-    orders = {
-        method.name: _order([row for row in rows if row.method == method.name])
-        for method in methods
-    }
     return Benchmark(
         rows=tuple(_with_nearer(rows)),
-        orders=orders,
-        complete=len(rows) == len(resolutions) + with_rebound,
+        orders=_orders(rows),
+        complete=complete,
         interrupted=interrupted,
     )
 
 
-class Truth(NamedTuple):
-    """A scene, its true change of psi or NaN, and the exact result with history or None."""
-
-    scene: Scene
-    psi_change: float
-    result: ImpactResult | None
-
-
-def _limit(method: Method) -> tuple[str, str, bool]:
-    """Return the normal law of a method, the friction law of its limit, and whether it needs units.
-
-    The limit is the law's own if it converges to the continuum, and that of the default law
-    otherwise. Under elastic Hertz contact all limits are one; the name is empty.
-    """
-    laws = method.simulation({"tangential": {}, "integrator": {}}).laws
-    normal, sized = laws.normal, method.normal != composition.DEFAULT_NORMAL or need_units(laws)
-    if "elastic_hertz" in laws.capability.normal_claims:
-        return method.normal, "", sized
-    own = converges(composition.law("tangential", method.tangential))
-    other = method.tangential if own else composition.prefer_law("tangential", normal)
-    return method.normal, other, sized
-
-
-def _truths(
-    normal: str, tangential: str, sized: bool, *, quick: bool, elsewhere: bool = False
-) -> list[Truth]:
-    """Return scenes with true answers: exact, or by a fine law of the same limit."""
-    law = composition.law("normal", normal)
-    truths = []
-    elastic = "elastic_hertz" in claims(law)
-    for scene in scenes(quick=quick, sized=sized, elsewhere=elsewhere):
-        if elastic:
-            exact = Simulation(normal=law, **composition.exact(EXACT_TOLERANCE))
-            result = exact.run(scene, history=True).check()
-            truths.append(Truth(scene, float(np.asarray(result.psi_change)), result))
+def _ask(question: Question, posed: Posed, rows: list[Row], until: float, *, quick: bool) -> None:
+    """Add the rows of a question; a resolution that changes no answer is no row of its own."""
+    slow: set[str] = set()
+    known: dict[str, list[Array]] = {}
+    for door in posed.doors:
+        row = Row(question=question.name, method=door.name, options=door.options)
+        row = attrs.evolve(row, limit=door.limit, converges=door.converges)
+        if door.name in slow:
+            rows.append(attrs.evolve(row, failed=1, status="NOT_RUN"))
             continue
-        friction = composition.law("tangential", tangential)
-        change = reference_for(friction, law)(scene, friction)
-        psi_change = np.nan if change is None else float(np.asarray(scene.psi(change)))
-        truths.append(Truth(scene, psi_change, None))
-    return truths
+        answers = in_time(partial(_answers, door, posed), until)
+        numbers = [each.numbers for each in answers]
+        if door.read and _alike(known.get(door.name), numbers):
+            continue
+        known[door.name] = numbers
+        failed = [each.status for each in answers if each.status != "SUCCESS"]
+        if failed:
+            rows.append(attrs.evolve(row, failed=len(failed), status=failed[0]))
+            continue
+        errors = _errors(answers, posed.truths)
+        row = attrs.evolve(row, **errors, **in_time(partial(_times, door, posed, quick), until))
+        rows.append(row)
+        if row.time_s > (SLOW_QUICK if quick else SLOW):
+            slow.add(door.name)
 
 
-@lru_cache(maxsize=4)
-def _elsewhere(*, sized: bool, quick: bool) -> list[Truth]:
-    """Return the scenes beyond solid spheres under elastic Hertz contact, with exact answers."""
-    return _truths(composition.DEFAULT_NORMAL, "", sized, quick=quick, elsewhere=True)
+def _answers(door: Door, posed: Posed) -> list[Answer]:
+    """Return the answers to all impacts; none of a limit that answers nothing."""
+    if door.read is None:
+        return []
+    return [door.read(door.bind(impact)()) for impact in posed.impacts]
 
 
-def _elsewhere_rms(simulation: Simulation, method: Method, *, quick: bool) -> float:
-    """Return the rms error beyond solid spheres; NaN under other normal laws than the default."""
-    if method.normal != composition.DEFAULT_NORMAL:
-        return np.nan
-    truths = _elsewhere(sized=need_units(simulation.laws), quick=quick)
-    results = [simulation.run(truth.scene) for truth in truths]
-    if not all(result.status for result in results):
-        return np.nan
-    return _rms(
-        result.psi_change - truth.psi_change for result, truth in zip(results, truths, strict=True)
-    )
+def _alike(before: list[Array] | None, now: list[Array]) -> bool:
+    """Return whether answers are those of the resolution before, to the last bit."""
+    return before is not None and all(map(np.array_equal, before, now))
 
 
-def _rms(errors: Iterable[float]) -> float:
-    """Return the root of the mean square."""
-    return float(np.sqrt(np.mean(np.square(list(errors)))))
+def _errors(answers: Sequence[Answer], truths: Sequence[Array]) -> dict[str, Any]:
+    """Return rms and largest error over impacts and numbers, and the worst energy books."""
+    if not answers:
+        return {}
+    off = [answer.numbers - truth for answer, truth in zip(answers, truths, strict=True)]
+    errors = np.concatenate(off)
+    return {
+        "error_rms": float(np.sqrt(np.mean(errors**2))),
+        "error_worst": float(np.max(np.abs(errors))),
+        "books_worst": float(np.max([answer.books for answer in answers])),
+    }
 
 
-def _rebound_row(*, quick: bool) -> Row:
-    """Return error and run time of ``contactlab.rebound``, which no simulation runs."""
-    truths = _truths(composition.DEFAULT_NORMAL, "", False, quick=quick)
-    pairs = [(float(truth.scene.psi1), float(truth.scene.chi)) for truth in truths]
-
-    def off(truth: Truth) -> Any:
-        psi1, chi = float(truth.scene.psi1), float(truth.scene.chi)
-        return rebound(psi1, chi) - psi1 - truth.psi_change
-
-    def one_by_one() -> None:
-        for pair in pairs:
-            for _ in range(CALLS):
-                rebound(*pair)
-
-    errors = [off(truth) for truth in truths]
-    batch = _swept_scenes()
-    psi1, chi = np.asarray(batch.psi1), np.asarray(batch.chi)
-    return Row(
-        method=REBOUND,
-        error_rms=_rms(errors),
-        error_worst=float(np.max(np.abs(errors))),
-        elsewhere_rms=_rms(off(truth) for truth in _elsewhere(sized=False, quick=quick)),
-        time_s=_least(one_by_one, repeats=REPEATS) / (CALLS * len(pairs)),
-        sweep_time_s=_least(lambda: rebound(psi1, chi), repeats=CALLS) / SWEEP,
-    )
+def _times(door: Door, posed: Posed, quick: bool) -> dict[str, Any]:
+    """Return the mean time of one impact alone, and the time of each of many."""
+    longest = LONG_QUICK if quick else LONG
+    each = longest / len(posed.impacts)
+    alone = np.mean([least_time(door.bind(impact), each) for impact in posed.impacts])
+    found = {"time_s": float(alone) / door.calls}
+    size = min(posed.most, int(longest / found["time_s"]))
+    if door.together and posed.batch is not None and size >= FEWEST:
+        found["sweep_time_s"] = least_time(door.bind(posed.batch(size)), longest) / size
+    return found
 
 
-def _least(call: Callable[[], object], *, repeats: int) -> float:
-    """Return the least time of several calls, in s."""
-    least = np.inf
-    for _ in range(repeats):
-        before = time.perf_counter()
-        call()
-        least = min(least, time.perf_counter() - before)
+def least_time(call: Call, longest: float) -> float:
+    """Return the least processor time of several calls, in s; of one that takes ``longest``."""
+    least, number, spent = np.inf, 1, 0.0
+    repeats = 0
+    while repeats < REPEATS and spent < longest:
+        before = time.process_time()
+        for _ in range(number):
+            call()
+        taken = time.process_time() - before
+        spent += taken
+        if taken < LEAST_TIME:  # the clock counts little longer than such a call
+            number *= 10
+            continue
+        least = min(least, taken / number)
+        repeats += 1
     return least
-
-
-def _row(method: Method, resolution: Options, truths: list[Truth], *, quick: bool) -> Row:
-    """Return error and run time of a method at one resolution."""
-    simulation = method.simulation(resolution)
-    impacts = [truth.scene for truth in truths]
-    # Timed are runs without history: a law may answer those in another way than it follows one.
-    results = [simulation.run(scene) for scene in impacts]
-    followed = [simulation.run(scene, history=True) for scene in impacts]
-    row = Row(
-        method=method.name, options=_words(resolution), converges=converges(simulation.tangential)
-    )
-    if failed := [result for result in (*results, *followed) if not result.status]:
-        return attrs.evolve(row, failed=len(failed), status=failed[0].status.name)
-    errors: list[Any] = [
-        result.psi_change - true.psi_change for result, true in zip(results, truths, strict=True)
-    ]
-    forces = [
-        _force_error(result, true.result) for result, true in zip(followed, truths, strict=True)
-    ]
-    books: list[Any] = [
-        abs(result.energy.relative_imbalance) if np.all(result.energy.checked) else np.nan
-        for result in results
-    ]
-    least = _least_time(simulation, impacts)
-    return attrs.evolve(
-        row,
-        error_rms=_rms(errors),
-        error_worst=float(np.max(np.abs(errors))),
-        force_error_rms=_rms(forces),
-        books_worst=float(np.max(books)),
-        time_s=least,
-        sweep_time_s=_sweep_time(simulation, least) if least < SLOW else np.nan,
-        elsewhere_rms=_elsewhere_rms(simulation, method, quick=quick),
-    )
 
 
 def _with_nearer(rows: list[Row]) -> list[Row]:
     """Return the rows, those of methods that come nearer to the continuum marked as such."""
-    errors: dict[str, list[float]] = {}
+    errors: dict[tuple[str, str], list[float]] = {}
     for row in rows:
         if row.ok:
-            errors.setdefault(row.method, []).append(row.error_rms)
-    nearer = {method for method, each in errors.items() if each[-1] * ALIKE < each[0]}
-    return [attrs.evolve(row, converges=row.converges or row.method in nearer) for row in rows]
+            errors.setdefault((row.question, row.method), []).append(row.error_rms)
+    nearer = {key for key, each in errors.items() if each[-1] * ALIKE < each[0]}
+    return [
+        attrs.evolve(row, converges=row.converges or (row.question, row.method) in nearer)
+        for row in rows
+    ]
 
 
-def _left_out(method: Method, resolution: Options) -> Row:
-    """Return the row of a resolution that is not run because it would take too long."""
-    return Row(
-        method=method.name,
-        options=_words(resolution),
-        failed=1,
-        status="NOT_RUN",
-        converges=converges(composition.law("tangential", method.tangential)),
-    )
-
-
-def _words(resolution: Options) -> str:
-    options = {key: value for part in resolution.values() for key, value in part.items()}
-    return ", ".join(f"{key}={value:g}" for key, value in options.items())
-
-
-def _force_error(result: ImpactResult, exact: ImpactResult | None) -> float:
-    """Return the rms error of the force over time, over mu P_max; NaN without exact result."""
-    if exact is None:
-        return np.nan
-    history, true = result.history, exact.history
-    assert history
-    assert true is not None
-    scene = exact.scene
-    from scipy.interpolate import PchipInterpolator  # a few 1e-7 of the peak at 200 instants
-
-    instants, first = np.unique(true.time, return_index=True)  # an event may occur twice
-    inside = np.clip(history.time, instants[0], instants[-1])
-    expected = PchipInterpolator(instants, true.tangential_force[first])(inside)
-    scale = float(np.asarray(scene.friction_coefficient * exact.motion.maximum_force))
-    return float(np.sqrt(np.mean((history.tangential_force - expected) ** 2))) / scale
-
-
-def _least_time(simulation: Simulation, impacts: list[Scene]) -> float:
-    """Return the mean over the scenes of the least time of one run, in s."""
-    total = 0.0
-    started = time.perf_counter()
-    for scene in impacts:
-        simulation.run(scene)  # warm-up
-        least = np.inf
-        for _ in range(REPEATS):
-            before = time.perf_counter()
-            simulation.run(scene)
-            least = min(least, time.perf_counter() - before)
-            if time.perf_counter() - started > LONG:
-                break
-        total += least
-    return total / len(impacts)
-
-
-def _swept_scenes(size: int = SWEEP) -> Scene:
-    """Return impacts of solid spheres without slip throughout, one batch."""
-    chi = 1.17 + 0.58 * (np.arange(size) * GOLDEN % 1.0)  # all chi beside all psi1
-    psi1 = 0.01 + np.linspace(0.0, 1.0, size) * (4.0 * chi - 1.02)
-    return Scene.nondimensional(psi1=psi1, chi=chi)
-
-
-def _sweep_time(simulation: Simulation, alone: float) -> float:
-    """Return the least time per impact of a sweep of solid spheres; ``alone`` is one's, in s."""
-    size = int(np.clip(SWEEP_BUDGET / alone, FEWEST, SWEEP))
-    batch = pose(_swept_scenes(size), simulation.laws)
-    return _least(lambda: simulation.sweep(batch), repeats=2) / size
+def _orders(rows: list[Row]) -> dict[str, float]:
+    """Return the order of each method of the first question that has one."""
+    by_method: dict[str, dict[str, list[Row]]] = {}
+    for row in rows:
+        by_method.setdefault(row.method, {}).setdefault(row.question, []).append(row)
+    found = {}
+    for method, by_question in by_method.items():
+        orders = [order for each in by_question.values() if (order := _order(each)) == order]
+        if orders:
+            found[method] = orders[0]
+    return found
 
 
 def _order(rows: list[Row]) -> float:

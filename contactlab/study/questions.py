@@ -1,0 +1,429 @@
+"""Questions of a benchmark: impacts, their true answers, and the doors that answer them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import attrs
+import numpy as np
+
+from contactlab.collisions.collide import collide
+from contactlab.contracts.law import claims
+from contactlab.impact import shapes
+from contactlab.impact.bodies import HalfSpace, Sphere
+from contactlab.impact.encounter import Encounter
+from contactlab.impact.gathering import Body, Gathering, Touch
+from contactlab.impact.material import Material
+from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import refuse
+from contactlab.numeric.types import Array
+from contactlab.outcome.result import ImpactResult
+from contactlab.registry import composition
+from contactlab.registry.registry import REGISTRY
+from contactlab.runs.simulation import Simulation
+from contactlab.study import doors
+from contactlab.study.bench_methods import Method, methods, scenes
+from contactlab.study.doors import Answer, Door
+from contactlab.study.posed import need_units
+from contactlab.study.stability_references import converges, reference_for
+
+#: Tolerance of the exact answers: finer than the default, which is measured too.
+EXACT_TOLERANCE = 1e-12
+#: Springs of other true answers, extrapolated from half as many; steps are four times as many.
+TRUE_SPRINGS, TRUE_SPRINGS_QUICK = 800, 400
+TRUE_OF_TWO, TRUE_OF_TWO_QUICK = 400, 200
+#: Rings of the true answer with spin about the normal; instants of a course.
+TRUE_RINGS, INSTANTS = 24, 60
+#: The restitution of impacts with loss, and the normal law that stands for any.
+LOSS, ANY = 0.8, "tsuji"
+#: Integrators, the usual one first.
+USUAL = ("symplectic", "events", "adaptive", "paper")
+#: Impacts of a batch, and of a batch of bodies.
+MANY, MANY_BODIES = 1000, 100
+#: Status of a law that answers impacts as a whole and has no force in between.
+NO_COURSE = "NO_COURSE"
+#: Multiples of this number spread evenly over [0, 1].
+GOLDEN = 0.6180339887498949
+DOWN = np.array([0.0, 0.0, -1.0])
+
+
+@attrs.frozen(kw_only=True)
+class Posed:
+    """The impacts of a question.
+
+    Attributes
+    ----------
+    impacts : sequence
+        Scenes, encounters or gatherings, each alone.
+    batch : callable or None
+        Returns so many impacts in one scene, encounter or gathering; None where no door takes them.
+    most : int
+        The largest batch.
+    truths : sequence of arrays
+        The true answer of each impact.
+    doors : sequence of Door
+    """
+
+    impacts: Sequence[Any]
+    truths: Sequence[Array]
+    doors: Sequence[Door]
+    batch: Callable[[int], Any] | None = None
+    most: int = MANY
+
+
+@attrs.frozen
+class Question:
+    """A question: its name, what its error is of, and what poses it, ``quick`` or not."""
+
+    name: str
+    about: str
+    pose: Callable[[bool], Posed]
+
+
+def questions(laws: list[str] | None = None, only: str | None = None) -> list[Question]:
+    """Return the questions; of the laws named, those that any law answers.
+
+    Parameters
+    ----------
+    laws : list of str, optional
+        As of ``bench_methods.methods``.
+    only : str, optional
+        The name of one question.
+    """
+    chosen = methods(laws)
+    if laws is None:
+        damped, usual = _usual(methods([f"normal.{ANY}"])), _usual(chosen)
+        found = [
+            Question(
+                "sphere",
+                "psi2",
+                lambda quick: _sphere(usual if quick else chosen, quick, alone=False),
+            ),
+            *_QUESTIONS,
+            Question("any normal law", "psi2", lambda quick: _by_methods(damped, quick)),
+            Question("course", "force over mu P_max", lambda quick: _course(usual, quick)),
+        ]
+    else:
+        found = []
+        for normal in dict.fromkeys(each.normal for each in chosen):
+            own = [each for each in chosen if each.normal == normal]
+            found += _of_normal(normal, own)
+    if only is None:
+        return found
+    if named := [each for each in found if each.name == only]:
+        return named
+    rule = "must be one of " + ", ".join(repr(each.name) for each in found)
+    raise refuse("question", only, rule)
+
+
+def _usual(chosen: Sequence[Method]) -> list[Method]:
+    """Return each law under the first of the usual integrators that runs it."""
+    of_law: dict[str, Method] = {}
+    for method in sorted(chosen, key=lambda each: (*USUAL, each.integrator).index(each.integrator)):
+        of_law.setdefault(method.tangential, method)
+    return list(of_law.values())
+
+
+def _of_normal(normal: str, own: list[Method]) -> list[Question]:
+    """Return what laws under one normal law are asked."""
+    if normal != composition.DEFAULT_NORMAL:
+        return [Question(f"sphere, {normal}", "psi2", lambda quick: _by_methods(own, quick))]
+    return [
+        Question("sphere", "psi2", lambda quick: _sphere(own, quick, alone=True)),
+        Question("course", "force over mu P_max", lambda quick: _course(own, quick)),
+    ]
+
+
+def swept_scenes(size: int = MANY) -> Scene:
+    """Return impacts of solid spheres without slip throughout, one batch."""
+    chi = 1.17 + 0.58 * (np.arange(size) * GOLDEN % 1.0)  # all chi beside all psi1
+    psi1 = 0.01 + np.linspace(0.0, 1.0, size) * (4.0 * chi - 1.02)
+    return Scene.nondimensional(psi1=psi1, chi=chi)
+
+
+def _ladders(chosen: Sequence[Method], quick: bool) -> list[Door]:
+    """Return the methods at every resolution, coarse to fine."""
+    return [
+        doors.by_method(method, options)
+        for method in chosen
+        for options in method.resolutions(quick=quick)
+    ]
+
+
+def _sphere(chosen: Sequence[Method], quick: bool, *, alone: bool) -> Posed:
+    """Return elastic spheres; without the doors that are no laws if laws were named ``alone``."""
+    sized = any(
+        need_units(each.simulation({"tangential": {}, "integrator": {}}).laws) for each in chosen
+    )
+    impacts = scenes(quick=quick, sized=sized)
+    exact = Simulation(**composition.exact(EXACT_TOLERANCE))
+    others = [] if alone else [
+        doors.by_rebound(), *doors.in_c(spheres=True), *doors.limits(formula=True),
+    ]  # fmt: skip
+    return Posed(
+        impacts=impacts,
+        batch=swept_scenes,
+        truths=[np.ravel(exact.run(each).check().psi2) for each in impacts],
+        doors=[*others, *_ladders(chosen, quick)],
+    )
+
+
+def _sphere_with_loss(quick: bool) -> Posed:
+    """Return spheres of one restitution."""
+    impacts = scenes(quick=quick)[: 3 if quick else None]
+    return Posed(
+        impacts=impacts,
+        batch=swept_scenes,
+        truths=_by_fine_springs(impacts, LOSS, quick),
+        doors=[
+            doors.by_rebound(LOSS),
+            *doors.in_c(LOSS, spheres=True),
+            doors.by_run("run()", "", _restituted(LOSS)),
+            *doors.by_springs(12, 25, 50, 100, restitution=LOSS),
+            *doors.limits(formula=False),
+        ],
+    )
+
+
+def _restituted(restitution: float) -> Simulation:
+    """Return the default laws under the normal law of a restitution."""
+    name = composition.RESTITUTION["normal"]
+    return Simulation(normal=composition.law("normal", name, restitution=restitution))
+
+
+def _rod(angle: float, *, radius: float = 0.005) -> tuple[Any, Array]:
+    axis = [math.sin(angle), 0.0, math.cos(angle)]
+    return shapes.rod(
+        length=0.1, radius=radius, material=Material.named("steel"), axis=axis, normal=DOWN
+    )
+
+
+def _egg() -> tuple[Any, Array]:
+    axis = np.array([0.5, 0.0, math.sqrt(0.75)])
+    axes = np.stack((axis, [0.0, 1.0, 0.0], np.cross(axis, [0.0, 1.0, 0.0])), axis=1)
+    return shapes.ellipsoid(
+        semi_axes=[0.03, 0.022, 0.015], material=Material.named("steel"), axes=axes, normal=DOWN
+    )
+
+
+def _falls(body: tuple[Any, Array], velocity: Any) -> Encounter:
+    """Return a fall on steel at 1 m/s; ``velocity`` are its parts along the floor."""
+    along, across = np.broadcast_arrays(*velocity)
+    return Encounter(
+        body[0], HalfSpace(Material.named("steel")), 0.3, normal=DOWN, contact=body[1],
+        velocity=np.stack([along, across, np.full(along.shape, -1.0)], axis=-1),
+    )  # fmt: skip
+
+
+def _bodies(body: tuple[Any, Array], restitution: float, quick: bool, *, across: float) -> Posed:
+    """Return falls of one body; slip keeps its line where ``across`` is 0, in m/s."""
+    alone = (0.1, 0.5) if quick else (-0.6, -0.2, 0.1, 0.3, 0.5, 0.9)
+    impacts = [_falls(body, (each, across)) for each in alone]
+    plane, lossy = across == 0.0, restitution < 1.0
+    if plane and not lossy:
+        exact = Simulation(**composition.exact(EXACT_TOLERANCE))
+        truths = [np.ravel(exact.run(each.scene).check().psi2) for each in impacts]
+    else:
+        truths = _by_fine_springs([each.scene for each in impacts], restitution, quick)
+    default = _restituted(restitution) if lossy else Simulation()
+    kernel = doors.in_c(spheres=False) if plane and not lossy else []
+    return Posed(
+        impacts=impacts,
+        batch=lambda size: _falls(body, (np.linspace(-1.0, 1.0, size), across)),
+        most=MANY_BODIES,
+        truths=truths,
+        doors=[
+            doors.by_collide(restitution),
+            doors.by_run("run()", "", default),
+            *kernel,
+            *doors.by_springs(12, 25, 50, 100, restitution=restitution),
+        ],
+    )
+
+
+def _by_fine_springs(impacts: Sequence[Scene], restitution: float, quick: bool) -> list[Array]:
+    """Return psi2 by many springs, extrapolated as their error falls with the square."""
+    fine = TRUE_SPRINGS_QUICK if quick else TRUE_SPRINGS
+    truths = []
+    for scene in impacts:
+        half, whole = (
+            np.ravel(doors.springs_of(each, restitution).run(scene).check().psi2)
+            for each in (fine // 2, fine)
+        )
+        truths.append(whole + (whole - half) / 3.0)
+    return truths
+
+
+def _normal_spin(quick: bool) -> Posed:
+    """Return balls that spin about the normal."""
+    steel = Material.named("steel")
+    ball = Sphere(0.01, steel)
+
+    def met(slip: Any, spin: Any) -> Encounter:
+        slip, spin = np.broadcast_arrays(slip, spin)
+        zero = np.zeros(slip.shape)
+        return Encounter(
+            ball, HalfSpace(steel), 0.3, normal=DOWN,
+            velocity=np.stack([slip, zero, zero - 1.0], axis=-1),
+            spin=np.stack([zero, zero, spin], axis=-1),
+        )  # fmt: skip
+
+    impacts = [met(0.4, 600.0)] if quick else [met(0.2, 300.0), met(0.4, 600.0), met(0.8, 300.0)]
+
+    def law(rings: int) -> Simulation:
+        return Simulation(tangential=REGISTRY.create("tangential.halfspace", rings=rings))
+
+    known = "tangential.halfspace" in REGISTRY.names("tangential")
+    finest = law(TRUE_RINGS) if known else Simulation()
+    ladder = [
+        doors.by_run("halfspace", f"rings={rings}", law(rings)) for rings in (4, 8, 16)
+    ] if known else []  # fmt: skip
+    return Posed(
+        impacts=impacts,
+        batch=lambda size: met(np.linspace(0.1, 1.0, size), 300.0),
+        most=MANY_BODIES,
+        truths=[np.ravel(finest.run(each.scene).check().psi2) for each in impacts],
+        doors=[attrs.evolve(doors.by_collide(), name="collide(), without"), *ladder],
+    )
+
+
+def _two_contacts(quick: bool) -> Posed:
+    """Return a billiard ball that meets cushion and cloth at once; errors over 1 m/s."""
+    ball = Sphere(0.0286, Material(young_modulus=5e9, poisson_ratio=0.34, density=1700.0))
+    rubber, cloth = (
+        HalfSpace(Material(young_modulus=young, poisson_ratio=poisson))
+        for young, poisson in ((5e6, 0.48), (5e7, 0.4))
+    )
+
+    def met(along: Any) -> Gathering:
+        along = np.asarray(along, dtype=float)
+        one = np.ones(along.shape)
+        return Gathering(
+            [Body(ball, velocity=np.stack([along, one, 0.0 * one], axis=-1), spin=[-35, 35, 0])],
+            [
+                Touch(0, rubber, 0.14, normal=[0, 0.9165, 0.4]),
+                Touch(0, cloth, 0.2, normal=DOWN),
+            ],
+        )
+
+    def read(answer: Any) -> Answer:
+        return Answer(np.ravel(answer.velocity))
+
+    def door(name: str, options: str, simulation: Simulation | None) -> Door:
+        return Door(
+            name=name, options=options, read=read,
+            bind=lambda gathering: lambda: collide(gathering, simulation),
+        )  # fmt: skip
+
+    impacts = [met(each) for each in ((0.3,) if quick else (0.1, 0.3, 0.6, 1.0, 2.0))]
+    fine = TRUE_OF_TWO_QUICK if quick else TRUE_OF_TWO
+    half, whole = (
+        [read(collide(each, doors.springs_of(count))).numbers for each in impacts]
+        for count in (fine // 2, fine)
+    )
+    return Posed(
+        impacts=impacts,
+        batch=lambda size: met(np.linspace(0.1, 2.0, size)),
+        most=MANY_BODIES,
+        truths=[fine + (fine - coarse) / 3.0 for coarse, fine in zip(half, whole, strict=True)],
+        doors=[
+            door("collide()", "", None),
+            *(
+                door("collide, springs", f"springs={n}, steps={4 * n}", doors.springs_of(n))
+                for n in (12, 24, 50, 100)
+            ),
+        ],
+    )
+
+
+def _by_methods(chosen: Sequence[Method], quick: bool) -> Posed:
+    """Return spheres under a normal law of its own, by laws at every resolution.
+
+    The limit of a law is its own if it converges, else that of the law preferred there.
+    """
+    laws = [each.simulation({"tangential": {}, "integrator": {}}).laws for each in chosen]
+    normal = laws[0].normal
+    impacts = scenes(quick=quick, sized=True)
+    friction = composition.law("tangential", composition.prefer_law("tangential", normal))
+    own = [each.tangential for each in laws if converges(each.tangential)]
+    if own and type(friction) not in map(type, own):
+        friction = own[0]
+    truths = []
+    exact = (
+        Simulation(normal=normal, **composition.exact(EXACT_TOLERANCE))
+        if ("elastic_hertz" in claims(normal))
+        else None
+    )
+    for scene in impacts:
+        if exact is not None:
+            truths.append(np.ravel(exact.run(scene).check().psi2))
+            continue
+        change = reference_for(friction, normal)(scene, friction)
+        psi2 = math.nan if change is None else float(scene.psi1) + float(scene.psi(change))
+        truths.append(np.array([psi2]))
+    return Posed(
+        impacts=impacts,
+        batch=swept_scenes,
+        truths=truths,
+        doors=_ladders(chosen, quick),
+    )
+
+
+def _course(chosen: Sequence[Method], quick: bool) -> Posed:
+    """Return elastic spheres whose force is asked at every instant."""
+    steel = any(
+        need_units(each.simulation({"tangential": {}, "integrator": {}}).laws) for each in chosen
+    )
+    impacts = scenes(quick=quick, sized=steel)
+    exact = Simulation(**composition.exact(EXACT_TOLERANCE))
+
+    def read(result: ImpactResult) -> Answer:
+        if not result.status:
+            return Answer(np.empty(0), result.status.name)
+        forces = _forces(result)
+        return Answer(forces, "SUCCESS" if np.isfinite(forces).all() else NO_COURSE)
+
+    def followed(door: Door, method: Method, options: Any) -> Door:
+        simulation = method.simulation(options)
+        return attrs.evolve(
+            door, read=read, together=False,
+            bind=lambda scene: lambda: simulation.run(scene, history=True),
+        )  # fmt: skip
+
+    return Posed(
+        impacts=impacts,
+        truths=[_forces(exact.run(each, history=True).check()) for each in impacts],
+        doors=[
+            followed(doors.by_method(method, options), method, options)
+            for method in chosen
+            for options in method.resolutions(quick=quick)
+        ],
+    )
+
+
+def _forces(result: ImpactResult) -> Array:
+    """Return the tangential force over mu P_max at even instants of the contact."""
+    from scipy.interpolate import PchipInterpolator  # a few 1e-7 of the peak at 200 instants
+
+    history = result.history
+    assert history is not None
+    instants, first = np.unique(history.time, return_index=True)  # an event may occur twice
+    scale = float(np.asarray(result.scene.friction_coefficient * result.motion.maximum_force))
+    even = np.linspace(instants[0], instants[-1], INSTANTS)
+    if not np.isfinite(history.tangential_force).all():
+        return np.full(INSTANTS, math.nan)
+    force: Array = PchipInterpolator(instants, history.tangential_force[first])(even)
+    return force / scale
+
+
+_QUESTIONS = (
+    Question("sphere with e", "psi2", _sphere_with_loss),
+    Question("plane", "psi2", lambda quick: _bodies(_rod(0.5), 1.0, quick, across=0.0)),
+    Question("plane with e", "psi2", lambda quick: _bodies(_rod(0.5), LOSS, quick, across=0.0)),
+    Question("turning slip", "psi2", lambda quick: _bodies(_rod(0.5), 1.0, quick, across=0.3)),
+    Question("ellipse", "psi2", lambda quick: _bodies(_egg(), 1.0, quick, across=0.3)),
+    Question("spin about the normal", "psi2", _normal_spin),
+    Question("two contacts", "velocity over 1 m/s", _two_contacts),
+)
