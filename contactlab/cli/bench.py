@@ -86,7 +86,8 @@ def _draw(path: Path, benchmark: Benchmark, **look: Unpack[shared.Drawing]) -> b
         lambda axes: work_precision(axes, benchmark),
         rows=rows,
         columns=columns,
-        heights=(HEIGHT,) * rows,
+        heights=(1.0,) * rows,
+        low=HEIGHT,
         **look,
     )
     return True

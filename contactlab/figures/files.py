@@ -75,6 +75,7 @@ def save(
     columns: int = 1,
     heights: tuple[float, ...] = (1.0,),
     wide: bool = False,
+    low: float = 1.0,
     look: Look = "print",
     width: Width | None = None,
 ) -> Picture:
@@ -94,12 +95,15 @@ def save(
         Heights of the rows, relative to each other.
     wide : bool
         True for a long legend.
+    low : float
+        Factor on the height, of print.
     look : {"print", "slides"}
         Look of a page, or of a screen: see ``contactlab.outcome.style``.
     width : {"one", "two"}, optional
         Columns of a page that the picture fills, at the size of print.
     """
-    size = _size(columns=columns, heights=heights, wide=wide, width=width)
+    across, up = _size(columns=columns, heights=heights, wide=wide, width=width)
+    size = across, low * up
     if look == "slides" and width is None:
         room = max(1.0, 0.55 * columns)  # type shrinks where panels stand side by side
         size = (room * SLIDE[0], room * SLIDE[1])

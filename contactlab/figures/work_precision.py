@@ -14,7 +14,7 @@ from contactlab.figures.files import Panels
 from contactlab.outcome.style import LAW_COLOURS, QUIET
 from contactlab.study.benchmark import TIMES, Benchmark, Row
 
-#: Panels in a row, and the height of a row over that of a figure with one panel.
+#: Panels in a row, and their height over that of a figure with one panel.
 COLUMNS, HEIGHT = 4, 0.65
 #: Least error drawn; smaller ones stand at it.
 FLOOR = 1e-8

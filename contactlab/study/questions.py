@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import attrs
@@ -24,7 +24,7 @@ from contactlab.registry import composition
 from contactlab.registry.registry import REGISTRY
 from contactlab.runs.simulation import Simulation
 from contactlab.study import doors
-from contactlab.study.bench_methods import Method, methods, scenes
+from contactlab.study.bench_methods import Method, Options, methods, scenes
 from contactlab.study.doors import Answer, Door
 from contactlab.study.posed import need_units
 from contactlab.study.stability_references import converges, reference_for
@@ -143,13 +143,19 @@ def swept_scenes(size: int = MANY) -> Scene:
     return Scene.nondimensional(psi1=psi1, chi=chi)
 
 
+def _resolutions(chosen: Sequence[Method], quick: bool) -> Iterator[tuple[Method, Options]]:
+    """Yield the methods at every resolution, coarse to fine; two of another model if ``quick``."""
+    for method in chosen:
+        ladder = method.resolutions(quick=quick)
+        if quick and not converges(method.simulation(ladder[0]).tangential):
+            ladder = ladder[:2]
+        for options in ladder:
+            yield method, options
+
+
 def _ladders(chosen: Sequence[Method], quick: bool) -> list[Door]:
-    """Return the methods at every resolution, coarse to fine."""
-    return [
-        doors.by_method(method, options)
-        for method in chosen
-        for options in method.resolutions(quick=quick)
-    ]
+    """Return the methods at every resolution."""
+    return [doors.by_method(*each) for each in _resolutions(chosen, quick)]
 
 
 def _sphere(chosen: Sequence[Method], quick: bool, *, alone: bool) -> Posed:
@@ -397,8 +403,7 @@ def _course(chosen: Sequence[Method], quick: bool) -> Posed:
         truths=[_forces(exact.run(each, history=True).check()) for each in impacts],
         doors=[
             followed(doors.by_method(method, options), method, options)
-            for method in chosen
-            for options in method.resolutions(quick=quick)
+            for method, options in _resolutions(chosen, quick)
         ],
     )
 

@@ -26,7 +26,7 @@ REPEATS, LEAST_TIME = 5, 5e-4
 #: answers in this time one by one; of fewer it is not timed.
 LONG, LONG_QUICK, FEWEST = 2.0, 0.08, 3
 #: Processor time of one impact, in s, from which on a door is not refined further.
-SLOW, SLOW_QUICK = 0.1, 0.02
+SLOW, SLOW_QUICK = 0.1, 0.05
 #: A method whose log error falls by less than this over its resolutions has no order.
 LEAST_GAIN = 0.5
 
@@ -87,7 +87,7 @@ def _ask(question: Question, posed: Posed, rows: list[Row], until: float, *, qui
         if door.name in slow:
             rows.append(attrs.evolve(row, failed=1, status="NOT_RUN"))
             continue
-        answers = in_time(partial(_answers, door, posed), until)
+        answers, first = in_time(partial(_answers, door, posed), until)
         numbers = [each.numbers for each in answers]
         if door.read and _alike(known.get(door.name), numbers):
             continue
@@ -97,17 +97,25 @@ def _ask(question: Question, posed: Posed, rows: list[Row], until: float, *, qui
             rows.append(attrs.evolve(row, failed=len(failed), status=failed[0]))
             continue
         errors = _errors(answers, posed.truths)
-        row = attrs.evolve(row, **errors, **in_time(partial(_times, door, posed, quick), until))
+        row = attrs.evolve(row, **errors)
+        row = attrs.evolve(row, **in_time(partial(_times, door, posed, first, quick), until))
         rows.append(row)
         if row.time_s > (SLOW_QUICK if quick else SLOW):
             slow.add(door.name)
 
 
-def _answers(door: Door, posed: Posed) -> list[Answer]:
-    """Return the answers to all impacts; none of a limit that answers nothing."""
+def _answers(door: Door, posed: Posed) -> tuple[list[Answer], float]:
+    """Return the answers to all impacts, and the mean time of such first calls.
+
+    A limit that answers nothing has none.
+    """
     if door.read is None:
-        return []
-    return [door.read(door.bind(impact)()) for impact in posed.impacts]
+        return [], 0.0
+    calls = [door.bind(impact) for impact in posed.impacts]
+    before = time.process_time()
+    answers = [call() for call in calls]
+    taken = time.process_time() - before
+    return [door.read(answer) for answer in answers], taken / len(calls)
 
 
 def _alike(before: list[Array] | None, now: list[Array]) -> bool:
@@ -128,12 +136,17 @@ def _errors(answers: Sequence[Answer], truths: Sequence[Array]) -> dict[str, Any
     }
 
 
-def _times(door: Door, posed: Posed, quick: bool) -> dict[str, Any]:
-    """Return the mean time of one impact alone, and the time of each of many."""
+def _times(door: Door, posed: Posed, first: float, quick: bool) -> dict[str, Any]:
+    """Return the mean time of one impact alone, and the time of each of many.
+
+    First calls, which took ``first`` each, are repeated unless that would be long.
+    """
     longest = LONG_QUICK if quick else LONG
-    each = longest / len(posed.impacts)
-    alone = np.mean([least_time(door.bind(impact), each) for impact in posed.impacts])
-    found = {"time_s": float(alone) / door.calls}
+    each, alone = longest / len(posed.impacts), first
+    if first < each:
+        times = [least_time(door.bind(impact), each) for impact in posed.impacts]
+        alone = float(np.mean(times))
+    found = {"time_s": alone / door.calls}
     size = min(posed.most, int(longest / found["time_s"]))
     if door.together and posed.batch is not None and size >= FEWEST:
         found["sweep_time_s"] = least_time(door.bind(posed.batch(size)), longest) / size
@@ -142,20 +155,19 @@ def _times(door: Door, posed: Posed, quick: bool) -> dict[str, Any]:
 
 def least_time(call: Call, longest: float) -> float:
     """Return the least processor time of several calls, in s; of one that takes ``longest``."""
-    least, number, spent = np.inf, 1, 0.0
-    repeats = 0
-    while repeats < REPEATS and spent < longest:
+    least, number, spent, repeats = np.inf, 1, 0.0, 0
+    while repeats < REPEATS and (spent < longest or not repeats):
         before = time.process_time()
         for _ in range(number):
             call()
         taken = time.process_time() - before
         spent += taken
-        if taken < LEAST_TIME:  # the clock counts little longer than such a call
+        if taken < LEAST_TIME and spent < longest:  # such a call is short for the clock
             number *= 10
             continue
         least = min(least, taken / number)
         repeats += 1
-    return least
+    return float(least)
 
 
 def _with_nearer(rows: list[Row]) -> list[Row]:

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from contactlab.cli import bench, stability
+from contactlab.cli import stability
 from contactlab.study import paper_figures, work_precision
 from contactlab.study.bench_methods import Method
 from tests.cli.conftest import interrupting, partial
@@ -21,22 +21,20 @@ def rows(path):
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 
 
-@pytest.mark.slow
 def test_bench(run, monkeypatch, tmp_path):
-    monkeypatch.setattr(bench, "methods", lambda _: STEPPED)
-    monkeypatch.setattr(work_precision, "_row", interrupting(work_precision._row, 2))
+    """A clock that interrupts: in the second question, and before the first answer."""
+    clock = SimpleNamespace(process_time=interrupting(time.process_time, 0))
+    words = ("bench", "--quick", "--tangential", "coulomb")
     table, picture = tmp_path / "b.csv", tmp_path / "b.png"
-    ran = run("bench", "--quick", "--out", table, "--figure", picture)
+    monkeypatch.setattr(work_precision, "_ask", interrupting(work_precision._ask, 1))
+    ran = run(*words, "--out", table, "--figure", picture)
     assert ran.status == 130
     assert ran.out.endswith("not complete: interrupted\n")
-    assert [row["method"] for row in rows(partial(table))] == ["rebound()"] + [
-        "springs / symplectic"
-    ] * 2
+    assert {row["question"] for row in rows(partial(table))} == {"sphere"}
     assert partial(picture).read_bytes().startswith(b"\x89PNG")
-    monkeypatch.setattr(
-        work_precision, "_rebound_row", interrupting(work_precision._rebound_row, 0)
-    )
-    ran = run("bench", "--quick", "--json", "--figure", tmp_path / "none.png")
+    monkeypatch.undo()
+    monkeypatch.setattr(work_precision, "time", clock)
+    ran = run(*words, "--json", "--figure", tmp_path / "none.png")
     assert ran.status == 130
     content = json.loads(ran.out)
     assert (content["rows"], content["complete"]) == ([], False)

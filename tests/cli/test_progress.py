@@ -62,7 +62,7 @@ def test_short_work_says_nothing(begin, terminal):
         ("sweep {short} --out o.csv", "impacts", 3),
         ("compare {short}", "runs", 2),
         ("fit {impacts} {ball} --tangential exact,coulomb,walton --bootstrap 0", "laws", 2),
-        ("bench --quick --tangential coulomb", "bench", 1),
+        ("bench --quick --tangential coulomb", "bench", 2),
         ("stability --quick --tangential coulomb", "stability", None),
         *longer(
             ("figures --out . --only 2", "figures", 1),

@@ -11,8 +11,8 @@ import contactlab
 from contactlab import Encounter, Material, Scene, Simulation, Sphere, collide, load_path
 from contactlab.cli.main import main
 from contactlab.numeric.checks import quantity
-from contactlab.study.bench_methods import Method
 from contactlab.study.posed import pose
+from contactlab.study.questions import questions
 from contactlab.study.work_precision import bench
 from contactlab_laws.springs.law import Springs
 from tests.laws.normal_laws import LinearSpring, in_si
@@ -156,8 +156,8 @@ def test_scenes_are_posed_with_units_for_such_laws_alone():
 
 @pytest.mark.slow
 def test_the_benchmark_poses_them_with_units():
-    method = Method(tangential="springs", integrator="symplectic", normal="thornton")
-    (row, *_) = bench([method], quick=True, with_rebound=False).rows
+    laws = ["tangential.springs", "integrator.symplectic", "normal.thornton"]
+    (row, *_) = bench(questions(laws), quick=True).rows
     assert row.ok
     assert math.isfinite(row.error_rms)
     assert np.isfinite(row.sweep_time_s)

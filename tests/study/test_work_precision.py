@@ -1,9 +1,9 @@
 """`contactlab bench`: errors, orders, gaps, the front."""
 
-import itertools
 import json
+import shutil
+from types import SimpleNamespace
 
-import attrs
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -16,18 +16,23 @@ from contactlab.cli.main import main
 from contactlab.figures.work_precision import work_precision as draw
 from contactlab.registry import composition
 from contactlab.study import work_precision
-from contactlab.study.bench_methods import Method, methods, scenes
+from contactlab.study.bench_methods import methods, scenes
 from contactlab.study.benchmark import Benchmark, Row
+from contactlab.study.questions import questions
 from contactlab.study.work_precision import bench
 from tests.longer import longer
 
 
-def row(method="a", error=1.0, time=1.0, failed=0, options="steps=10"):
+def row(method="a", error=1.0, time=1.0, failed=0, options="steps=10", **entries):
     return Row(
-        method=method, options=options, error_rms=error, error_worst=error, force_error_rms=error,
-        books_worst=0.0, time_s=time, sweep_time_s=time, failed=failed,
-        status="SUCCESS" if not failed else "NON_FINITE",
+        method=method, options=options, error_rms=error, error_worst=error, books_worst=0.0,
+        time_s=time, failed=failed, status="SUCCESS" if not failed else "NON_FINITE",
+        **({"sweep_time_s": time} | entries),
     )  # fmt: skip
+
+
+def asked(*laws, only="sphere"):
+    return questions(list(laws), only)
 
 
 def test_every_fitting_composition_is_there_and_no_other():
@@ -51,34 +56,53 @@ def test_no_scene_is_answered_in_closed_form():
 
 def test_errors_fall_with_the_steps_and_the_order_is_seen():
     seen = []
-    method = Method(tangential="springs", integrator="symplectic")
-    found = bench([method], quick=True, progress=lambda *count: seen.append(count))
-    assert seen == [(done, len(found.rows)) for done in range(1, len(found.rows) + 1)]
+    laws = ("tangential.springs", "integrator.symplectic")
+    found = bench(asked(*laws), quick=True, progress=lambda *count: seen.append(count))
+    assert seen == [(1, 1)]
     errors = [entry.error_rms for entry in found.rows]
     assert errors[0] > 10 * errors[-1] > 0
     assert found.orders["springs / symplectic"] == pytest.approx(2.0, abs=0.4)
     assert all(entry.time_s > 0 for entry in found.rows)
+    assert all(entry.sweep_time_s < entry.time_s for entry in found.rows)
+
+
+def test_annuli_grow_as_the_tolerance_falls():
+    found = bench(asked("tangential.annulus", "integrator.adaptive"), quick=True)
+    errors = {entry.options.partition("tolerance=")[2]: entry.error_rms for entry in found.rows}
+    assert errors["0.001"] < errors["0.01"] / 2.0 < errors["0.1"] / 4.0
 
 
 def test_front_holds_what_nothing_beats():
     rows = (row(error=1.0, time=1.0), row(error=0.5, time=2.0), row(error=0.7, time=3.0))
     failed = row(error=np.nan, time=np.nan, failed=1)
     benchmark = Benchmark(rows=(*rows, failed), orders={}, complete=True)
-    assert benchmark.front() == [rows[0], rows[1]]
+    assert benchmark.front("sphere") == [rows[0], rows[1]]
     told = cli_bench._report(benchmark).splitlines()
-    assert [line.endswith("front") for line in told[2:5]] == [True, True, False]
+    assert told[0] == "sphere"
+    assert ["front alone" in line for line in told[3:6]] == [True, True, False]
+
+
+def test_fronts_are_of_one_question_and_of_one_time_without_limits():
+    rows = (
+        row(error=0.1, time=1.0, sweep_time_s=0.9), row(error=0.2, time=2.0, sweep_time_s=0.5),
+        row(error=0.01, time=0.1, question="other"), row(error=1e-3, time=1e-3, limit=True),
+    )  # fmt: skip
+    benchmark = Benchmark(rows=rows, orders={}, complete=True)
+    assert benchmark.front("sphere", "alone") == [rows[0]]
+    assert benchmark.front("sphere", "of many") == [rows[1], rows[0]]
+    assert benchmark.front("other") == [rows[2]]
 
 
 def test_below_rounding_only_time_counts():
     rows = tuple(row(error=error, time=time) for error, time in ((3e-14, 1.0), (1e-16, 2.0)))
-    assert Benchmark(rows=rows, orders={}, complete=True).front() == [rows[0]]
+    assert Benchmark(rows=rows, orders={}, complete=True).front("sphere") == [rows[0]]
     equal = tuple(row(error=0.5, time=time) for time in (1.0, 2.0))
-    assert Benchmark(rows=equal, orders={}, complete=True).front() == [equal[0]]
+    assert Benchmark(rows=equal, orders={}, complete=True).front("sphere") == [equal[0]]
 
 
 def test_failed_and_slow_resolutions_are_gaps_never_dropped(monkeypatch):
     monkeypatch.setattr(work_precision, "SLOW_QUICK", 0.0)
-    found = bench([Method(tangential="springs", integrator="symplectic")], quick=True)
+    found = bench(asked("tangential.springs", "integrator.symplectic"), quick=True)
     assert [entry.status for entry in found.rows] == ["SUCCESS", "NOT_RUN", "NOT_RUN"]
     assert not found.rows[-1].ok
 
@@ -100,7 +124,7 @@ def test_a_short_table_has_what_is_good_enough_and_what_is_best():
     assert benchmark.short() == [rows[4], rows[1], rows[6], rows[5]]
     lines = markdown(benchmark).splitlines()
     assert len({line.count("|") for line in lines[:6]}) == 1
-    assert lines[2].startswith("| `fine`, `a` | steps=10 | 7.0e-06 | 7.0e-06 | - |")
+    assert lines[2].startswith("| sphere | `fine`, `a` | steps=10 | 7.0e-06 | 7.0e-06 | 0.0e+00 |")
     assert lines[-1] == "not complete: interrupted"
 
 
@@ -108,10 +132,10 @@ def test_markdown_is_printed_where_it_is_asked_for(capsys, monkeypatch):
     benchmark = Benchmark(rows=(row("fine / a", error=1e-4, time=1.0),), orders={}, complete=True)
     monkeypatch.setattr(cli_bench, "bench", lambda *_, **__: benchmark)
     assert main(["bench", "--markdown"]) == 0
-    assert capsys.readouterr().out.startswith("| law, integrator | resolution |")
+    assert capsys.readouterr().out.startswith("| question | law, integrator |")
     assert main(["bench"]) == 0
     plain = capsys.readouterr().out
-    assert plain.startswith("method")
+    assert plain.startswith("sphere\nmethod")
     assert "|" not in plain
 
 
@@ -137,68 +161,125 @@ def test_command_writes_table_csv_and_picture(tmp_path, capsys):
     assert main(["bench", "--time-limit", "-1"]) == 2
 
 
-@pytest.mark.parametrize("width", [6.0, *longer(9.0)])
-def test_the_picture_names_every_law_beside_its_points(width):
-    """Both panels have one error axis; a law of another model is grey and a single point."""
-    rows = tuple(
-        attrs.evolve(
-            row(method=method, error=error, time=time, options=options), converges=law_converges
-        )
-        for method, error, time, options, law_converges in (
-            ("springs / symplectic", 1e-2, 1e-4, "springs=2, steps=25", True),
-            ("springs / symplectic", 1e-3, 2e-4, "springs=8, steps=32", True),
-            ("springs / adaptive", 1e-3, 1e-3, "springs=10, tolerance=0.01", True),
-            ("walton", 1e-1, 1e-5, "", False),
-            ("mindlin_cap / symplectic", 0.3, 1e-4, "steps=25", False),
-            ("mindlin_cap / symplectic", 0.3, 1e-3, "steps=400", False),
-        )
+def test_the_picture_has_a_panel_for_each_question_and_a_legend():
+    """Full marks of one impact alone, hollow ones of each of many, by error and time in µs."""
+    rows = (
+        row(method="springs / symplectic", error=1e-2, time=1e-4, sweep_time_s=1e-6),
+        row(method="springs / symplectic", error=1e-3, time=2e-4, sweep_time_s=2e-6),
+        row(method="limit: a copy", error=np.nan, time=1e-7, limit=True),
+        row(method="coulomb", error=1e-12, time=1e-3, question="plane with e"),
     )
-    figure = Figure(figsize=(width, 3.0))
+    figure = Figure(figsize=(9.0, 3.0))
     FigureCanvasAgg(figure)
-    left, right = figure.subplots(1, 2)
-    draw(np.array([[left, right]]), Benchmark(rows=rows, orders={}, complete=True))
-    for axes in (left, right):
-        assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
-        words = [text.get_text() for text in axes.texts]
-        assert {"springs", "walton", "mindlin cap", "2", "8"} <= set(words)
-        assert "10" not in words  # under its usual integrator alone
-        points = {tuple(line.get_xdata()) for line in axes.lines}
-        assert (100.0, 200.0) in {tuple(np.round(each, 6)) for each in points}
-        assert not any(1000.0 in each for each in points)
-    assert left.get_ylim() == right.get_ylim()
-    names = {text.get_text(): text.get_color() for text in left.texts}
-    assert names["springs"] != names["walton"] == names["mindlin cap"]
-
-
-@pytest.mark.slow
-def test_names_do_not_lie_on_each_other():
-    rows = tuple(
-        row(method=f"law{number}", error=1e-6 * (1.0 + 0.01 * number), time=1e-4)
-        for number in range(6)
-    )
-    figure = Figure(figsize=(9.0, 4.0))
-    FigureCanvasAgg(figure)
-    panels = figure.subplots(1, 2)
+    panels = figure.subplots(1, 3)
     draw(panels, Benchmark(rows=rows, orders={}, complete=True))
-    names = [text for text in panels[0].texts if text.get_text().startswith("law")]
-    boxes = [text.get_window_extent() for text in names]
-    assert len(names) == 6
-    assert not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2))
+    first, second, spare = panels
+    assert [axes.get_title(loc="left") for axes in panels] == ["sphere", "plane with e", ""]
+    for axes in (first, second):
+        assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+
+    def marks(axes, *, full):
+        return {
+            (round(float(line.get_xdata()[0]), 6), float(line.get_ydata()[0]))
+            for line in axes.lines
+            if line.get_marker() == "o" and (line.get_markerfacecolor() != "white") is full
+        }
+
+    assert marks(first, full=True) == {(100.0, 1e-2), (200.0, 1e-3)}
+    assert marks(first, full=False) == {(1.0, 1e-2), (2.0, 1e-3)}
+    assert marks(second, full=True) == {(1000.0, 1e-8)}  # smaller errors stand at the floor
+    words = [text.get_text() for text in spare.get_legend().get_texts()]
+    assert {"springs", "other laws", "one alone", "each of many"} <= set(words)
+    assert "annuli" not in words
 
 
-def test_the_function_of_the_table_is_measured_too():
-    found = bench([], quick=True, with_rebound=True)
-    (only,) = found.rows
-    assert only.method == work_precision.REBOUND
-    assert found.complete
-    assert 0.0 < only.error_rms < 1e-9
-    assert min(only.sweep_time_s, only.time_s) > 0.0
-    assert only.elsewhere_rms < 1e-9
+def numbers(name, *, quick=True):
+    """Doors of a question, the numbers that each answers."""
+    (question,) = questions(only=name)
+    posed = question.pose(quick)
+    return posed, {
+        f"{door.name} {door.options}".strip(): np.concatenate(
+            [door.read(door.bind(each)()).numbers for each in posed.impacts]
+        )
+        for door in posed.doors
+        if door.read
+    }
+
+
+@pytest.mark.parametrize(
+    ("name", "door", "error"),
+    [
+        ("sphere with e", "rebound()", 5e-5),
+        ("plane", "collide()", 1e-9),
+        ("plane with e", "collide()", 2e-3),
+        ("turning slip", "run()", 2e-3),
+        ("ellipse", "collide()", 2e-3),
+        *longer(
+            ("spin about the normal", "halfspace rings=16", 1e-2),
+            ("two contacts", "collide()", 1e-3),
+        ),
+    ],
+)
+def test_doors_of_a_question_agree_with_its_truth(name, door, error):
+    posed, answers = numbers(name)
+    truth = np.concatenate(posed.truths)
+    assert np.abs(answers[door] - truth).max() < error
+    assert np.ptp(truth) > 1e-3 or len(truth) == 1
+    for other, answer in answers.items():
+        if "springs=100" in other:
+            assert np.abs(answer - truth).max() < 1e-3
+
+
+def test_spin_about_the_normal_is_no_question_of_a_door_without_it():
+    posed, answers = numbers("spin about the normal")
+    assert abs(answers["collide(), without"] - posed.truths[0])[0] > 0.1
+
+
+def test_every_question_has_its_name_once_and_one_is_found_by_it():
+    names = [each.name for each in questions()]
+    assert len(set(names)) == len(names) == 10
+    with pytest.raises(
+        ValueError, match=r"question = 'plain': must be one of 'sphere', .*'course'"
+    ):
+        questions(only="plain")
+
+
+def test_kernels_in_c_answer_where_a_compiler_is():
+    known = any(map(shutil.which, ("cc", "gcc", "clang")))
+    posed, answers = numbers("sphere with e")
+    assert ("C, contactlab_bounce.h" in answers) is known
+    if known:
+        off = answers["C, contactlab_bounce.h"] - np.concatenate(posed.truths)
+        assert np.abs(off).max() < 1e-4
+
+
+def test_times_are_of_the_processor(monkeypatch):
+    """Short calls are made often enough for the clock, and long ones once."""
+    calls = []
+    clock = SimpleNamespace(process_time=lambda: 1e-5 * len(calls))
+    monkeypatch.setattr(work_precision, "time", clock)
+    assert work_precision.least_time(lambda: calls.append(0), 1.0) == pytest.approx(1e-5)
+    assert len(calls) > 100
+    calls.clear()
+    assert work_precision.least_time(lambda: calls.append(0), 1e-9) == pytest.approx(1e-5)
+    assert len(calls) == 1
+
+
+def test_a_resolution_that_changes_no_answer_is_no_row():
+    found = bench(asked("tangential.fronts"), quick=True)
+    assert len(found.rows) == 1
+
+
+def test_the_force_of_a_course_is_measured_at_every_instant():
+    found = bench(asked("tangential.fronts", only="course"), quick=True)
+    assert max(entry.error_rms for entry in found.rows) < 1e-6
+    (rigid,) = bench(asked("tangential.coulomb", only="course"), quick=True).rows
+    assert rigid.error_worst > 0.5
 
 
 def test_errors_are_of_the_runs_that_are_timed():
     """The exact law follows a history, and answers from its table where none is asked for."""
-    row = next(row for row in bench(methods(["tangential.fronts"]), quick=True).rows)
+    row = next(row for row in bench(asked("tangential.fronts"), quick=True).rows)
     answers = composition.exact(1e-12)
     errors = [
         float(Simulation().run(scene).psi2 - Simulation(**answers).run(scene).psi2)
@@ -206,7 +287,6 @@ def test_errors_are_of_the_runs_that_are_timed():
     ]
     assert row.error_rms == pytest.approx(np.sqrt(np.mean(np.square(errors))), rel=1e-3)
     assert 1e-13 < row.error_rms < 1e-10
-    assert row.force_error_rms < 1e-6
     assert np.isnan(row.books_worst)  # closed by construction, not checked
 
 
