@@ -33,6 +33,8 @@ class WholeImpact:
         Change of v_x in m/s; arbitrary where ``where`` is False.
     friction_work : float or array
         Friction work in J, at least 0.
+    shear_loss : float or array
+        Energy lost in shear in J, at least 0, as of springs that relax.
     reason : str
         Why these impacts need no march, for the plan: ``"friction coefficient 0"``.
     course : callable, optional
@@ -56,8 +58,8 @@ class WholeImpact:
         The normal motion that came of the friction, of all impacts of the batch; None if friction
         does not change it.
     balanced : bool
-        True if ``friction_work`` is the energy that the change of slip velocity takes: the energy
-        books close by construction, and check nothing.
+        True if ``friction_work`` and ``shear_loss`` are the energy that the change of slip
+        velocity takes: the energy books close by construction, and check nothing.
     counter : str or None
         Name under which the result counts the impacts, ``"tabulated"``; None for no count.
     normal_spin_change : float or array
@@ -78,8 +80,7 @@ class WholeImpact:
     balanced: bool = False
     counter: str | None = None
     normal_spin_change: Real = 0.0
-    #: A whole impact that loses energy in shear is marched.
-    shear_loss: ClassVar[float] = 0.0
+    shear_loss: Real = 0.0
 
     @property
     def counters(self) -> Mapping[str, int]:
@@ -163,10 +164,12 @@ def from_change(
     psi2_error: Real,
     reason: str,
     counter: str | None = None,
+    in_shear: Real = 0.0,
 ) -> WholeImpact:
     """Return the answer for impacts of which only the change of psi is known.
 
-    The friction work is the tangential energy lost, and the energy books close by construction.
+    Friction takes the tangential energy that shear leaves, and the energy books close by
+    construction.
 
     Parameters
     ----------
@@ -182,14 +185,20 @@ def from_change(
         Why these impacts need no march, for the plan.
     counter : str, optional
         Name under which the result counts the impacts.
+    in_shear : float or array
+        Energy lost in shear, over m_t (mu v1/kappa)²/2.
     """
     unit = scene.friction_coefficient * scene.normal_speed / scene.pair.stiffness_ratio
     change: Any = psi_change * unit
-    work: Any = -scene.pair.tangential_mass * change * (scene.slip_velocity + 0.5 * change)
+    lost: Any = -scene.pair.tangential_mass * change * (scene.slip_velocity + 0.5 * change)
+    lost = chosen(lost < 0.0, 0.0, lost)
+    shear: Any = in_shear * (0.5 * scene.pair.tangential_mass * unit * unit)
+    shear = chosen(shear > lost, lost, shear)
     return WholeImpact(
         where=where,
         slip_velocity_change=change,
-        friction_work=chosen(work < 0.0, 0.0, work),
+        friction_work=lost - shear,
+        shear_loss=shear,
         reason=reason,
         psi2_error=psi2_error,
         balanced=True,

@@ -372,12 +372,12 @@ def choice(*words: str, default: str) -> Any:
     return _option(str, checked, default, range=rule, words=words)
 
 
-def flag(*, default: bool) -> Any:
+def flag(*, default: Any) -> Any:
     """Return an attrs field whose value is True or False.
 
     Parameters
     ----------
-    default : bool
+    default : bool or attrs.Factory
         The value used if none is given.
     """
     rule = "must be True or False"

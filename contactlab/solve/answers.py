@@ -158,7 +158,8 @@ def _check_answer(answer: WholeImpact, law: TangentialLaw, shape: tuple[int, ...
     LawFaultError
         If it is not.
     """
-    for entry in (answer.slip_velocity_change, answer.friction_work, answer.normal_spin_change):
+    for name in ("slip_velocity_change", "friction_work", "shear_loss", "normal_spin_change"):
+        entry = getattr(answer, name)
         if type(entry) is not float and faults.is_malformed(entry, shape):
             sentence = faults.sentence(law, f"the answer {shown(entry)} to a whole impact", 1)
             raise faults.LawFaultError(Status.MALFORMED, sentence)

@@ -31,6 +31,8 @@ from contactlab.solve.way import ONE_BY_ONE, Prepared, Way, halves
 CLOSED_FORM = 1e-12
 #: Statuses of a law's fault, by which an integrator gives a whole batch up.
 GIVEN_UP = (Status.LAW_RAISED, Status.MALFORMED, Status.NON_FINITE, Status.UNSETTLED)
+#: What few answers have: 0 of all others.
+SELDOM = ("shear_loss", "normal_spin_change")
 #: Errors that differ by less, over themselves, are equal.
 ROUNDING = 1e-12
 
@@ -194,8 +196,12 @@ def _join_answers(normal: NormalMotion, answered: list[Answered]) -> TangentialM
     """Return the tangential motion of a batch by its whole-impact answers, NaN elsewhere."""
     shape = normal.scene.shape
     change, work = np.full((2, *shape), math.nan)
-    turns = not all(are_zeros(answer.normal_spin_change) for _, answer in answered)
-    spin_change = np.full(shape, math.nan) if turns else zeros(shape)
+    seldom = {
+        name: zeros(shape)
+        if all(are_zeros(getattr(answer, name)) for _, answer in answered)
+        else np.full(shape, math.nan)
+        for name in SELDOM
+    }
     status, detail = (
         np.array(np.broadcast_to(np.asarray(entry, dtype=object), shape))
         for entry in (normal.status, normal.detail)
@@ -204,8 +210,9 @@ def _join_answers(normal: NormalMotion, answered: list[Answered]) -> TangentialM
     for where, answer in answered:
         np.copyto(change, answer.slip_velocity_change, where=where)
         np.copyto(work, answer.friction_work, where=where)
-        if turns:
-            np.copyto(spin_change, answer.normal_spin_change, where=where)
+        for name, column in seldom.items():
+            if column.flags.writeable:  # zeros are shared
+                np.copyto(column, getattr(answer, name), where=where)
         if not isinstance(normal.detail, str):
             detail[where] = ""
         if answer.status is not Status.SUCCESS:
@@ -220,7 +227,7 @@ def _join_answers(normal: NormalMotion, answered: list[Answered]) -> TangentialM
     return TangentialMotion(
         slip_velocity_change=change,
         friction_work=work,
-        normal_spin_change=spin_change,
+        **seldom,
         status=status,
         detail=detail,
         counters=dict(counters),

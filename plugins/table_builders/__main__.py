@@ -97,12 +97,17 @@ def _elastic(asked: argparse.Namespace) -> int:
 
 
 def _build_restituted(asked: argparse.Namespace) -> int:
-    from contactlab_laws.tables.restituted import SHIPPED
+    from contactlab_laws.tables.restituted import SHEAR, SHIPPED
 
     if asked.command == "build":
-        from table_builders.restituted.build import build
+        from table_builders.restituted import build
 
-        build(SHIPPED)
+        build.build(SHIPPED, build.PSI2)
+        return 0
+    if asked.command == "shear":
+        from table_builders.restituted import build
+
+        build.build(SHEAR, build.SHEAR)
         return 0
     if asked.command == "thin":
         from table_builders.restituted import thin

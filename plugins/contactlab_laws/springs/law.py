@@ -49,6 +49,11 @@ NOISE = (
 SHEAR_LOSS = Rule(lambda value: (value >= 0.0) & (value <= 8.0), "must be one number from 0 to 8")
 
 
+def _tables(law: Any) -> bool:
+    """Return whether springs answer from the table where nobody says so."""
+    return law.springs is None and law.grid == "largest" and law.shear_loss == 1.0
+
+
 @attrs.frozen(kw_only=True)
 class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
     """Mindlin's partial slip as a bundle of independent springs.
@@ -79,9 +84,10 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
         default, is the theory of one loss for both (theory §15); 0 is shear without loss. Other
         numbers are for fits. Normal laws that are not viscous have no loss in shear.
     table : bool
-        Take psi2 from the table of restitutions where it is there: under ``normal.viscoelastic``
-        with a restitution, chi 0.3 to 3. What asks for a history is marched. Below a restitution
-        of 0.01 psi2 is always that of ``contactlab.rebound``.
+        Take psi2 and the loss in shear from the table of restitutions where it is there: under
+        ``normal.viscoelastic`` with a restitution, chi 0.3 to 3. The default is True unless springs
+        are named, or another grid or loss in shear. What asks for a history is marched. Below a
+        restitution of 0.01 psi2 is always that of ``contactlab.rebound``.
 
     References
     ----------
@@ -97,7 +103,7 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
     springs: int | None = count(default=None, usual=50, most=100_000)
     grid: str = choice("largest", "doubling", default="largest")
     shear_loss: float = quantity("1", rule=SHEAR_LOSS, default=1.0)
-    table: bool = flag(default=False)
+    table: bool = flag(default=attrs.Factory(_tables, takes_self=True))
 
     def __attrs_post_init__(self) -> None:
         if self.grid == "doubling" and self.number % 2:

@@ -10,6 +10,7 @@ import numpy as np
 from contactlab.contracts import WholeImpact, from_change
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
+from contactlab_laws.tables import restituted
 from contactlab_laws.tables.restituted_regions import RESTITUTED_CHI, restituted_error
 from contactlab_laws.viscoelastic.rebound import rebound
 
@@ -28,6 +29,8 @@ def look_up(scene: Scene, restitution: Real, *, beyond: bool) -> tuple[WholeImpa
     change = rebound(inside[1].ravel(), inside[0].ravel(), e).reshape(chi.shape)
     change = change - inside[1]
     error = restituted_error(inside[0], restitution)
+    known = np.clip(inside[0], *RESTITUTED_CHI)
+    shear = restituted.shear_loss(inside[1].ravel(), known.ravel(), e).reshape(chi.shape)
     single = not scene.shape
     reason = "the answer is in the table of restitutions"
     if beyond:
@@ -40,5 +43,6 @@ def look_up(scene: Scene, restitution: Real, *, beyond: bool) -> tuple[WholeImpa
             psi2_error=float(error) if single else error,
             reason=reason,
             counter="tabulated",
+            in_shear=float(shear) if single else shear,
         ),
     )

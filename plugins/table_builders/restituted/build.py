@@ -1,15 +1,20 @@
-"""Building the table: cells are split along the longest tail until they hold psi2."""
+"""Building the tables: cells are split along the longest tail until they hold a quantity.
+
+One is of psi2, the other of the loss in shear over that of slip at psi = 1, m_t (mu v1/kappa)²/2.
+"""
 
 from __future__ import annotations
 
 import sys
 from collections import defaultdict
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
+from contactlab import Scene, Simulation, create
 from contactlab.numeric.types import Array
 from contactlab_laws.tables.file import Stored, write
 from contactlab_laws.tables.patches import chebyshev_of_values, nodes
@@ -21,6 +26,8 @@ from contactlab_laws.viscoelastic.relaxation import number_of
 #: the last terms along each coordinate is less than ``CLOSE`` times as much.
 TOLERANCES = (4e-5, 4e-5, 3e-5, 3e-5, 1.35e-4)
 CLOSE = 6.0
+#: Largest error of the loss in shear, in its unit.
+SHEAR_TOLERANCE = 2e-3
 #: Where it is looked for, as shares of a cell along each coordinate: far from nodes.
 BETWEEN = (
     np.array([0.045, 0.31, 0.69, 1.0]),
@@ -32,6 +39,9 @@ ALONG = 33
 #: Springs, and steps from an e on, extrapolated from half as many of both: psi2 to 2e-5 up to
 #: chi = 3, 1e-5 up to 2. Below chi = 1/2 the least steps suffice.
 SPRINGS, STEPS = 100, ((0.0, 600), (0.2, 1000), (0.5, 1600))
+#: Springs and steps for the loss in shear, the least e of a course, and what keeps impacts from
+#: slip throughout, which has another loss by its own rule.
+SHEAR_SPRINGS, LEAST, INSIDE = 100, 0.01, 1.0 - 1e-6
 
 #: Shares of a cell along its three coordinates.
 Places = tuple[Array, ...]
@@ -81,7 +91,32 @@ def solve(psi1: Array, chi: Array, e: float) -> Array:
     return psi2
 
 
-def values_at(cells: list[Cell], inner: Places) -> list[Array]:
+def solve_shear(psi1: Array, chi: Array, e: float) -> Array:
+    """Return the loss in shear of impacts of one restitution, shape (impacts,)."""
+    laws = Simulation(
+        normal=create("normal.viscoelastic", restitution=max(e, LEAST)),
+        tangential=create("tangential.springs", springs=SHEAR_SPRINGS, table=False),
+        integrator=create("integrator.symplectic", steps=4 * SHEAR_SPRINGS),
+    )
+    scene = Scene.nondimensional(psi1=psi1 * INSIDE, chi=chi)
+    unit = scene.friction_coefficient * scene.normal_speed / scene.pair.stiffness_ratio
+    lost = laws.sweep(scene).check().energy.shear_loss
+    return np.asarray(lost / (0.5 * scene.pair.tangential_mass * unit**2))
+
+
+class Quantity(NamedTuple):
+    """What is tabulated: by a function of psi1, chi and e, to errors by region.
+
+    In regions that stick it is over a power of psi1. ``ends`` where psi2 = -e at the border.
+    """
+
+    solve: Callable[[Array, Array, float], Array]
+    tolerances: tuple[float, ...]
+    power: int
+    ends: bool
+
+
+def values_at(quantity: Quantity, cells: list[Cell], inner: Places) -> list[Array]:
     """Return the tabulated quantity of cells at shares of each; one e after another."""
     shape = (*map(len, inner),)
     values, layers = [np.empty(shape) for _ in cells], defaultdict(list)
@@ -91,25 +126,25 @@ def values_at(cells: list[Cell], inner: Places) -> list[Array]:
     for e, members in layers.items():
         impacts = np.stack([cells[number].impacts(inner, e) for number, _ in members])
         psi1, chi = impacts.swapaxes(0, 1).reshape(2, -1)
-        psi2 = solve(psi1, chi, e).reshape(len(members), *shape[:2])
-        for (number, layer), (own, _), found in zip(members, impacts, psi2, strict=True):
+        answers = quantity.solve(psi1, chi, e).reshape(len(members), *shape[:2])
+        for (number, layer), (own, _), found in zip(members, impacts, answers, strict=True):
             slips = REGIONS[cells[number].region].slips
-            values[number][:, :, layer] = found if slips else found / own
+            values[number][:, :, layer] = found if slips else found / own**quantity.power
     return values
 
 
-def terms_of(cells: list[Cell]) -> list[Array]:
+def terms_of(quantity: Quantity, cells: list[Cell]) -> list[Array]:
     """Return the Chebyshev terms of cells, of ``NODES`` each."""
     forth = [chebyshev_of_values(count) for count in NODES]
-    at_nodes = values_at(cells, (*map(nodes, NODES),))
+    at_nodes = values_at(quantity, cells, (*map(nodes, NODES),))
     return [np.einsum("ai,bj,ck,ijk->abc", *forth, each, optimize=True) for each in at_nodes]
 
 
-def errors(cells: list[Cell], terms: list[Array]) -> list[float]:
-    """Return the largest errors of psi2 between the nodes of cells."""
+def errors(quantity: Quantity, cells: list[Cell], terms: list[Array]) -> list[float]:
+    """Return the largest errors of a quantity between the nodes of cells."""
     basis = [chebvander(2.0 * x - 1.0, n - 1) for x, n in zip(BETWEEN, NODES, strict=True)]
     found = []
-    for cell, own, exact in zip(cells, terms, values_at(cells, BETWEEN), strict=True):
+    for cell, own, exact in zip(cells, terms, values_at(quantity, cells, BETWEEN), strict=True):
         off = np.abs(np.einsum("ia,jb,kc,abc->ijk", *basis, own, optimize=True) - exact)
         if not REGIONS[cell.region].slips:
             off *= cell.shares(0, BETWEEN[0])[:, None, None]
@@ -135,28 +170,31 @@ def off_border(cell: Cell, terms: Array) -> float:
     return float(np.abs(found + cell.shares(2, share)).max())
 
 
-def holding(cells: list[Cell], terms: list[Array]) -> list[bool]:
-    """Return whether cells hold psi2 to their tolerance."""
-    aims = [TOLERANCES[cell.region] for cell in cells]
+def holding(quantity: Quantity, cells: list[Cell], terms: list[Array]) -> list[bool]:
+    """Return whether cells hold a quantity to its tolerance."""
+    aims = [quantity.tolerances[cell.region] for cell in cells]
     holds = [
-        bool(tails(cell, own).max() <= CLOSE * aim and off_border(cell, own) <= aim)
+        bool(
+            tails(cell, own).max() <= CLOSE * aim
+            and not (quantity.ends and off_border(cell, own) > aim)
+        )
         for cell, own, aim in zip(cells, terms, aims, strict=True)
     ]
     near = [k for k, each in enumerate(holds) if each]
-    off = errors([cells[k] for k in near], [terms[k] for k in near])
+    off = errors(quantity, [cells[k] for k in near], [terms[k] for k in near])
     for k, error in zip(near, off, strict=True):
         holds[k] = error <= aims[k]
     return holds
 
 
-def build(path: Path) -> None:
-    """Build the table and write it; progress goes to stderr."""
+def build(path: Path, quantity: Quantity) -> None:
+    """Build the table of a quantity and write it; progress goes to stderr."""
     todo = [Cell(region, (0, 0, 0), (0, 0, 0)) for region in range(len(REGIONS))]
     done: list[tuple[Cell, Array]] = []
     while todo:
-        terms = terms_of(todo)
+        terms = terms_of(quantity, todo)
         cells, todo = todo, []
-        for cell, own, holds in zip(cells, terms, holding(cells, terms), strict=True):
+        for cell, own, holds in zip(cells, terms, holding(quantity, cells, terms), strict=True):
             if holds:
                 done.append((cell, own))
             else:
@@ -166,3 +204,7 @@ def build(path: Path) -> None:
     places = [(cell.region, *cell.levels, *cell.places) for cell, _ in done]
     table = np.array([own for _, own in done], dtype=np.float32)
     write(path, Stored.today(cells=np.array(places, dtype=np.int16), terms=table))
+
+
+PSI2 = Quantity(solve, TOLERANCES, 1, ends=True)
+SHEAR = Quantity(solve_shear, (SHEAR_TOLERANCE,) * len(REGIONS), 2, ends=False)
