@@ -65,7 +65,8 @@ def collide(
     contacts march together, by springs in even steps unless a simulation has other laws.
 
     Between bodies that are no spheres each impact goes its own way: as spheres where friction does
-    not change the approach, else by laws that are exact in a plane, and by springs in space. They
+    not change the approach, else by laws that are exact in a plane, psi2 to 1e-9 in 0.2 ms, and by
+    springs in space or with a restitution, to 2e-3 in about 1 ms (in a batch a third of it). They
     leave out the friction of spin about the normal, with a caution in the plan;
     ``Simulation(tangential="halfspace")`` answers it.
 

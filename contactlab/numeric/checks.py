@@ -372,7 +372,7 @@ def choice(*words: str, default: str) -> Any:
     return _option(str, checked, default, range=rule, words=words)
 
 
-def flag(*, default: Any) -> Any:
+def flag(*, default: object) -> Any:
     """Return an attrs field whose value is True or False.
 
     Parameters

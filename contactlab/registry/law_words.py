@@ -72,7 +72,9 @@ def _shown(value: object) -> str:
 
 
 def _differs(value: object, default: object) -> bool:
-    """Return whether an option has another value than its default."""
+    """Return whether an option has another value than its default; no if others decide it."""
+    if isinstance(default, attrs.Factory):  # type: ignore[arg-type]
+        return False
     try:
         return bool(value != default)
     except ValueError:  # arrays

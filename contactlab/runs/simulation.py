@@ -260,6 +260,9 @@ class Simulation:
         installation, one kind of processor and one number of BLAS threads (with NumPy 2 that number
         matters only to laws that multiply large matrices).
 
+        An impact takes about 1 us where psi2 is tabulated, exact or with a restitution to 5e-5, 20
+        us by 50 springs without loss, to 2e-4, and 80 us with loss; ``contactlab bench`` times all.
+
         Parameters
         ----------
         scenes : sequence of Scene, or a batch scene; with ``into`` any iterable

@@ -196,7 +196,7 @@ def _join_answers(normal: NormalMotion, answered: list[Answered]) -> TangentialM
     """Return the tangential motion of a batch by its whole-impact answers, NaN elsewhere."""
     shape = normal.scene.shape
     change, work = np.full((2, *shape), math.nan)
-    seldom = {
+    seldom: dict[str, Any] = {
         name: zeros(shape)
         if all(are_zeros(getattr(answer, name)) for _, answer in answered)
         else np.full(shape, math.nan)

@@ -17,10 +17,11 @@ import attrs
 import numpy as np
 
 from contactlab.collisions.collide import collide
+from contactlab.collisions.collision import Collision
 from contactlab.collisions.rebound import rebound
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import Scene
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab.outcome.result import ImpactResult
 from contactlab.registry import composition
 from contactlab.runs.simulation import Simulation
@@ -63,7 +64,7 @@ class Answer(NamedTuple):
     books: float = math.nan
 
 
-def read_number(psi2: Any) -> Answer:
+def read_number(psi2: Real) -> Answer:
     """Return the answer of a function that returns psi2."""
     return Answer(np.ravel(psi2))
 
@@ -77,7 +78,7 @@ def read_result(result: ImpactResult) -> Answer:
     return Answer(np.ravel(result.psi2), status, books)
 
 
-def read_collision(collision: Any) -> Answer:
+def read_collision(collision: Collision) -> Answer:
     """Return psi2 of an encounter, of spheres from a run of its own."""
     return read_result(collision.result)
 
@@ -122,7 +123,7 @@ def of_scene(impact: Encounter | Scene) -> Scene:
 def by_rebound(restitution: float = 1.0) -> Door:
     """Return ``contactlab.rebound``."""
 
-    def bind(impact: Any) -> Call:
+    def bind(impact: Encounter | Scene) -> Call:
         psi1, chi = _numbers(of_scene(impact), "psi1", "chi")
         if restitution == 1.0:
             return lambda: rebound(psi1, chi)
@@ -143,7 +144,7 @@ def by_collide(restitution: float = 1.0) -> Door:
 def by_run(name: str, options: str, simulation: Simulation) -> Door:
     """Return ``run`` of a simulation for one impact, and its ``sweep`` for a batch."""
 
-    def bind(impact: Any) -> Call:
+    def bind(impact: Encounter | Scene) -> Call:
         scene = pose(of_scene(impact), simulation.laws)
         go = simulation.sweep if scene.shape else simulation.run
         return lambda: go(scene)
@@ -185,7 +186,7 @@ def in_c(restitution: float = 1.0, *, spheres: bool) -> list[Door]:
     if library is None:
         return []
 
-    def bind(impact: Any) -> Call:
+    def bind(impact: Encounter | Scene) -> Call:
         names = ("psi1", "chi") if spheres else ("psi1", "chi", "lam", "eta")
         scene = of_scene(impact)
         rows = [np.array(each, ndmin=1) for each in _numbers(scene, *names)]
@@ -196,9 +197,10 @@ def in_c(restitution: float = 1.0, *, spheres: bool) -> list[Door]:
             call, head = library.spheres, (*head, ctypes.c_double(restitution))
         places = [ctypes.c_void_p(each.ctypes.data) for each in (*rows, out)]
 
-        def follow(kept: Any = (*rows, out)) -> Array:
+        def follow() -> Array:
+            assert rows  # C reads them
             call(*head, *places)
-            return kept[-1]  # type: ignore[no-any-return]
+            return out
 
         return follow
 
@@ -209,11 +211,11 @@ def in_c(restitution: float = 1.0, *, spheres: bool) -> list[Door]:
 def limits(*, formula: bool) -> list[Door]:
     """Return a copy of the numbers and, of spheres, one line of NumPy: rigid Coulomb friction."""
 
-    def bind_copy(impact: Any) -> Call:
+    def bind_copy(impact: Encounter | Scene) -> Call:
         rows = np.array(_numbers(of_scene(impact), "psi1", "chi"))
         return rows.copy
 
-    def bind_formula(impact: Any) -> Call:
+    def bind_formula(impact: Encounter | Scene) -> Call:
         psi1, chi = _numbers(of_scene(impact), "psi1", "chi")
         if isinstance(psi1, float):
             return lambda: math.copysign(max(abs(psi1) - 4.0 * chi, 0.0), psi1)

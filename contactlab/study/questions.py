@@ -10,15 +10,17 @@ import attrs
 import numpy as np
 
 from contactlab.collisions.collide import collide
+from contactlab.collisions.gathered import GatheringResult
 from contactlab.contracts.law import claims
 from contactlab.impact import shapes
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.gathering import Body, Gathering, Touch
 from contactlab.impact.material import Material
+from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab.outcome.result import ImpactResult
 from contactlab.registry import composition
 from contactlab.registry.registry import REGISTRY
@@ -199,14 +201,14 @@ def _restituted(restitution: float) -> Simulation:
     return Simulation(normal=composition.law("normal", name, restitution=restitution))
 
 
-def _rod(angle: float, *, radius: float = 0.005) -> tuple[Any, Array]:
+def _rod(angle: float, *, radius: float = 0.005) -> tuple[RigidBody, Array]:
     axis = [math.sin(angle), 0.0, math.cos(angle)]
     return shapes.rod(
         length=0.1, radius=radius, material=Material.named("steel"), axis=axis, normal=DOWN
     )
 
 
-def _egg() -> tuple[Any, Array]:
+def _egg() -> tuple[RigidBody, Array]:
     axis = np.array([0.5, 0.0, math.sqrt(0.75)])
     axes = np.stack((axis, [0.0, 1.0, 0.0], np.cross(axis, [0.0, 1.0, 0.0])), axis=1)
     return shapes.ellipsoid(
@@ -214,7 +216,7 @@ def _egg() -> tuple[Any, Array]:
     )
 
 
-def _falls(body: tuple[Any, Array], velocity: Any) -> Encounter:
+def _falls(body: tuple[RigidBody, Array], velocity: tuple[Real, Real]) -> Encounter:
     """Return a fall on steel at 1 m/s; ``velocity`` are its parts along the floor."""
     along, across = np.broadcast_arrays(*velocity)
     return Encounter(
@@ -223,7 +225,9 @@ def _falls(body: tuple[Any, Array], velocity: Any) -> Encounter:
     )  # fmt: skip
 
 
-def _bodies(body: tuple[Any, Array], restitution: float, quick: bool, *, across: float) -> Posed:
+def _bodies(
+    body: tuple[RigidBody, Array], restitution: float, quick: bool, *, across: float
+) -> Posed:
     """Return falls of one body; slip keeps its line where ``across`` is 0, in m/s."""
     alone = (0.1, 0.5) if quick else (-0.6, -0.2, 0.1, 0.3, 0.5, 0.9)
     impacts = [_falls(body, (each, across)) for each in alone]
@@ -267,13 +271,13 @@ def _normal_spin(quick: bool) -> Posed:
     steel = Material.named("steel")
     ball = Sphere(0.01, steel)
 
-    def met(slip: Any, spin: Any) -> Encounter:
-        slip, spin = np.broadcast_arrays(slip, spin)
-        zero = np.zeros(slip.shape)
+    def met(slip: Real, spin: Real) -> Encounter:
+        along, turning = np.broadcast_arrays(slip, spin)
+        zero = np.zeros(along.shape)
         return Encounter(
             ball, HalfSpace(steel), 0.3, normal=DOWN,
-            velocity=np.stack([slip, zero, zero - 1.0], axis=-1),
-            spin=np.stack([zero, zero, spin], axis=-1),
+            velocity=np.stack([along, zero, zero - 1.0], axis=-1),
+            spin=np.stack([zero, zero, turning], axis=-1),
         )  # fmt: skip
 
     impacts = [met(0.4, 600.0)] if quick else [met(0.2, 300.0), met(0.4, 600.0), met(0.8, 300.0)]
@@ -303,18 +307,18 @@ def _two_contacts(quick: bool) -> Posed:
         for young, poisson in ((5e6, 0.48), (5e7, 0.4))
     )
 
-    def met(along: Any) -> Gathering:
-        along = np.asarray(along, dtype=float)
-        one = np.ones(along.shape)
+    def met(along: Real) -> Gathering:
+        first = np.asarray(along, dtype=float)
+        one = np.ones(first.shape)
         return Gathering(
-            [Body(ball, velocity=np.stack([along, one, 0.0 * one], axis=-1), spin=[-35, 35, 0])],
+            [Body(ball, velocity=np.stack([first, one, 0.0 * one], axis=-1), spin=[-35, 35, 0])],
             [
                 Touch(0, rubber, 0.14, normal=[0, 0.9165, 0.4]),
                 Touch(0, cloth, 0.2, normal=DOWN),
             ],
         )
 
-    def read(answer: Any) -> Answer:
+    def read(answer: GatheringResult) -> Answer:
         return Answer(np.ravel(answer.velocity))
 
     def door(name: str, options: str, simulation: Simulation | None) -> Door:
@@ -391,7 +395,7 @@ def _course(chosen: Sequence[Method], quick: bool) -> Posed:
         forces = _forces(result)
         return Answer(forces, "SUCCESS" if np.isfinite(forces).all() else NO_COURSE)
 
-    def followed(door: Door, method: Method, options: Any) -> Door:
+    def followed(door: Door, method: Method, options: Options) -> Door:
         simulation = method.simulation(options)
         return attrs.evolve(
             door, read=read, together=False,

@@ -90,18 +90,25 @@ def test_the_impacts_of_a_cell_of_restitutions():
     assert build.Cell(0, (0, 0, 0), (0, 0, 0)).impacts(inner, 0.5)[0].ravel().tolist() == [0, 0.5]
 
 
-def test_a_cell_that_is_a_polynomial_holds_it(monkeypatch):
+def test_a_cell_that_is_a_polynomial_holds_it():
     """With psi2 = psi1² chi (1 + e) in place of springs."""
-    monkeypatch.setattr(build, "solve", lambda psi1, chi, e: psi1**2 * chi * (1.0 + e))
+    aims = (1e-4,) * 5
+    even = build.Quantity(lambda psi1, chi, e: psi1**2 * chi * (1.0 + e), aims, 1, ends=True)
     cells = [build.Cell(1, (1, 0, 0), (1, 0, 0)), build.Cell(3, (1, 0, 0), (0, 0, 0))]
-    terms = build.terms_of(cells)
+    terms = build.terms_of(even, cells)
     found = chebval3d(0.5, -0.25, 0.0, terms[0])
     assert found == pytest.approx(0.875 * (0.5 + 2.5 * 0.375) * 1.5)  # of psi2/psi1, at e = 1/2
-    assert max(build.errors(cells, terms)) < 1e-9
-    assert build.holding(cells, terms) == [True, True]
-    monkeypatch.setattr(build, "solve", lambda psi1, chi, e: np.sign(psi1 - 0.7) + 0.0 * chi * e)
-    assert build.holding(cells[:1], build.terms_of(cells[:1])) == [False]
-    assert build.tails(cells[0], build.terms_of(cells[:1])[0]).argmax() == 0
+    assert max(build.errors(even, cells, terms)) < 1e-9
+    assert build.holding(even, cells, terms) == [True, True]
+    jumps = build.Quantity(
+        lambda psi1, chi, e: np.sign(psi1 - 0.7) + 0.0 * chi * e, aims, 1, ends=True
+    )
+    own = build.terms_of(jumps, cells[:1])
+    assert build.holding(jumps, cells[:1], own) == [False]
+    assert build.tails(cells[0], own[0]).argmax() == 0
+    squares = build.Quantity(even.solve, aims, 2, ends=False)
+    over = build.terms_of(squares, cells)
+    assert chebval3d(0.5, -0.25, 0.0, over[0]) == pytest.approx((0.5 + 2.5 * 0.375) * 1.5)
 
 
 @pytest.mark.parametrize(("psi1", "sign"), [(8.0, 1), (0.3, -1)])

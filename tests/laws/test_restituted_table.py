@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from contactlab import rebound
+from contactlab import Scene, Simulation, create, rebound
 from contactlab_laws.tables import restituted
 from contactlab_laws.tables.restituted_regions import BEYOND_ERROR, RESTITUTED_ERROR, WIDER_ERROR
 from contactlab_laws.viscoelastic.relaxation import restitution_of
@@ -244,3 +244,48 @@ def test_the_table_is_finer_springs():
     from table_builders.restituted.checks import verify
 
     assert verify(600, 11) == 0
+
+
+@pytest.mark.parametrize(("e", "seed"), [(0.8, 3), *longer((0.4, 4), (0.05, 5), (0.985, 6))])
+def test_a_simulation_takes_the_table_with_the_loss_in_shear_of_finer_springs(e, seed):
+    """psi2 and both works, beside springs by name, which are marched."""
+    psi1, chi, _ = impacts(40, seed)
+    scene = Scene.nondimensional(psi1=psi1, chi=chi)
+    normal = create("normal.viscoelastic", restitution=e)
+    found = Simulation(normal=normal).sweep(scene)
+    assert found.counters.get("tabulated", 0) > 20
+    assert "table of restitutions" in str(found.plan)
+    fine = {
+        "tangential": create("tangential.springs", springs=200),
+        "integrator": create("integrator.symplectic", steps=800),
+    }
+    marched = Simulation(normal=normal, **fine).sweep(scene)
+    assert "tabulated" not in marched.counters
+    assert found.psi2 == pytest.approx(marched.psi2, abs=2.5e-4)
+    unit = scene.friction_coefficient * scene.normal_speed / scene.pair.stiffness_ratio
+    unit = 0.5 * scene.pair.tangential_mass * unit**2 * np.maximum(1.0, np.abs(psi1)) ** 2
+    for name in ("shear_loss", "friction_work"):
+        off = getattr(found.energy, name) - getattr(marched.energy, name)
+        assert np.abs(off / unit).max() < 2e-3
+    assert (found.energy.shear_loss > 0.0).any()
+
+
+def test_a_course_or_another_loss_in_shear_is_marched():
+    scene = Scene.nondimensional(psi1=1.2, chi=1.44)
+    normal = create("normal.viscoelastic", restitution=0.8)
+    assert Simulation(normal=normal).run(scene).counters == {"tabulated": 1}
+    assert "steps" in Simulation(normal=normal).run(scene, history=True).counters
+    for options in ({"shear_loss": 2.0}, {"springs": 50}, {"grid": "doubling"}, {"table": False}):
+        law = create("tangential.springs", **options)
+        assert "steps" in Simulation(normal=normal, tangential=law).run(scene).counters
+
+
+def test_the_loss_in_shear_alone_is_that_of_arrays_and_vanishes_without_loss():
+    psi1, chi, e = impacts(30, 7)
+    found = restituted.shear_loss(psi1, chi, e)
+    alone = [
+        restituted.shear_loss(*(each[k : k + 1] for each in (psi1, chi, e)))[0] for k in range(30)
+    ]
+    assert found == pytest.approx(alone, abs=1e-12)
+    nearly = restituted.shear_loss(psi1, chi, np.full(30, 1.0 - 1e-9))
+    assert np.abs(nearly).max() < 1e-6

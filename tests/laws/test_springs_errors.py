@@ -263,3 +263,27 @@ def test_few_springs_with_a_loss_are_noise(options):
     assert not said(8, "tsuji")
     assert not said(2, "hertz")
     assert np.isnan(simulation(7, 200, "tsuji").plan(scene).psi2_error)
+
+
+@pytest.mark.parametrize(("e", "chi"), [(0.4, 30.0), *longer((0.8, 12.0), (0.4, 100.0))])
+def test_a_loss_leaves_less_of_the_error_and_no_more_than_is_declared(e, chi):
+    """Near slip throughout too, beside three times finer springs."""
+    random = np.random.default_rng(17)
+    end = 2.0 * chi * (1.0 + e) - e
+    share = np.concatenate([1.0 - np.abs(random.normal(0.0, 0.03, 10)), random.random(10)])
+    scene = Scene.nondimensional(psi1=share * end, chi=chi)
+    normal = create("normal.viscoelastic", restitution=e)
+    springs, steps = 2 * round(10.5 * chi**0.5), round(134.0 * chi**0.75)
+
+    def run(finer):
+        return Simulation(
+            normal=normal,
+            tangential=create("tangential.springs", springs=finer * springs),
+            integrator=create("integrator.symplectic", steps=finer * steps),
+        ).sweep(scene)
+
+    found = run(1)
+    off = np.abs(found.psi2 - run(3).psi2)
+    assert (off <= found.plan.psi2_error + 1e-12).all()
+    assert off.max() > 1e-3 * np.max(found.plan.psi2_error)
+    assert np.max(found.plan.psi2_error) < 2.6e-3 * (1.0 / ((1.0 - e) * chi) + 3e-3)

@@ -64,7 +64,8 @@ def test_a_sphere_given_as_a_body_is_that_sphere(restitution, room):
     )
     assert made.velocity == pytest.approx(sphere.velocity, abs=room)
     assert made.spin == pytest.approx(sphere.spin, abs=100.0 * room)
-    assert made.energy.friction_work == pytest.approx(sphere.energy.friction_work, rel=1e-8)
+    lost = made.energy.friction_work + made.energy.shear_loss  # of a sphere both are one number
+    assert lost == pytest.approx(sphere.energy.friction_work, rel=1e-8)
     assert made.result.counters == sphere.result.counters
     assert made.result.laws == sphere.result.laws
 

@@ -49,7 +49,7 @@ NOISE = (
 SHEAR_LOSS = Rule(lambda value: (value >= 0.0) & (value <= 8.0), "must be one number from 0 to 8")
 
 
-def _tables(law: Any) -> bool:
+def _tables(law: Springs) -> bool:
     """Return whether springs answer from the table where nobody says so."""
     return law.springs is None and law.grid == "largest" and law.shear_loss == 1.0
 
@@ -177,7 +177,12 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
         if scene.inverse_mass is not None:
             return errors.of_bodies(scene, self.even_springs(), steps, shared=shared)
         doubling = self.grid == "doubling"
-        return errors.of_spheres(scene, self.number, steps, shared=shared, doubling=doubling)
+        restitution = None
+        if shared and "kelvin_voigt" in normal.claims:
+            restitution = -normal.final_rate / scene.normal_speed
+        return errors.of_spheres(
+            scene, self.number, steps, shared=shared, doubling=doubling, restitution=restitution
+        )
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of springs, or of their loss where they share one."""
