@@ -45,7 +45,7 @@ def test_bench(run, monkeypatch, tmp_path):
 @pytest.mark.parametrize("after", [0, 7])
 def test_stability(run, monkeypatch, tmp_path, after):
     """A clock that interrupts: it is read before each case."""
-    monkeypatch.setattr(stability, "methods", lambda _: STEPPED)
+    monkeypatch.setattr(stability, "methods", lambda _, **__: STEPPED)
     clock = SimpleNamespace(perf_counter=interrupting(time.perf_counter, after))
     monkeypatch.setattr("contactlab.study.time_limit.time", clock)
     table, picture = tmp_path / "s.csv", tmp_path / "s.png"

@@ -157,7 +157,7 @@ def _single_shear(psi1: float, chi: float, e: float) -> float:
     return max(found, 0.0) * min((1.0 - e) / (1.0 - JOINED), 1.0)
 
 
-def _partial(speed: Array, chi: Array, e: Any, path: Path = SHIPPED, *, power: int = 1) -> Array:
+def _partial(speed: Array, chi: Array, e: Real, path: Path = SHIPPED, *, power: int = 1) -> Array:
     """Return psi2, or another quantity, from its table; of complex numbers too.
 
     Where the contact sticks first it is tabulated over a power of psi1.
