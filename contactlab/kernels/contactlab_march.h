@@ -10,7 +10,7 @@
  *     contactlab_march_end end;
  *     double work[CONTACTLAB_MARCH_WORK(1, 50)];
  *     int row[2] = {0, 1}, column[1] = {0}, status;
- *     status = contactlab_march_begin(&run, 1, &contact, row, column, W, 2, 50, 0, step, 0, most, NULL, &progress, work,
+ *     status = contactlab_march_begin(&run, 1, &contact, row, column, W, 2, 50, 0, 1, step, 0, most, NULL, &progress, work,
  *                                     &end);
  *     while (status == CONTACTLAB_MARCH_GOING) status = contactlab_march_on(&run, 1000);
  *
@@ -35,7 +35,7 @@
 
 enum {
   CONTACTLAB_MARCH_DONE = 0,
-  CONTACTLAB_MARCH_LONG = 1,  /* it does not end in so many steps */
+  CONTACTLAB_MARCH_LONG = 1,  /* it does not end in so many steps, or a contact closes too often */
   CONTACTLAB_MARCH_NAN = 2,   /* a velocity is not finite */
   CONTACTLAB_MARCH_DEEP = 3,  /* friction presses a contact deeper than the steps resolve */
   CONTACTLAB_MARCH_INPUT = 4, /* a number, or a count, that has no meaning */
@@ -52,8 +52,9 @@ enum {
 #define CONTACTLAB_MARCH_SLOWEST 1e-3  /* least rate at which a lossy contact is asked for its relaxation time */
 #define CONTACTLAB_MARCH_STIFF 0.05    /* feedback of friction on the slip velocity from which it is solved for */
 #define CONTACTLAB_MARCH_CLOSING 1e-6  /* rate over the largest approach below which surfaces do not near */
+#define CONTACTLAB_MARCH_SLIDES 1e-6   /* slip over it from which a loaded contact slides at the start */
 #define CONTACTLAB_MARCH_HOLDS 1e-7    /* force over the greatest from which a contact holds up the end */
-#define CONTACTLAB_MARCH_DEEPEST 1e4   /* approach over that without friction */
+#define CONTACTLAB_MARCH_OFTEN 50      /* touches of a contact after which a scene is given up */
 #define CONTACTLAB_MARCH_DOUBLINGS 64  /* of a grid in one step */
 enum { CONTACTLAB_MARCH_TURNS = 3 };
 
@@ -71,6 +72,7 @@ typedef struct {
   double speed;       /* largest rate of approach of the scene */
   double time;        /* A, relaxation time; only with loss */
   double share;       /* relaxation time in shear over that in pressure: 1 */
+  double loaded;      /* 1: it carries the constant forces at the start, whatever its gap; else 0 */
 } contactlab_march_contact;
 
 /* A contact at the end. */
@@ -80,6 +82,7 @@ typedef struct {
   double work, shear, normal; /* friction work, loss in shear and in pressure, J */
   double duration, radius, approach, force; /* contact time, greatest radius, approach, normal force */
   double compressions, touches, first, last; /* turns to approach; meetings; first and last touch, s */
+  double closed, pushed, moment[3]; /* 1: it is closed; time of constant forces, s; impulse times its time, N s^2 */
 } contactlab_march_end;
 
 /* A contact in progress; w are two rows of springs. */
@@ -516,9 +519,11 @@ static inline int contactlab_march_sound(int contacts, const contactlab_march_co
     if (!isfinite(sum) || !isfinite(o->speed) || !(o->gap >= 0.0) || !(o->friction >= 0.0) || !(o->radius > 0.0) || !(o->modulus > 0.0)
         || !(o->shear >= 0.0) || !(o->cross > 0.0) || !(o->span > 0.0) || !(o->time >= 0.0) || !(o->share >= 0.0)
         || !isfinite(o->gap + o->friction + o->radius + o->modulus + o->shear + o->cross + o->span + o->time + o->share)) return 0;
-    if (row[i] > row[i + 1]) return 0;
-    for (m = row[i]; m < row[i + 1]; ++m)
+    for (k = 0, m = row[i]; m < row[i + 1]; ++m) {
       if (column[m] < 0 || column[m] >= contacts) return 0;
+      k |= column[m] == i;
+    }
+    if (!k) return 0;
   }
   return row[0] == 0;
 }
@@ -526,7 +531,7 @@ static inline int contactlab_march_sound(int contacts, const contactlab_march_co
 /* A contact in progress. */
 typedef struct {
   contactlab_march_springs now, next;
-  double velocity[3], kick[3], force[3], approach, rate, tried[2], answered[2], work, shear;
+  double velocity[3], kick[3], force[3], approach, radius, tried[2], answered[2], work, shear;
   int touching, touched;
 } contactlab_march_progress;
 
@@ -547,43 +552,40 @@ static inline double contactlab_march_nearer(contactlab_march_progress *p, int t
   return rate;
 }
 
-/* Forces of a lossy contact at the rate of a turn. */
-static inline void contactlab_march_turn(int axes, int n, const contactlab_march_contact *c, contactlab_march_progress *p,
-    double inertia, double step, double drift, int turn, double *room)
+/* Forces of a lossy contact where it moves at the rates `at`, by a displacement along the surface. */
+static inline void contactlab_march_drag(int axes, int n, const contactlab_march_contact *c, contactlab_march_progress *p,
+    const double *at, const double *moved, double mobility, double step, double drift, double *room)
 {
   const double stiffness = (4.0 / 3.0) * c->modulus * sqrt(c->radius), a = c->span;
   const double peak = (4.0 / 3.0) * c->modulus * a * a * a / c->radius;
   const double slip = c->friction * a * a / (c->shear / (2.0 * c->modulus) * c->radius);
   contactlab_march_drive d;
-  double load, radius, edge, excess, asked, push, b, time, at[3], metres;
+  double load, radius, edge, excess, asked, push, b, time, rate, metres;
   int k;
-  for (k = 0; k < 3; ++k) at[k] = p->velocity[k] - 0.5 * p->kick[k];
-  at[0] = contactlab_march_nearer(p, turn, at[0]);
   p->touching = contactlab_march_press(stiffness, c->time, c->radius, p->approach, at[0], &load, &radius);
   contactlab_march_limits(radius / a, load / peak, &edge, &excess);
-  p->rate = fmax(fabs(at[0]), CONTACTLAB_MARCH_SLOWEST * c->speed);
-  contactlab_march_press(stiffness, c->time, c->radius, p->approach, p->rate, &asked, &b);
+  rate = fmax(fabs(at[0]), CONTACTLAB_MARCH_SLOWEST * c->speed);
+  contactlab_march_press(stiffness, c->time, c->radius, p->approach, rate, &asked, &b);
   contactlab_march_limits(b / a, asked / peak, &b, &push);
-  time = c->share * (push * (a * a) / (c->radius * p->rate));
+  time = c->share * (push * (a * a) / (c->radius * rate));
   d.scale = c->friction > 0.0 ? 1.0 / slip : 0.0;
   metres = d.scale > 0.0 ? 1.0 / d.scale : 0.0;
   d.drift = drift;
   d.acted = step * drift > 0.0 ? 0.5 * step / drift : 0.5;
   if (d.acted > 1.0) d.acted = 1.0;
   for (k = 0; k < 2; ++k) {
-    d.move[k] = k < axes ? p->velocity[1 + k] * drift * d.scale : 0.0;
+    d.move[k] = k < axes ? moved[k] * d.scale : 0.0;
     d.slip[k] = k < axes ? at[1 + k] : 0.0;
     d.force[k] = p->force[1 + k];
   }
-  d.mobility = 0.5 * step * inertia;
+  d.mobility = mobility;
   d.limit = d.acting = c->friction * load;
   d.cross = axes == 2 ? c->cross : 1.0;
   contactlab_march_lossy(axes, n, &p->now, &p->next, edge * edge, excess, time, &d, 1, room, p->force + 1, &p->work, &p->shear);
   p->work *= metres;
   p->shear *= metres;
   p->force[0] = load;
-  at[1] = radius;
-  p->rate = at[1]; /* from here on the contact radius */
+  p->radius = radius;
 }
 
 /* Velocities in a time by forces at the contacts and by constant forces. */
@@ -615,8 +617,59 @@ typedef struct {
   contactlab_march_end *end;
   double step, leading, most, time, width;
   long steps;
-  int contacts, axes, springs, lossy, pulled;
+  int contacts, axes, springs, lossy, alone, pulled;
 } contactlab_march_run;
+
+/* The block of W of a contact itself. */
+static inline const double *contactlab_march_own(const contactlab_march_run *run, int i)
+{
+  int m = run->row[i];
+  while (m < run->row[i + 1] && run->column[m] != i) ++m;
+  return run->block + 9 * (size_t) m;
+}
+
+/* Room beside the springs of all contacts. */
+static inline double *contactlab_march_spare(const contactlab_march_run *run)
+{
+  return run->work + 4 * (size_t) CONTACTLAB_MARCH_ROW(run->springs) * (size_t) run->contacts;
+}
+
+static inline void contactlab_march_swap(contactlab_march_progress *p)
+{
+  const contactlab_march_springs other = p->now;
+  p->now = p->next;
+  p->next = other;
+}
+
+/* Lays a contact where its force at rest carries the constant forces: its springs are without tension, or at their limit
+ * along the slip if it slides. */
+static inline void contactlab_march_lay(const contactlab_march_run *run, int i)
+{
+  const contactlab_march_contact *c = run->c + i;
+  contactlab_march_progress *p = run->progress + i;
+  contactlab_march_end *e = run->end + i;
+  const double load = fmax(c->pull[0], 0.0) / contactlab_march_own(run, i)[0], still[3] = {0.0, 0.0, 0.0};
+  const double root = cbrt(load / ((4.0 / 3.0) * c->modulus * sqrt(c->radius))), radius = sqrt(c->radius) * root;
+  const double speed = sqrt(p->velocity[1] * p->velocity[1] + p->velocity[2] * p->velocity[2]);
+  const double reach = speed > CONTACTLAB_MARCH_SLIDES * c->speed ? c->friction * radius / speed : 0.0;
+  int pressed;
+  p->approach = root * root;
+  for (pressed = 0; pressed < 2; ++pressed) {
+    const double far = pressed ? reach : 0.0, moved[2] = {far * p->velocity[1], far * p->velocity[2]};
+    p->force[1] = p->force[2] = 0.0;
+    if (run->lossy) {
+      contactlab_march_drag(run->axes, run->springs, c, p, still, moved, 0.0, run->step, run->step,
+                            contactlab_march_spare(run));
+      contactlab_march_swap(p);
+    } else contactlab_march_elastic(run->axes, run->springs, c, &p->now, moved, radius, load,
+                                    contactlab_march_spare(run), p->force + 1);
+  }
+  p->force[0] = load;
+  p->force[1] = p->force[2] = 0.0;
+  p->touched = p->touching = 1;
+  e->touches = 1.0;
+  e->first = e->last = 0.0;
+}
 
 /* Begins a scene; returns CONTACTLAB_MARCH_GOING, or CONTACTLAB_MARCH_INPUT.
  *
@@ -626,6 +679,8 @@ typedef struct {
  * axes             1: slip along t1 only; 2
  * springs          even
  * lossy            0: elastic; 1: Kelvin-Voigt bodies, whose relaxation times may be zero
+ * alone            1: one contact that touches, whose end is when it parts; 0: contacts that open and close, whose end
+ *                  is when none closes and none holds a force
  * step             s, the width of steps
  * leading          with loss: so many steps grow evenly at first
  * most             steps after which it is given up
@@ -634,14 +689,14 @@ typedef struct {
  * work             CONTACTLAB_MARCH_WORK(contacts, springs) numbers
  * end              of each contact, set by `contactlab_march_on`: that of the last step if the status is not 0 */
 static inline int contactlab_march_begin(contactlab_march_run *run, int contacts, const contactlab_march_contact *c,
-    const int *row, const int *column, const double *block, int axes, int springs, int lossy, double step,
+    const int *row, const int *column, const double *block, int axes, int springs, int lossy, int alone, double step,
     double leading, double most, const double *deepest, contactlab_march_progress *progress, double *work,
     contactlab_march_end *end)
 {
   const size_t width = CONTACTLAB_MARCH_ROW(springs);
   int i, k;
   memset(run, 0, sizeof *run);
-  if (contacts < 1 || !contactlab_march_sound(contacts, c, row, column, axes, springs, step, most))
+  if (contacts < 1 || (alone && contacts > 1) || !contactlab_march_sound(contacts, c, row, column, axes, springs, step, most))
     return CONTACTLAB_MARCH_INPUT;
   run->contacts = contacts;
   run->c = c;
@@ -651,6 +706,7 @@ static inline int contactlab_march_begin(contactlab_march_run *run, int contacts
   run->axes = axes;
   run->springs = springs;
   run->lossy = lossy;
+  run->alone = alone;
   run->step = step;
   run->leading = leading;
   run->most = most;
@@ -673,6 +729,7 @@ static inline int contactlab_march_begin(contactlab_march_run *run, int contacts
       p->velocity[k] = c[i].velocity[k];
       if (c[i].pull[k] != 0.0) run->pulled = 1;
     }
+    if (c[i].loaded > 0.0) contactlab_march_lay(run, i);
   }
   return CONTACTLAB_MARCH_GOING;
 }
@@ -684,11 +741,11 @@ static inline void contactlab_march_press_elastic(const contactlab_march_run *ru
   contactlab_march_progress *p = run->progress + i;
   const double x = p->approach > 0.0 ? p->approach : 0.0;
   const double moved[2] = {p->velocity[1] * drift, p->velocity[2] * drift};
-  p->rate = sqrt(c->radius * x);
-  p->force[0] = (4.0 / 3.0) * c->modulus * p->rate * x;
+  p->radius = sqrt(c->radius * x);
+  p->force[0] = (4.0 / 3.0) * c->modulus * p->radius * x;
   p->touching = p->approach > 0.0;
   if (p->touching || p->touched)
-    p->work = contactlab_march_elastic(run->axes, run->springs, c, &p->now, moved, p->rate, p->force[0], room,
+    p->work = contactlab_march_elastic(run->axes, run->springs, c, &p->now, moved, p->radius, p->force[0], room,
                                        p->force + 1);
   else p->work = p->force[1] = p->force[2] = 0.0;
 }
@@ -696,23 +753,21 @@ static inline void contactlab_march_press_elastic(const contactlab_march_run *ru
 /* Forces of a step of all contacts with loss. */
 static inline void contactlab_march_press_lossy(const contactlab_march_run *run, double drift, double *room)
 {
-  int turn, i, m;
+  int turn, i, k;
   for (turn = 0; turn < (int) CONTACTLAB_MARCH_TURNS; ++turn) {
     contactlab_march_kicked(run->contacts, run->c, run->row, run->column, run->block, run->axes, run->width,
                             run->progress);
     for (i = 0; i < run->contacts; ++i) {
-      const double *W = run->block;
-      for (m = run->row[i]; m < run->row[i + 1]; ++m)
-        if (run->column[m] == i) W = run->block + 9 * (size_t) m;
-      contactlab_march_turn(run->axes, run->springs, run->c + i, run->progress + i,
-                            run->axes == 1 ? W[4] : 0.5 * (W[4] + W[8]), run->width, drift, turn, room);
+      contactlab_march_progress *p = run->progress + i;
+      const double *W = contactlab_march_own(run, i), moved[2] = {p->velocity[1] * drift, p->velocity[2] * drift};
+      const double mobility = 0.5 * run->width * (run->axes == 1 ? W[4] : 0.5 * (W[4] + W[8]));
+      double at[3];
+      for (k = 0; k < 3; ++k) at[k] = p->velocity[k] - 0.5 * p->kick[k];
+      at[0] = contactlab_march_nearer(p, turn, at[0]);
+      contactlab_march_drag(run->axes, run->springs, run->c + i, p, at, moved, mobility, run->width, drift, room);
     }
   }
-  for (i = 0; i < run->contacts; ++i) {
-    const contactlab_march_springs other = run->progress[i].now;
-    run->progress[i].now = run->progress[i].next;
-    run->progress[i].next = other;
-  }
+  for (i = 0; i < run->contacts; ++i) contactlab_march_swap(run->progress + i);
 }
 
 /* Velocities after a step, and what it adds to the end; returns 1 while a contact touches, -1 if a velocity is not finite. */
@@ -734,23 +789,28 @@ static inline int contactlab_march_kick(contactlab_march_run *run, double *great
     if (p->touching) {
       if (run->lossy) e->normal += p->force[0] * (p->velocity[0] - 0.5 * p->kick[0]) * run->width;
       e->duration += run->width;
-      e->radius = fmax(e->radius, p->rate);
+      e->radius = fmax(e->radius, p->radius);
       e->approach = fmax(e->approach, p->approach);
       e->force = fmax(e->force, p->force[0]);
-      for (k = 0; k < 3; ++k) e->impulse[k] += run->width * p->force[k];
+      for (k = 0; k < 3; ++k) {
+        const double impulse = run->width * p->force[k];
+        e->impulse[k] += impulse;
+        if (run->pulled) e->moment[k] += (e->pushed + 0.5 * run->width) * impulse;
+      }
       if (!p->touched) {
         e->touches += 1.0;
         if (isnan(e->first)) e->first = run->time;
       }
       e->last = run->time;
       going = 1;
-    } else if (!run->lossy && run->contacts == 1) e->duration = run->time - p->approach / drifting;
+    } else if (!run->lossy && run->alone) e->duration = run->time - p->approach / drifting;
     p->touched = p->touching;
-    if (run->contacts > 1 || p->touching || run->pulled)
-      for (k = 0; k <= run->axes; ++k) {
-        e->change[k] -= p->kick[k];
-        p->velocity[k] = run->c[i].velocity[k] + e->change[k];
-      }
+    e->closed = p->touching;
+    if (run->pulled) e->pushed += run->width;
+    for (k = 0; k <= run->axes; ++k) {
+      e->change[k] -= p->kick[k];
+      p->velocity[k] = run->c[i].velocity[k] + e->change[k];
+    }
     if (p->touching && p->velocity[0] > 0.0 && p->velocity[0] + p->kick[0] <= 0.0) e->compressions += 1.0;
     for (k = 0; k <= run->axes; ++k) sum += p->velocity[k];
     if (!isfinite(sum)) return -1;
@@ -759,7 +819,7 @@ static inline int contactlab_march_kick(contactlab_march_run *run, double *great
   return going;
 }
 
-/* Whether contacts are to come or to end, where one alone that has parted is not the end; time without contact passes. */
+/* Whether contacts are to come or to end; time without contact passes. */
 static inline int contactlab_march_closes(contactlab_march_run *run, int going, double greatest)
 {
   double least = INFINITY, flight;
@@ -767,7 +827,8 @@ static inline int contactlab_march_closes(contactlab_march_run *run, int going, 
   for (i = 0; i < run->contacts; ++i) {
     const contactlab_march_progress *p = run->progress + i;
     const int closes = p->velocity[0] > CONTACTLAB_MARCH_CLOSING * run->c[i].speed;
-    if (p->touching ? closes || p->force[0] > CONTACTLAB_MARCH_HOLDS * greatest : closes) on = 1;
+    const int holds = (closes || p->force[0] > CONTACTLAB_MARCH_HOLDS * greatest) && !(run->c[i].loaded > 0.0);
+    if (p->touching ? holds : closes) on = 1;
     if (!p->touching && closes) least = fmin(least, -p->approach / p->velocity[0]);
   }
   if (on && !going && !run->pulled) {
@@ -782,7 +843,7 @@ static inline int contactlab_march_closes(contactlab_march_run *run, int going, 
 /* Marches a scene on, `steps` steps at most; returns CONTACTLAB_MARCH_GOING if there are more, else its status. */
 static inline int contactlab_march_on(contactlab_march_run *run, long steps)
 {
-  double *room = run->work + 4 * (size_t) CONTACTLAB_MARCH_ROW(run->springs) * (size_t) run->contacts;
+  double *room = contactlab_march_spare(run);
   const contactlab_march_end *e = run->end;
   int i, on = 1;
   for (; on; --steps) {
@@ -803,8 +864,10 @@ static inline int contactlab_march_on(contactlab_march_run *run, long steps)
     going = contactlab_march_kick(run, &greatest);
     if (going < 0) return CONTACTLAB_MARCH_NAN;
     on = going;
-    if (run->contacts > 1 || run->c[0].gap > 0.0 || run->pulled) on = contactlab_march_closes(run, going, greatest);
+    if (!run->alone) on = contactlab_march_closes(run, going, greatest);
     if (on && (double) run->steps >= run->most) return CONTACTLAB_MARCH_LONG;
+    for (i = 0; i < run->contacts && on; ++i)
+      if (e[i].touches > CONTACTLAB_MARCH_OFTEN) return CONTACTLAB_MARCH_LONG;
   }
   for (i = 0; i < run->contacts; ++i)
     if (!isfinite(e[i].work + e[i].shear + e[i].normal + e[i].duration + e[i].impulse[0] + e[i].impulse[1] + e[i].impulse[2]))

@@ -80,7 +80,7 @@ def _declare(found: Any) -> None:
         "impact_follow_kept": (whole, pointer, number, some, whole, pointer, pointer, pointer),
         "march_room": (ctypes.c_size_t, some, some),
         "march_scenes": (
-            whole, whole, some, *[pointer] * 4, some, some, some, *[pointer] * 4, number,
+            whole, whole, some, *[pointer] * 4, *[some] * 4, *[pointer] * 4, number,
             *[pointer] * 4,
         ),
         "march_paths": (

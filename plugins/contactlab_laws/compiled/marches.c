@@ -3,7 +3,7 @@
 
 #include <stddef.h>
 
-/* Steps of a scene between two looks at the budget. */
+/* Steps of a contact between two looks at the budget. */
 enum { CONTACTLAB_MARCH_LOOK = 64 };
 
 /* What a call leaves to the next: the item that it was at, and how far it is. */
@@ -25,25 +25,26 @@ size_t contactlab_march_room(int contacts, int springs)
  *
  * Scenes have as many contacts and share row and column; block (scenes, entries, 9), end (scenes, contacts). */
 long contactlab_march_scenes(long count, int contacts, const contactlab_march_contact *c, const int *row,
-    const int *column, const double *block, int axes, int springs, int lossy, const double *step, const double *leading,
-    const double *most, const double *deepest, double budget, contactlab_march_left *left, contactlab_march_end *end,
+    const int *column, const double *block, int axes, int springs, int lossy, int alone, const double *step,
+    const double *leading, const double *most, const double *deepest, double budget, contactlab_march_left *left, contactlab_march_end *end,
     double *steps, int *status)
 {
   contactlab_march_progress *progress = (contactlab_march_progress *) (left + 1);
   double *work = (double *) (progress + contacts);
-  const double cost = (double) CONTACTLAB_MARCH_LOOK * springs * contacts;
+  const long look = contacts < CONTACTLAB_MARCH_LOOK ? CONTACTLAB_MARCH_LOOK / contacts : 1;
+  const double cost = (double) look * springs * contacts;
   const long each = row[contacts];
   for (; left->place < count; ++left->place) {
     const long i = left->place;
     if (!left->going)
       status[i] = contactlab_march_begin(&left->run, contacts, c + i * contacts, row, column, block + 9 * each * i,
-                                         axes, springs, lossy, step[i], leading[i], most[i], deepest + i * contacts,
+                                         axes, springs, lossy, alone, step[i], leading[i], most[i], deepest + i * contacts,
                                          progress, work, end + i * contacts);
     left->going = status[i] == CONTACTLAB_MARCH_GOING;
     while (left->going) {
       if (budget <= 0.0) return left->place;
       budget -= cost;
-      status[i] = contactlab_march_on(&left->run, CONTACTLAB_MARCH_LOOK);
+      status[i] = contactlab_march_on(&left->run, look);
       left->going = status[i] == CONTACTLAB_MARCH_GOING;
     }
     steps[i] = status[i] == CONTACTLAB_MARCH_INPUT ? 0.0 : (double) left->run.steps;

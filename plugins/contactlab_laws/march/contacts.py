@@ -68,11 +68,6 @@ class TouchingContacts:
         pulled: Any = links.pull.any(axis=(-1, -2), keepdims=True)
         self._free, self._pulls = np.logical_not(pulled[..., 0]), bool(pulled.any())
 
-    def most_steps(self, duration: Real, step: Real) -> Any:
-        """Return the steps after which a gathering is given up, without flights."""
-        longest = np.max(np.broadcast_to(duration, self.scene.shape), axis=-1, keepdims=True)
-        return LONGEST * self.scene.shape[-1] * np.ceil(longest / step)
-
     def after(
         self, step: Real, acting: Sequence[Real], which: Sequence[Mask], motion: Sequence[Real]
     ) -> tuple[Where, Array]:
@@ -127,14 +122,9 @@ class TouchingContacts:
     def told(self, late: Mask) -> str:
         """Return why a gathering was given up, with the touches of each contact."""
         first = int(np.flatnonzero(late)[0]) // self.scene.shape[-1]
-        times = self._touches.reshape(-1, self.scene.shape[-1])[first].astype(int).tolist()
+        times = self._touches.reshape(-1, self.scene.shape[-1])[first]
         held = self._touching.reshape(-1, self.scene.shape[-1])[first]
-        closed = np.flatnonzero(held).tolist()
-        sentence = f"The contacts still close after {LONGEST} contact times each; touches: {times}."
-        if closed and not self._free.all():
-            still = ", ".join(f"touches[{k}]" for k in closed)
-            sentence += f" A force may keep {still} shut: loaded=True says so."
-        return sentence
+        return tell_still_closing(times, held, not self._free.all())
 
     def told_of(self, dissipation: Real) -> Contacts:
         """Return what the contacts went through."""
@@ -190,6 +180,22 @@ class TouchingContacts:
             _, state = tangential.advance(state, increment, before, lies)
             before = lies
         return approach, lies, state
+
+
+def most_steps(scene: Scene, duration: Real, step: Real) -> Any:
+    """Return the steps after which a gathering is given up, without flights."""
+    longest = np.max(np.broadcast_to(duration, scene.shape), axis=-1, keepdims=True)
+    return LONGEST * scene.shape[-1] * np.ceil(longest / step)
+
+
+def tell_still_closing(touches: Array, held: Where, pulled: bool) -> str:  # noqa: FBT001
+    """Return the sentence on a gathering that is given up, by its contacts; some may be held."""
+    times, closed = touches.astype(int).tolist(), np.flatnonzero(held).tolist()
+    sentence = f"The contacts still close after {LONGEST} contact times each; touches: {times}."
+    if closed and pulled:
+        still = ", ".join(f"touches[{k}]" for k in closed)
+        sentence += f" A force may keep {still} shut: loaded=True says so."
+    return sentence
 
 
 def pressing(law: NormalLaw, memory: object, approach: Array) -> Any:

@@ -64,7 +64,7 @@ def march_coupled(
     if not np.any(possible):
         return TangentialMotion.nothing(scene.shape, *refused, axes=kinetics.slip_axes(scene))
     divided = divide(scene, normal, count, usual)
-    if observer is None and scene.links is None:  # it follows single contacts
+    if observer is None:
         from contactlab_laws.springs import compiled  # it takes springs alone
 
         motion = compiled.march(scene, normal, law, divided, refused)
@@ -116,9 +116,6 @@ class _March:
         self.links, self.contacts = scene.links, None
         if self.links is not None:
             self.contacts = TouchingContacts(scene, self.links)
-            self.most = entry(
-                self.contacts.most_steps(coupled_steps.approach_duration(normal), self.step)
-            )
         W: Any = scene.inverse_mass
         size = 1 + self.axes
         self.W = [[entry(W[..., i, j]) for j in range(size)] for i in range(size)]

@@ -12,6 +12,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
 from contactlab.impact.hertz import DURATION_CONSTANT
 from contactlab.numeric.types import Mask, Real
+from contactlab_laws.march import contacts
 from contactlab_laws.march.division import resolving
 
 #: A contact that lasts longer than so many approaches without friction is given up, each as long as
@@ -121,7 +122,10 @@ def divide(scene: Scene, normal: NormalMotion, count: Real, usual: float) -> Div
     lasting = np.where(_ended(normal), count, np.minimum(count, usual))
     with np.errstate(invalid="ignore"):
         step = np.where(np.isfinite(count), _counted(scene, normal) / np.asarray(count), math.nan)
-    return Division(step, np.ceil(LEADING * np.asarray(count)), longest, longest * lasting)
+    most = longest * lasting
+    if scene.links is not None:
+        most = contacts.most_steps(scene, approach_duration(normal), step)
+    return Division(step, np.ceil(LEADING * np.asarray(count)), longest, most)
 
 
 def tell_too_long(longest: float, compressions: int) -> str:

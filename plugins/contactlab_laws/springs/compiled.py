@@ -18,13 +18,16 @@ from contactlab.contracts import (
     faults,
     shares_loss,
 )
+from contactlab.contracts.contacts import Contacts
 from contactlab.contracts.law import Law
 from contactlab.contracts.status import Status
+from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat, spread_object
 from contactlab.numeric.types import Array, Real
 from contactlab_laws.compiled import library
 from contactlab_laws.jaeger.partial_slip import Scales
+from contactlab_laws.march.contacts import tell_still_closing
 from contactlab_laws.march.coupled_steps import DEEPEST, TOO_DEEP, Division, tell_too_long
 from contactlab_laws.springs import viscous
 
@@ -32,7 +35,7 @@ if TYPE_CHECKING:
     from contactlab_laws.springs.law import Springs
 
 #: Numbers of a contact, of an end, of a step of a known motion, and of an impact along it.
-CONTACT, END, SAMPLE, IMPACT = 16, 17, 7, 7
+CONTACT, END, SAMPLE, IMPACT = 17, 22, 7, 7
 #: Names of the classes that are compiled: to compare names loads none that nobody uses.
 LAW = "contactlab_laws.springs.law.Springs"
 COMPILED = {
@@ -71,62 +74,102 @@ def march(
     """Return the motion of ``march_coupled``; None where Python has to follow an impact."""
     if (found := library()) is None or not knows(law, normal.law):
         return None
-    shape, axes, springs = scene.shape, 1 if scene.planar else 2, law.even_springs()
-    items, loss = math.prod(shape), shares_loss(law, normal.law)
+    batch, links = kinetics.batch_of(scene), scene.links
+    axes, springs = 1 if scene.planar else 2, law.even_springs()
+    items, loss = math.prod(batch), shares_loss(law, normal.law)
     if not loss and "elastic_hertz" not in normal.claims:
         return None
+    contacts = 1 if links is None else scene.shape[-1]
     c = _contacts(scene, normal, law.shear_loss if loss else None)
-    row, column = np.array([0, 1], np.intc), np.array([0], np.intc)
-    deepest = DEEPEST**0.4 * np.asarray(normal.maximum_approach)
-    numbers = np.empty((4, items))
-    columns = divided.step, divided.leading, divided.most, deepest
-    for place, each in enumerate(columns):
-        numbers[place] = np.broadcast_to(each, shape).ravel()
-    inverse: Any = scene.inverse_mass
-    block = np.ascontiguousarray(np.broadcast_to(inverse, (*shape, 3, 3)), dtype=np.float64)
-    end, steps, status = np.empty((items, END)), np.empty(items), np.empty(items, np.intc)
-    left = np.zeros(found.contactlab_march_room(1, springs) // 8 + 1)
+    row, column, block = _blocks(scene, contacts)
+    deepest = np.empty(scene.shape)
+    deepest[...] = DEEPEST**0.4 * np.asarray(normal.maximum_approach)
+    numbers = np.empty((3, items))
+    for place, each in enumerate((divided.step, divided.leading, divided.most)):
+        numbers[place] = _first(each, scene).ravel()
+    end, steps, status = np.empty((*scene.shape, END)), np.empty(items), np.empty(items, np.intc)
+    left = np.zeros(found.contactlab_march_room(contacts, springs) // 8 + 1)
     arguments = (
-        items, 1, c.ctypes.data, row.ctypes.data, column.ctypes.data, block.ctypes.data, axes,
-        springs, int(loss), *(each.ctypes.data for each in numbers), AT_A_TIME, left.ctypes.data,
-        end.ctypes.data, steps.ctypes.data, status.ctypes.data,
+        items, contacts, c.ctypes.data, row.ctypes.data, column.ctypes.data, block.ctypes.data,
+        axes, springs, int(loss), int(links is None), *(each.ctypes.data for each in numbers),
+        deepest.ctypes.data, AT_A_TIME, left.ctypes.data, end.ctypes.data, steps.ctypes.data,
+        status.ctypes.data,
     )  # fmt: skip
     while found.contactlab_march_scenes(*arguments) < items:
         pass
     if np.any((status == INPUT) & ~np.isnan(numbers[0])):
         return None
-    statuses, details = spread_object(Status.SUCCESS, shape), spread_object("", shape)
-    if (lost := status != 0).any():
-        told = _tell(law, divided, refused, end, steps, status, shape)
-        statuses, details = (np.array(each, dtype=object).reshape(shape)[()] for each in told)
-        end[lost] = math.nan
-    rates = c[..., 0] + end[:, 0].reshape(shape)
+    statuses, details = spread_object(Status.SUCCESS, scene.shape), spread_object("", scene.shape)
+    if (status != 0).any():
+        told = _tell(law, divided, refused, end.reshape(items, contacts, END), steps, status, scene)
+        statuses, details = (_of_contacts(each, scene) for each in told)
+        end[_of_contacts(status, scene) != 0] = math.nan
+    return _motion(scene, c[..., 0], end, (statuses, details), int(steps.max()))
+
+
+def _first(value: Real, scene: Scene) -> Array:
+    """Return numbers of the batch shape; of a gathering its contacts share one."""
+    whole = np.broadcast_to(value, scene.shape)
+    return whole if scene.links is None else whole[..., 0]
+
+
+def _of_contacts(words: Any, scene: Scene) -> Any:
+    """Return entries of the scenes of a flat batch for each of their contacts."""
+    kind = object if isinstance(words, list) else None
+    told = np.array(words, dtype=kind).reshape(kinetics.batch_of(scene))
+    if scene.links is None:
+        return told[()]
+    return np.array(np.broadcast_to(told[..., None], scene.shape))
+
+
+def _motion(scene: Scene, rate: Array, end: Array, told: Any, steps: int) -> TangentialMotion:
+    """Return the motion by the ends of contacts, rows as of ``contactlab_march_end``."""
 
     def column_of(place: int) -> Real:
-        return np.array(end[:, place]).reshape(shape) if shape else float(end[0, place])
+        return np.array(end[..., place]) if scene.shape else float(end[place])
 
-    slip: Any = column_of(1) if axes == 1 else np.array(end[:, 1:3]).reshape(*shape, 2)
-    rate = rates if shape else float(rates)
+    slip: Any = column_of(1) if scene.planar else np.array(end[..., 1:3])
+    change = column_of(0)
+    after: Any = rate + change if scene.shape else float(rate) + change
+    contacts = None
+    if scene.links is not None:
+        contacts = Contacts(
+            impulse=np.array(end[..., 3:6]),
+            moment=np.array(end[..., 19:22]),
+            pushed=np.array(end[..., 18]),
+            touches=np.array(end[..., 14]),
+            first=np.array(end[..., 15]),
+            last=np.array(end[..., 16]),
+            dissipation=np.array(end[..., 8]),
+        )
+    statuses, details = told
     return TangentialMotion(
         slip_velocity_change=slip,
         friction_work=column_of(6),
         shear_loss=column_of(7),
-        normal=Ends(column_of(9), rate, *map(column_of, (10, 11, 12, 8, 13))),
+        normal=Ends(column_of(9), after, *map(column_of, (10, 11, 12, 8, 13))),
         status=statuses,
         detail=details,
-        counters={"steps": int(steps.max())},
+        counters={"steps": steps},
+        contacts=contacts,
     )
 
 
 def _contacts(scene: Scene, normal: NormalMotion, shear_loss: float | None) -> Array:
-    """Return the contacts at first touch, rows as of ``contactlab_march_contact``."""
+    """Return the contacts at the start, rows as of ``contactlab_march_contact``."""
     pair: Any = scene.pair
     c = np.zeros((*scene.shape, CONTACT))
-    c[..., 0] = scene.normal_speed
-    if scene.planar:
-        c[..., 1] = scene.slip_velocity
+    if scene.links is not None:
+        c[..., :3], c[..., 3], c[..., 4:7] = (
+            scene.links.velocity, scene.links.gap, scene.links.pull
+        )  # fmt: skip
+        c[..., 16] = scene.links.loaded
     else:
-        c[..., 1:3] = scene.slip_velocity
+        c[..., 0] = scene.normal_speed
+        if scene.planar:
+            c[..., 1] = scene.slip_velocity
+        else:
+            c[..., 1:3] = scene.slip_velocity
     columns = (
         scene.friction_coefficient, pair.radius, pair.effective_modulus,
         2.0 * pair.effective_shear_modulus,
@@ -141,6 +184,25 @@ def _contacts(scene: Scene, normal: NormalMotion, shear_loss: float | None) -> A
     return c
 
 
+def _blocks(scene: Scene, contacts: int) -> tuple[NDArray[np.intc], NDArray[np.intc], Array]:
+    """Return W as blocks of 3 x 3 that are not zero in all scenes, by rows: starts, columns, W."""
+    if scene.links is None:
+        inverse: Any = scene.inverse_mass
+        block = np.ascontiguousarray(np.broadcast_to(inverse, (*scene.shape, 3, 3)), dtype=float)
+        return np.array([0, 1], np.intc), np.zeros(1, np.intc), block
+    W = scene.links.inverse_mass
+    if not isinstance(W, np.ndarray):
+        W = W.tobsr((3, 3))
+        starts, columns = (each.astype(np.intc) for each in (W.indptr, W.indices))
+        return starts, columns, np.ascontiguousarray(W.data, dtype=float)
+    full = W.reshape(-1, contacts, 3, contacts, 3).swapaxes(2, 3)
+    kept = full.any(axis=(0, 3, 4))
+    np.fill_diagonal(kept, True)
+    starts = np.concatenate(([0], np.cumsum(kept.sum(axis=1)))).astype(np.intc)
+    rows, columns = np.nonzero(kept)
+    return starts, columns.astype(np.intc), np.ascontiguousarray(full[:, rows, columns])
+
+
 def _tell(
     law: Law,
     divided: Division,
@@ -148,14 +210,18 @@ def _tell(
     end: Array,
     steps: Array,
     status: NDArray[np.intc],
-    shape: tuple[int, ...],
+    scene: Scene,
 ) -> tuple[list[Status], list[str]]:
-    """Return statuses of impacts and sentences on them."""
-    longest, said = (np.broadcast_to(each, shape).ravel() for each in (divided.longest, refused[1]))
+    """Return statuses of scenes and sentences on them."""
+    longest, said = (_first(each, scene).ravel() for each in (divided.longest, refused[1]))
     told = []
     for place, each in enumerate(status.tolist()):
         if each == LONG:
-            words = tell_too_long(float(longest[place]), int(end[place, 13]))
+            if scene.links is None:
+                words = tell_too_long(float(longest[place]), int(end[place, 0, 13]))
+            else:
+                pulled = bool(scene.links.pull.any())
+                words = tell_still_closing(end[place, :, 14], end[place, :, 17] > 0.0, pulled)
             told.append((Status.NOT_SEPARATED, words))
         elif each == NONE:
             words = faults.sentence(law, "velocity is not finite", int(steps[place]))
