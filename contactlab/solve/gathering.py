@@ -110,7 +110,9 @@ def _laws_of(gathering: Gathering, laws: Laws | None) -> Laws:
             value = gathering.touches[k].restitution
             raise refuse(f"touches[{k}].restitution", value, rule, remedy)
         name = composition.RESTITUTION["normal"]
-        named["normal"] = composition.law("normal", name, restitution=e)
+        one = float(e.flat[0])  # one motion scales to all contacts of one restitution
+        given_e = one if np.all(e == one) else e
+        named["normal"] = composition.law("normal", name, restitution=given_e)
     return composition.compose(*(named.get(kind) for kind in KINDS))
 
 

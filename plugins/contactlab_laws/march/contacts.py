@@ -188,7 +188,7 @@ def most_steps(scene: Scene, duration: Real, step: Real) -> Any:
     return LONGEST * scene.shape[-1] * np.ceil(longest / step)
 
 
-def tell_still_closing(touches: Array, held: Where, pulled: bool) -> str:  # noqa: FBT001
+def tell_still_closing(touches: Array, held: Where, pulled: bool) -> str:
     """Return the sentence on a gathering that is given up, by its contacts; some may be held."""
     times, closed = touches.astype(int).tolist(), np.flatnonzero(held).tolist()
     sentence = f"The contacts still close after {LONGEST} contact times each; touches: {times}."
