@@ -54,6 +54,7 @@ enum {
 #define CONTACTLAB_MARCH_CLOSING 1e-6  /* rate over the largest approach below which surfaces do not near */
 #define CONTACTLAB_MARCH_SLIDES 1e-6   /* slip over it from which a loaded contact slides at the start */
 #define CONTACTLAB_MARCH_HOLDS 1e-7    /* force over the greatest from which a contact holds up the end */
+#define CONTACTLAB_MARCH_BEFORE 1.5    /* steps before a touch at which a flight ends: rounding decides none */
 #define CONTACTLAB_MARCH_OFTEN 50      /* touches of a contact after which a scene is given up */
 #define CONTACTLAB_MARCH_DOUBLINGS 64  /* of a grid in one step */
 enum { CONTACTLAB_MARCH_TURNS = 3 };
@@ -832,7 +833,7 @@ static inline int contactlab_march_closes(contactlab_march_run *run, int going, 
     if (!p->touching && closes) least = fmin(least, -p->approach / p->velocity[0]);
   }
   if (on && !going && !run->pulled) {
-    flight = least - 2.0 * run->width;
+    flight = least - CONTACTLAB_MARCH_BEFORE * run->width;
     if (!(flight > 0.0) || isinf(flight)) flight = 0.0;
     run->time += flight;
     for (i = 0; i < run->contacts; ++i) run->progress[i].approach += run->progress[i].velocity[0] * flight;

@@ -36,8 +36,9 @@ CLOSING, HOLDS = 1e-6, 1e-7
 #: Touches of a contact, and times of the longest contact for each contact, after which a gathering
 #: is given up: closing wedges never end.
 MOST_TOUCHES, LONGEST = 50, 20
-#: Steps before the next touch at which a free flight ends.
-BEFORE = 2.0
+#: Steps before the next touch at which a free flight ends; of a whole number rounding would decide
+#: which step touches.
+BEFORE = 1.5
 #: Halvings that find how deep a loaded contact lies; slip over the largest rate of approach from
 #: which it slides.
 HALVINGS, SLIDES = 60, 1e-6
