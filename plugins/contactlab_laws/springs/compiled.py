@@ -107,7 +107,7 @@ def march(
     return _motion(scene, c[..., 0], end, (statuses, details), int(steps.max()))
 
 
-def _first(value: Real, scene: Scene) -> Array:
+def _first(value: Any, scene: Scene) -> NDArray[Any]:
     """Return numbers of the batch shape; of a gathering its contacts share one."""
     whole = np.broadcast_to(value, scene.shape)
     return whole if scene.links is None else whole[..., 0]
@@ -196,7 +196,7 @@ def _blocks(scene: Scene, contacts: int) -> tuple[NDArray[np.intc], NDArray[np.i
         starts, columns = (each.astype(np.intc) for each in (W.indptr, W.indices))
         return starts, columns, np.ascontiguousarray(W.data, dtype=float)
     full = W.reshape(-1, contacts, 3, contacts, 3).swapaxes(2, 3)
-    kept = full.any(axis=(0, 3, 4))
+    kept: Any = full.any(axis=(0, 3, 4))
     np.fill_diagonal(kept, True)
     starts = np.concatenate(([0], np.cumsum(kept.sum(axis=1)))).astype(np.intc)
     rows, columns = np.nonzero(kept)
