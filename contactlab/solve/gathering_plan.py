@@ -153,6 +153,10 @@ class _Words:
             ),
             self._everywhere("steps: {:.0f} in the shortest contact", plan.steps * 1.0),
         ]
+        able = law.capability
+        if able.resolving is not None and len(able.unnamed) > 1 and not self.history:
+            found = able.resolving.resolutions(self.scene, law.normal, law.integrator)
+            said += [] if found is None else [self._everywhere(f"resolution: {found.reason}")]
         closed = [k for k in range(open_.shape[-1]) if not open_[:, k].any()]
         said.append(self._everywhere(f"contacts: {_named(closed)} closed at the start"))
         for k in np.flatnonzero(open_.any(axis=0)).tolist():

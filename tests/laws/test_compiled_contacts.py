@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from contactlab import Body, Gathering, HalfSpace, Sphere, Status, Touch, collide, create
-from contactlab_laws import compiled
 from tests.collisions.gathered import STEEL, cushion, laws, random_gathering, row
 from tests.laws.test_compiled_march import EQUAL, both, needs_library  # noqa: F401
 
@@ -191,6 +190,7 @@ def test_control_c_is_heard_in_a_long_gathering():
     assert time.monotonic() - begun < 30.0  # of minutes; a busy machine takes its time
 
 
-def test_the_library_is_what_answers():
-    """Else the tests of this file would compare Python with itself."""
-    assert compiled.library() is not None
+def test_a_plan_says_what_marches(both):  # noqa: F811
+    one, other = both(lambda: str(collide(row(2, mu=0.1)).plan))
+    assert "resolution: the usual, in a compiled march" in one
+    assert "the march is not compiled" in other

@@ -119,9 +119,11 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
         alone = None if scene.inverse_mass is None else normal  # known motions are of any law
         if self.grid == "doubling" or not compiled.knows(self, alone, integrator):
             return None
+        usual = float(resolution_of(self)), float(resolution_of(integrator))
         if library() is None:
-            usual = float(resolution_of(self)), float(resolution_of(integrator))
             return Resolutions(*usual, f"the usual, as the march is not compiled, {told()}")
+        if scene.links is not None:  # its error was not measured over chi
+            return Resolutions(*usual, "the usual, in a compiled march")
         return Resolutions(*errors.resolve(scene), "by chi + abs(eta), in a compiled march")
 
     def books_bound(self, scene: Scene) -> Real:
