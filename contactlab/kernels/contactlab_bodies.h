@@ -195,4 +195,87 @@ static inline int contactlab_bodies_bounce(const contactlab_rigid *one, const co
   return CONTACTLAB_IMPACT_DONE;
 }
 
+/* A contact between some bodies: their places, the second -1 for a wall; the vectors from their centres of mass to the
+ * contact; and n, t1 and t2, unit vectors as rows, n from the first into the second. Arms of the bodies do not count. */
+typedef struct { int first, second; double arm[3], other_arm[3], axes[9]; } contactlab_touch;
+
+/* The side of a contact on a body, with its arm: 1 if the body is the first, -1 if the second, 0 if neither. */
+static inline int contactlab_bodies_side(const contactlab_rigid *bodies, int place, const contactlab_touch *touch,
+                                         contactlab_rigid *at)
+{
+  const int side = place < 0 ? 0 : touch->first == place ? 1 : touch->second == place ? -1 : 0;
+  int k;
+  if (!side) return 0;
+  *at = bodies[place];
+  for (k = 0; k < 3; ++k) at->arm[k] = side > 0 ? touch->arm[k] : touch->other_arm[k];
+  return side;
+}
+
+/* Writes W of some contacts as contactlab_march_begin takes it: row (contacts + 1), and of each block of 3 x 3 that is
+ * not zero its column and 9 numbers, with room for `most` blocks. Returns how many there are, or -1 if there are more. */
+static inline int contactlab_bodies_blocks(const contactlab_rigid *bodies, int contacts, const contactlab_touch *touches,
+                                           int most, int *row, int *column, double *block)
+{
+  int i, j, k, l, b, count = 0;
+  row[0] = 0;
+  for (i = 0; i < contacts; row[++i] = count)
+    for (j = 0; j < contacts; ++j) {
+      const int shared[2] = {touches[i].first, touches[i].second};
+      double each[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0};
+      int found = i == j;
+      for (b = 0; b < 2; ++b) {
+        contactlab_rigid here, there;
+        const int side = contactlab_bodies_side(bodies, shared[b], touches + i, &here);
+        const int sides = side * contactlab_bodies_side(bodies, shared[b], touches + j, &there);
+        if (!sides) continue;
+        found = 1;
+        for (l = 0; l < 3; ++l) {
+          double v[3] = {0, 0, 0}, w[3] = {0, 0, 0}, rim[3];
+          contactlab_bodies_push(&there, touches[j].axes + 3 * l, 1, v, w);
+          contactlab_bodies_cross(w, here.arm, rim);
+          for (k = 0; k < 3; ++k) v[k] += rim[k];
+          for (k = 0; k < 3; ++k) each[3 * k + l] += sides * contactlab_bodies_dot(touches[i].axes + 3 * k, v);
+        }
+      }
+      if (!found) continue;
+      if (count == most) return -1;
+      column[count] = j;
+      for (k = 0; k < 9; ++k) block[9 * count + k] = each[k];
+      ++count;
+    }
+  return count;
+}
+
+/* Rate of approach and slip along t1 and t2 at a contact; vectors of bodies are rows of 3. */
+static inline void contactlab_bodies_rates(const contactlab_touch *touch, const double *velocities, const double *spins,
+                                           double *rates)
+{
+  double v[3] = {0, 0, 0}, rim[3];
+  int k, b;
+  for (b = 0; b < 2; ++b) {
+    const int place = b ? touch->second : touch->first;
+    if (place < 0) continue;
+    contactlab_bodies_cross(spins + 3 * place, b ? touch->other_arm : touch->arm, rim);
+    for (k = 0; k < 3; ++k) v[k] += (b ? -1 : 1) * (velocities[3 * place + k] + rim[k]);
+  }
+  for (k = 0; k < 3; ++k) rates[k] = contactlab_bodies_dot(touch->axes + 3 * k, v);
+}
+
+/* Adds to velocities and spins of bodies what an impulse at a contact, P and F along t1 and t2, makes. */
+static inline void contactlab_bodies_part(const contactlab_rigid *bodies, const contactlab_touch *touch,
+                                          const double *impulse, double *velocities, double *spins)
+{
+  double push[3];
+  int k, b;
+  for (b = 0; b < 2; ++b) {
+    const int place = b ? touch->second : touch->first;
+    contactlab_rigid at;
+    const int side = contactlab_bodies_side(bodies, place, touch, &at);
+    if (!side) continue;
+    for (k = 0; k < 3; ++k)
+      push[k] = -side * (impulse[0] * touch->axes[k] + impulse[1] * touch->axes[3 + k] + impulse[2] * touch->axes[6 + k]);
+    contactlab_bodies_push(&at, push, 1, velocities + 3 * place, spins + 3 * place);
+  }
+}
+
 #endif
