@@ -1,7 +1,8 @@
 /* Random scenes by contactlab_march.h, half of them of numbers that no bodies have: "march COUNT SEED".
  *
  * Prints how many scenes ended with each status; how many that were done have a number that is not finite; and of sane
- * scenes the largest gain of energy, and imbalance of its books, over the sum of what impulses move. */
+ * scenes the largest gain of energy, and imbalance of its books, over the sum of what impulses move. As many impacts
+ * along known motions follow. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -65,6 +66,9 @@ static double contact(contactlab_march_contact *c, const double *W, double speed
   c->speed = speed;
   c->time = chance(0.2) ? 0.0 : x / speed * (wild ? power(-8.0, 3.0) : power(-3.0, 0.0));
   c->share = chance(0.7) ? 1.0 : uniform(0.0, 4.0);
+  c->loaded = chance(0.2);
+  for (i = 0; i < 3; ++i)
+    if (c->loaded > 0.0) c->pull[i] = speed / (x / speed) * power(-6.0, -2.0) * (i ? uniform(-1.0, 1.0) : 1.0);
   for (i = 0; wild && i < (int) (sizeof *c / sizeof *number); ++i) number[i] = odd(number[i]);
   *approach = x;
   return 2.94 * x / speed;
@@ -85,6 +89,36 @@ static double fastest(int contacts, const contactlab_march_contact *c, const dou
     most = fmax(most, sum);
   }
   return sqrt(most);
+}
+
+/* An impact along a known motion, as by `rebound` beside its table, or along samples that no motion has. Returns whether a
+ * sane one has no answer. */
+static int path(int wild, int lossy)
+{
+  enum { STEPS = 40 };
+  const int springs = 1 + (int) uniform(0.0, SPRINGS);
+  const long steps = 2 * (1 + (long) uniform(0.0, STEPS / 2));
+  const double psi1 = uniform(-6.0, 6.0), chi = wild ? power(-20.0, 20.0) : power(-1.0, 2.0), a = wild ? odd(power(-20.0, 20.0)) : power(-3.0, 1.0);
+  contactlab_march_sample samples[STEPS];
+  contactlab_march_impact one = {psi1, 1.0, 1.0, 1.0, 1.0, 1.0 / (2.5 * chi), 1.0};
+  contactlab_march_path progress;
+  double work[CONTACTLAB_MARCH_PATH(SPRINGS)], forces[STEPS], largest;
+  long first = 1 + (long) uniform(0.0, (double) steps - 1.0);
+  size_t i;
+  memset(samples, 0, sizeof samples);
+  largest = contactlab_march_course(a, steps, samples);
+  one.scale = 1.0 / (largest * largest);
+  for (i = 0; wild && i < (size_t) steps * sizeof *samples / sizeof(double); ++i) ((double *) samples)[i] = odd(((double *) samples)[i]);
+  for (i = 0; wild && i < sizeof one / sizeof(double); ++i) ((double *) &one)[i] = odd(((double *) &one)[i]);
+  if (!lossy)
+    for (i = 0; i < (size_t) steps; ++i) samples[i].load = 1.0;
+  contactlab_march_path_begin(&progress, springs, work);
+  for (i = 0; i < 2; ++i) {
+    const long from = i ? first : 0, count = i ? steps - first : first;
+    if (lossy) contactlab_march_along_lossy(springs, samples + from, count, &one, &progress, forces);
+    else contactlab_march_along(springs, samples + from, count, &one, &progress, forces);
+  }
+  return !wild && !(isfinite(progress.change + progress.loss) && progress.work >= 0.0);
 }
 
 int main(int argc, char **argv)
@@ -119,8 +153,10 @@ int main(int argc, char **argv)
     ++ended[status];
     if (status == CONTACTLAB_MARCH_DONE) {
       double taken = 0.0, lost = 0.0, scale = 0.0, sum = 0.0;
+      int pulled = 0;
       for (i = 0; i < contacts; ++i) {
         const contactlab_march_end *e = end + i;
+        pulled |= c[i].loaded > 0.0; /* constant forces do work beside */
         for (k = 0; k <= axes; ++k) {
           taken += e->impulse[k] * (c[i].velocity[k] + 0.5 * e->change[k]);
           scale += fabs(e->impulse[k]) * (fabs(c[i].velocity[k]) + fabs(e->change[k]));
@@ -130,12 +166,13 @@ int main(int argc, char **argv)
         sum += e->duration + e->radius + e->approach + e->force;
       }
       if (!isfinite(sum + lost)) ++wrong;
-      if (!wild) {
+      if (!wild && !pulled) {
         gain = fmax(gain, -taken / scale);
         books = fmax(books, fabs(taken - lost) / scale);
       }
     }
   }
+  for (n = 0; n < count; ++n) wrong += path(chance(0.5), chance(0.7));
   for (n = 0; n < 5; ++n) printf("%ld ", ended[n]);
   printf("%ld %.3e %.3e\n", wrong, gain, books);
   return 0;
