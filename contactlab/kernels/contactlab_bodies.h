@@ -1,13 +1,16 @@
 /* How two bodies of any shape leave each other: velocities and spins in and out.
  *
- * Hertz's contact with Coulomb friction and partial slip, elastic, exact to 1e-11 of the speed, several compressions
- * and jams included, where slip keeps its line: bodies whose slip is in a plane of symmetry of both, and bodies whose
- * centres are on the normal. Where slip may turn there is a status. Theory: section 14 of `contactlab guide theory`.
+ * Hertz's contact with Coulomb friction and partial slip. Elastic it is exact to 1e-11 of the speed, several
+ * compressions and jams included, where slip keeps its line: bodies whose slip is in a plane of symmetry of both, and
+ * bodies whose centres are on the normal; where slip may turn there is a status. With a restitution below 1 the contact
+ * is that of Kelvin and Voigt, slip may turn, and 50 springs march. Theory: sections 14 and 15 of
+ * `contactlab guide theory`.
  *
  *     const contactlab_rigid rod = {2.0, {...}, {0, 0, 0.4}}, ground = {0};
- *     int status = contactlab_bodies_bounce(&rod, &ground, 0.6, 0.8235, down, velocity, spin, still, none, NULL);
+ *     int status = contactlab_bodies_bounce(&rod, &ground, 0.6, 0.8235, 1, down, velocity, spin, still, none,
+ *                                           NULL);
  *
- * It needs contactlab_impact.h beside it. C99 and C++, no allocation, no global.
+ * It needs contactlab_impact.h and contactlab_march.h beside it. C99 and C++, no allocation, no global.
  *
  * SPDX-License-Identifier: MIT
  * Copyright (c) the authors of contactlab
@@ -16,10 +19,13 @@
 #define CONTACTLAB_BODIES_H
 
 #include "contactlab_impact.h"
+#include "contactlab_march.h"
 
-/* Statuses beside those of contactlab_impact.h: the bodies part along the normal, slip may leave its line, and a
- * number is none or out of range. */
-enum { CONTACTLAB_BODIES_APART = 16, CONTACTLAB_BODIES_TURNS = 17, CONTACTLAB_BODIES_RANGE = 18 };
+/* Statuses beside those of contactlab_impact.h: the bodies part along the normal, slip may leave its line, a number is
+ * none or out of range, and steps find no end of the impact. */
+enum {
+  CONTACTLAB_BODIES_APART = 16, CONTACTLAB_BODIES_TURNS = 17, CONTACTLAB_BODIES_RANGE = 18, CONTACTLAB_BODIES_ENDLESS = 19
+};
 
 /* A body in SI units and in the frame of all vectors: mass, inverse of the inertia tensor about the centre of mass, row
  * by row, and the vector from there to the contact. With mass 0 it is held: nothing moves or turns it. */
@@ -76,6 +82,20 @@ static inline double contactlab_bodies_stiffness(double young, double poisson, d
   return 2 * (one * (1 - poisson) + other * (1 - other_poisson)) / (one * (2 - poisson) + other * (2 - other_poisson));
 }
 
+/* n and two tangents, unit vectors as rows. */
+static inline void contactlab_bodies_axes(const double *n, double *axes)
+{
+  double any[3] = {0, 0, 0}, size;
+  int k, least = 0;
+  for (k = 1; k < 3; ++k) least = fabs(n[k]) < fabs(n[least]) ? k : least;
+  any[least] = 1;
+  for (k = 0; k < 3; ++k) axes[k] = n[k];
+  contactlab_bodies_cross(n, any, axes + 3);
+  size = sqrt(contactlab_bodies_dot(axes + 3, axes + 3));
+  for (k = 0; k < 3; ++k) axes[3 + k] /= size;
+  contactlab_bodies_cross(n, axes + 3, axes + 6);
+}
+
 /* Finds the line t along which slip stays, zero where nothing slips, and whether friction changes the approach. Returns
  * a status. `pull` is the part of W n along the surface, `slip` that of the velocity. */
 static inline int contactlab_bodies_line(const contactlab_rigid *const *bodies, const double *n, double pressed,
@@ -84,16 +104,13 @@ static inline int contactlab_bodies_line(const contactlab_rigid *const *bodies, 
 {
   const double little = CONTACTLAB_BODIES_ROUNDING, size = sqrt(contactlab_bodies_dot(pull, pull));
   const double slips = sqrt(contactlab_bodies_dot(slip, slip));
-  double across[3], yielded[3], along, any[3] = {0, 0, 0};
-  int k, least = 0;
-  for (k = 1; k < 3; ++k) least = fabs(n[k]) < fabs(n[least]) ? k : least;
-  any[least] = 1;
-  contactlab_bodies_cross(n, any, across); /* two tangents, for the mean tangential mobility */
-  contactlab_bodies_cross(across, n, any);
-  contactlab_bodies_yield(bodies, across, yielded);
-  along = contactlab_bodies_dot(yielded, across);
-  contactlab_bodies_yield(bodies, any, yielded);
-  along = 0.5 * (along + contactlab_bodies_dot(yielded, any)) / contactlab_bodies_dot(any, any);
+  double across[3], yielded[3], along = 0, axes[9];
+  int k;
+  contactlab_bodies_axes(n, axes);
+  for (k = 3; k < 9; k += 3) { /* the mean tangential mobility */
+    contactlab_bodies_yield(bodies, axes + k, yielded);
+    along += 0.5 * contactlab_bodies_dot(yielded, axes + k);
+  }
   *coupled = size > little * sqrt(pressed * along);
   for (k = 0; k < 3; ++k) t[k] = 0;
   if (!*coupled && !(slips > little * (fabs(approach) + slips))) return CONTACTLAB_IMPACT_DONE;
@@ -108,12 +125,73 @@ static inline int contactlab_bodies_line(const contactlab_rigid *const *bodies, 
   return CONTACTLAB_IMPACT_DONE;
 }
 
-/* Sets velocities and spins of two bodies to those after their elastic collision. SI units; vectors have three numbers
+/* a = A v1/(C^2 R) of a restitution from 0.01 to 1 (theory, section 15), to 2e-10 of e. */
+static inline double contactlab_bodies_relaxation(double e)
+{
+  static const double terms[13] = {1.1117603234, 2.2069240894e-2, 1.693150355e-3, -6.0396428493e-4, 1.2285619681e-4,
+    -2.0696505414e-5, 2.8178510532e-6, -1.6950910388e-7, -8.1828646693e-8, 5.0365173402e-8, -2.0123813399e-8,
+    7.0226410944e-9, -2.3074047795e-9};
+  const double x = (cbrt(e) - 0.6) / 0.4;
+  double last = 0, before = 0;
+  int k;
+  for (k = 12; k > 0; --k) { /* Clenshaw's sum of Chebyshev polynomials */
+    const double next = 2 * x * last - before + terms[k];
+    before = last;
+    last = next;
+  }
+  return expm1(-0.6 * log(e)) / (x * last - before + terms[0]);
+}
+
+/* Marches an impact with a restitution: W along n and two tangents, and rates, in units of W_nn and the approach. Leaves
+ * the impulse in their units. */
+static inline int contactlab_bodies_march(const double *W, const double *rates, double friction, double stiffness,
+                                          double restitution, double *impulse, contactlab_impact *left)
+{
+  enum { SPRINGS = 50, LEAST = 200, MOST = 20000, LONGEST = 60, DEEPEST = 16, COURSE = 2 };
+  const int row[2] = {0, 1}, column[1] = {0};
+  const double deepest = DEEPEST, modulus = 15.0 / 16.0; /* the approach, R and the duration are 1, 1 and Hertz's */
+  double work[CONTACTLAB_MARCH_WORK(1, SPRINGS)], duration = 0, steps;
+  contactlab_march_sample samples[COURSE];
+  contactlab_march_contact c;
+  contactlab_march_progress progress;
+  contactlab_march_run run;
+  contactlab_march_end end;
+  int k, status;
+  memset(&c, 0, sizeof c);
+  for (k = 0; k < 3; ++k) c.velocity[k] = rates[k];
+  c.friction = friction;
+  c.radius = c.cross = c.speed = c.share = 1;
+  c.modulus = modulus;
+  c.shear = 2 * modulus * stiffness;
+  c.time = contactlab_bodies_relaxation(restitution);
+  c.span = contactlab_march_course(c.time, COURSE, samples);
+  for (k = 0; k < COURSE; ++k) duration += samples[k].kick;
+  /* twice the steps that resolve the contact as large as without friction */
+  steps = ceil(4 * duration * sqrt(2 * modulus * c.span * (W[0] + stiffness * (W[4] + W[8]))));
+  if (!(steps <= MOST)) return CONTACTLAB_BODIES_RANGE;
+  if (steps < LEAST) steps = LEAST;
+  status = contactlab_march_begin(&run, 1, &c, row, column, W, 2, SPRINGS, 1, 1, duration / steps, ceil(0.4 * steps),
+                                  LONGEST * steps, &deepest, &progress, work, &end);
+  while (status == CONTACTLAB_MARCH_GOING) status = contactlab_march_on(&run, MOST);
+  if (status) return status == CONTACTLAB_MARCH_INPUT ? CONTACTLAB_BODIES_RANGE : CONTACTLAB_BODIES_ENDLESS;
+  for (k = 0; k < 3; ++k) impulse[k] = end.impulse[k];
+  left->rate = 1 + end.change[0];
+  left->change = sqrt(end.change[1] * end.change[1] + end.change[2] * end.change[2]) * stiffness / friction;
+  left->work = end.work * 2 * stiffness / (2.5 * friction * friction);
+  left->time = end.duration;
+  left->radius = end.radius;
+  left->compressions = (int) end.compressions;
+  left->steps = (int) run.steps;
+  return CONTACTLAB_IMPACT_DONE;
+}
+
+/* Sets velocities and spins of two bodies to those after their collision. SI units; vectors have three numbers
  * in one frame.
  *
  * one, other       the bodies
  * friction         coefficient, at least 0
  * stiffness        kappa, from contactlab_bodies_stiffness; of round contacts the curvature does not count
+ * restitution      e of the contact without friction, from 0.01 to 1, 1 is elastic: that of the bodies follows from it
  * normal           from the first body into the other; any length
  * velocity, spin   of the first body's centre of mass, in m/s and rad/s; other_velocity, other_spin of the other's
  * left             what the impact leaves in the units of theory section 1, or null. It lasts left->time d/v, d the
@@ -122,8 +200,9 @@ static inline int contactlab_bodies_line(const contactlab_rigid *const *bodies, 
  * Returns a status: 0 is an answer, else nothing is changed. Of bodies whose centres are on the normal spin about it
  * passes through. Masses may be of any size up to 1e130 kg. */
 static inline int contactlab_bodies_bounce(const contactlab_rigid *one, const contactlab_rigid *other, double friction,
-                                           double stiffness, const double *normal, double *velocity, double *spin,
-                                           double *other_velocity, double *other_spin, contactlab_impact *left)
+                                           double stiffness, double restitution, const double *normal,
+                                           double *velocity, double *spin, double *other_velocity, double *other_spin,
+                                           contactlab_impact *left)
 {
   const contactlab_rigid *bodies[2];
   const double *speeds[2], *turns[2];
@@ -152,7 +231,7 @@ static inline int contactlab_bodies_bounce(const contactlab_rigid *one, const co
   size = sqrt(contactlab_bodies_dot(n, n));
   for (k = 0; k < 3; ++k) n[k] /= size;
   if (!(size > 0 && sum <= 1e60 && friction >= 0 && friction <= 1e60)) return CONTACTLAB_BODIES_RANGE;
-  if (!(stiffness >= 0.1 && stiffness <= 10)) return CONTACTLAB_BODIES_RANGE;
+  if (!(stiffness >= 0.1 && stiffness <= 10 && restitution >= 0.01 && restitution <= 1)) return CONTACTLAB_BODIES_RANGE;
   contactlab_bodies_yield(bodies, n, pull);
   pressed = contactlab_bodies_dot(n, pull);
   approach = contactlab_bodies_dot(n, slip);
@@ -162,9 +241,23 @@ static inline int contactlab_bodies_bounce(const contactlab_rigid *one, const co
     slip[k] -= approach * n[k];
     pull[k] -= pressed * n[k];
   }
-  push = -2 * approach;
+  push = -(1 + restitution) * approach;
+  out.rate = -restitution;
   for (k = 0; k < 3; ++k) t[k] = 0;
-  if (friction > 0) {
+  if (friction > 0 && restitution < 1) {
+    double axes[9], W[9], rates[3], kick[3];
+    contactlab_bodies_axes(n, axes);
+    for (k = 0; k < 3; ++k) {
+      contactlab_bodies_yield(bodies, axes + 3 * k, yielded);
+      for (i = 0; i < 3; ++i) W[3 * i + k] = contactlab_bodies_dot(axes + 3 * i, yielded) / pressed;
+      rates[k] = k ? contactlab_bodies_dot(axes + 3 * k, slip) / approach : 1;
+    }
+    status = contactlab_bodies_march(W, rates, friction, stiffness, restitution, kick, &out);
+    if (status) return status;
+    push = -kick[0] * approach;
+    for (k = 0; k < 3; ++k) t[k] = -approach * (kick[1] * axes[3 + k] + kick[2] * axes[6 + k]);
+    drag = 1;
+  } else if (friction > 0) {
     const double unit = friction * approach / stiffness; /* of psi */
     double change, pulled = 0, psi1, chi;
     status = contactlab_bodies_line(bodies, n, pressed, pull, slip, approach, t, &coupled);

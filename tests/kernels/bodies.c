@@ -1,4 +1,4 @@
-/* Reads rows of 43 numbers: two bodies of 13, friction, stiffness, normal, velocities and spins; writes what
+/* Reads rows of 44 numbers: two bodies of 13, friction, stiffness, normal, velocities and spins, e; writes what
  * contactlab_bodies_bounce returns, velocities and spins, V, T and the compressions. */
 #include <stdio.h>
 
@@ -16,14 +16,14 @@ static contactlab_rigid body(const double *row)
 
 int main(int count, char **words)
 {
-  double row[43], answer[16];
+  double row[44], answer[16];
   FILE *in, *out;
   int i;
   if (count != 3 || !(in = fopen(words[1], "rb")) || !(out = fopen(words[2], "wb"))) return 2;
-  while (fread(row, sizeof(double), 43, in) == 43) {
+  while (fread(row, sizeof(double), 44, in) == 44) {
     const contactlab_rigid one = body(row), other = body(row + 13);
     contactlab_impact left = {0, 0, 0, 0, 0, 0, 0};
-    answer[0] = contactlab_bodies_bounce(&one, &other, row[26], row[27], row + 28, row + 31, row + 34, row + 37,
+    answer[0] = contactlab_bodies_bounce(&one, &other, row[26], row[27], row[43], row + 28, row + 31, row + 34, row + 37,
                                          row + 40, &left);
     for (i = 0; i < 12; ++i) answer[1 + i] = row[31 + i];
     answer[13] = left.rate;

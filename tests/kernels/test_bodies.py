@@ -18,12 +18,12 @@ MOTION = slice(31, 43)
 
 @pytest.fixture(scope="module", params=["c99", pytest.param("c++", marks=pytest.mark.slow)])
 def bounced(request, tmp_path_factory):
-    """Return a function of rows (n, 43) that gives statuses, motions (n, 12) and V, T, times."""
+    """Return a function of rows (n, 43) and e, of statuses, motions (n, 12), V, T and times."""
     folder = tmp_path_factory.mktemp("bodies")
     built = program("bodies", request.param, folder)
 
-    def run(rows):
-        np.asarray(rows, dtype=float).tofile(folder / "in")
+    def run(rows, e=1.0):
+        np.column_stack([rows, np.full(len(rows), e)]).tofile(folder / "in")
         subprocess.run([built, folder / "in", folder / "out"], check=True, timeout=600)
         answers = np.fromfile(folder / "out").reshape(-1, 16)
         return answers[:, 0].astype(int), answers[:, 1:13], answers[:, 13:]
@@ -80,7 +80,7 @@ def planar(count, seed):
     return rows, masses, inertias
 
 
-def by_python(rows, masses, inertias, materials):
+def by_python(rows, masses, inertias, materials, simulation=None):
     """Return the motion after ``collide``, by the exact law followed to 1e-12."""
     bodies = [
         RigidBody(material=material, mass=mass, inertia=inertia, curvature_radius=0.1)
@@ -95,7 +95,7 @@ def by_python(rows, masses, inertias, materials):
     exact = Simulation(
         tangential=law, integrator=contactlab.create("integrator.events", tolerance=1e-12)
     )
-    found = collide(encounter, exact, separating="pass")
+    found = collide(encounter, simulation or exact, separating="pass")
     after = found.velocity, found.spin, found.target_velocity, found.target_spin
     return np.hstack(after), found
 
@@ -114,6 +114,42 @@ def test_planar_bodies_are_those_of_collide(bounced):
     scale = np.maximum(np.abs(rows[:, MOTION]).max(axis=1), np.abs(expected).max(axis=1))
     assert (np.abs(found - expected).max(axis=1) / scale).max() < 1e-11
     assert left[met, 2] == pytest.approx(collision.result.motion.compressions)
+
+
+@pytest.mark.parametrize(
+    ("count", "e"),
+    [(3, 0.8), *(pytest.param(25, e, marks=pytest.mark.slow) for e in (0.98, 0.8, 0.3))],
+)
+def test_bodies_with_loss_are_those_of_collide(bounced, count, e):
+    """Slip that keeps its line, and slip that turns; springs march in both, as many."""
+    steel, brass = Material.named("steel"), Material.named("brass")
+    rows, masses, inertias = planar(count, 11)
+    rows[:, 26] = np.minimum(rows[:, 26], 0.8)  # no jams
+    rows[:, 27] = stiffness(steel, brass)
+    rows[::2, 31:34] += np.random.default_rng(12).normal(size=rows[::2, 31:34].shape)
+    status, found, left = bounced(rows, e)
+    sim = Simulation(
+        normal=contactlab.create("normal.viscoelastic", restitution=e),
+        tangential=contactlab.create("tangential.springs", springs=50),
+        integrator=contactlab.create("integrator.symplectic", steps=200),
+    )
+    expected, collision = by_python(rows, masses, inertias, (steel, brass), sim)
+    met = collision.collided
+    assert (status == np.where(met, 0, APART)).all()
+    scale = np.maximum(np.abs(rows[:, MOTION]).max(axis=1), np.abs(expected).max(axis=1))
+    assert (np.abs(found - expected).max(axis=1) / scale)[met].max() < 1e-3
+    motion, speed = collision.result.motion, collision.result.scene.normal_speed
+    assert left[met, 0] == pytest.approx(motion.normal_velocity / speed, abs=1e-3)
+
+
+def test_without_friction_the_restitution_is_that_of_the_contact(bounced):
+    rows, _, _ = planar(60, 13)
+    rows[:, 26], rows[:, 27] = 0.0, 0.83
+    status, _, left = bounced(rows, 0.6)
+    assert set(status) == {0, APART}
+    assert left[status == 0, 0] == pytest.approx(-0.6)
+    for e in (-0.1, 0.0, 1.1, np.nan):
+        assert RANGE in bounced(rows[status == 0], e)[0]
 
 
 def ball(nu, radius, mass):
