@@ -107,13 +107,13 @@ def march(
     return _motion(scene, c[..., 0], end, (statuses, details), int(steps.max()))
 
 
-def _first(value: Any, scene: Scene) -> NDArray[Any]:
+def _first(value: Real | str | NDArray[np.object_], scene: Scene) -> NDArray[Any]:
     """Return numbers of the batch shape; of a gathering its contacts share one."""
     whole = np.broadcast_to(value, scene.shape)
     return whole if scene.links is None else whole[..., 0]
 
 
-def _of_contacts(words: Any, scene: Scene) -> Any:
+def _of_contacts(words: list[Status] | list[str] | NDArray[np.intc], scene: Scene) -> Any:
     """Return entries of the scenes of a flat batch for each of their contacts."""
     kind = object if isinstance(words, list) else None
     told = np.array(words, dtype=kind).reshape(kinetics.batch_of(scene))
@@ -122,7 +122,13 @@ def _of_contacts(words: Any, scene: Scene) -> Any:
     return np.array(np.broadcast_to(told[..., None], scene.shape))
 
 
-def _motion(scene: Scene, rate: Array, end: Array, told: Any, steps: int) -> TangentialMotion:
+def _motion(
+    scene: Scene,
+    rate: Array,
+    end: Array,
+    told: tuple[NDArray[np.object_], NDArray[np.object_]],
+    steps: int,
+) -> TangentialMotion:
     """Return the motion by the ends of contacts, rows as of ``contactlab_march_end``."""
 
     def column_of(place: int) -> Real:
