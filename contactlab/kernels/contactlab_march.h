@@ -282,13 +282,6 @@ static inline double contactlab_march_elastic(int axes, int n, const contactlab_
   return (work > 0.0 ? work : 0.0 * work) + c->shear * merged;
 }
 
-/* l of a spring at r^2 */
-static inline double contactlab_march_profile(double square, double edge, double excess)
-{
-  const double inside = edge - square;
-  return inside > 0.0 ? inside + excess : 0.0;
-}
-
 /* b and j of a contact of radius b under a load, in units of the grid and of Hertz's load. */
 static inline void contactlab_march_limits(double b, double load, double *edge, double *excess)
 {
@@ -336,7 +329,7 @@ static inline void contactlab_march_lossy(int axes, int n, const contactlab_marc
     grown = 1;
     for (i = 0; i < row; ++i) {
       const double r = (i + 0.5) * (unit / n);
-      least[i] = i < n ? contactlab_march_profile(r * r, edge0, excess0) : 0.0;
+      least[i] = i < n && edge0 - r * r > 0.0 ? edge0 - r * r + excess0 : 0.0;
       old[i] = s->w[i] + lead0;
     }
     if (axes == 2) for (i = 0; i < row; ++i) old[row + i] = s->w[row + i] + lead1;
@@ -886,17 +879,6 @@ typedef struct { double drift, kick, edge, load, limit, excess, time; } contactl
  * scaled displacement per metre. */
 typedef struct { double velocity, drift, kick, force, time, mass, scale; } contactlab_march_impact;
 
-/* How many of n springs an edge at b^2 holds, over the largest radius. */
-static inline int contactlab_march_reach(int n, double edge)
-{
-  const double far = ceil(sqrt(edge > 0.0 ? edge : 0.0) * n - 0.5);
-  int k = far < n ? (int) far : n;
-  if (k < 0) k = 0;
-  while (k < n && ((k + 0.5) / n) * ((k + 0.5) / n) < edge) ++k;
-  while (k > 0 && !(((k - 0.5) / n) * ((k - 0.5) / n) < edge)) --k;
-  return k;
-}
-
 /* Springs along a known normal motion in progress; `w` has CONTACTLAB_MARCH_PATH(n) numbers, all zero at first. */
 typedef struct {
   contactlab_march_springs now, next;
@@ -929,7 +911,7 @@ static inline void contactlab_march_along(int n, const contactlab_march_sample *
     const double move = (one->velocity + path->change) * (s->drift * one->drift), growth = s->edge - path->edge;
     const double span = growth > 0.0 ? growth : 1.0, least = growth > 0.0 ? 0.0 : 1.0, edge = s->edge;
     double sum, lost, squares, factor, scale, left = 0.0;
-    int now = contactlab_march_reach(n, edge), inside = CONTACTLAB_MARCH_ROW(now);
+    int now = contactlab_march_held(n, per, edge), inside = CONTACTLAB_MARCH_ROW(now);
     squares = now * (4.0 * now * now - 1.0) / (12.0 * n * n);
     factor = now ? edge * sqrt(edge) / (now * edge - squares) : 0.0;
     scale = factor / heaviest;
