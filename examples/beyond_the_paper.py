@@ -256,7 +256,8 @@ save(Path("beyond-experiment.png"), draw_experiment)
 # %%
 # **When coupling must not be neglected.** Every other law cautions by this table.
 impact = {"psi1": np.linspace(0.0, 6.0, 241), "coupling_number": np.linspace(0.0, 4.0, 161)}
-shift = coupling_shift(Scene.grid(**impact, chi=CHI, poisson_ratio=0.3)).reshape(241, 161).T
+shift = np.asarray(coupling_shift(Scene.grid(**impact, chi=CHI, poisson_ratio=0.3)))
+shift = shift.reshape(241, 161).T
 first = impact["coupling_number"][np.argmax(shift > 0.01, axis=0)]
 first[shift.max(axis=0) <= 0.01] = np.nan
 print(f"coupling moves psi2 by 0.01 from Lambda = {np.nanmin(first):.2f} on, at "

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.numeric.checks import FINITE, POSITIVE, Rule, pair_up, real, refuse
 from contactlab.numeric.labels import library_of
-from contactlab.numeric.types import Array, Labelled, Many, Number, Numbers, Real
+from contactlab.numeric.types import Array, Labelled, Many, Number, Numbers, Plain, Real
 
 if TYPE_CHECKING:
     from contactlab.contracts.whole_impact import Tabulated
@@ -70,20 +70,20 @@ def rebound(
 @overload
 def rebound(
     psi1: Many,
-    chi: Numbers,
+    chi: Plain,
     *,
     tolerance: float = ...,
     derivatives: No = ...,
-    restitution: Numbers = ...,
+    restitution: Plain = ...,
 ) -> Array: ...
 @overload
 def rebound(
-    psi1: Numbers,
+    psi1: Plain,
     chi: Many,
     *,
     tolerance: float = ...,
     derivatives: No = ...,
-    restitution: Numbers = ...,
+    restitution: Plain = ...,
 ) -> Array: ...
 @overload
 def rebound(
@@ -95,11 +95,11 @@ def rebound(
 ) -> tuple[float, float, float]: ...
 @overload
 def rebound(
-    psi1: Many, chi: Numbers, *, tolerance: float = ..., derivatives: Yes
+    psi1: Many, chi: Plain, *, tolerance: float = ..., derivatives: Yes
 ) -> tuple[Array, Array, Array]: ...
 @overload
 def rebound(
-    psi1: Numbers, chi: Many, *, tolerance: float = ..., derivatives: Yes
+    psi1: Plain, chi: Many, *, tolerance: float = ..., derivatives: Yes
 ) -> tuple[Array, Array, Array]: ...
 @overload
 def rebound(
@@ -107,11 +107,11 @@ def rebound(
 ) -> tuple[float, float, float, float]: ...
 @overload
 def rebound(
-    psi1: Many, chi: Numbers, *, tolerance: float = ..., derivatives: Yes, restitution: Numbers
+    psi1: Many, chi: Plain, *, tolerance: float = ..., derivatives: Yes, restitution: Plain
 ) -> tuple[Array, Array, Array, Array]: ...
 @overload
 def rebound(
-    psi1: Numbers, chi: Many, *, tolerance: float = ..., derivatives: Yes, restitution: Numbers
+    psi1: Plain, chi: Many, *, tolerance: float = ..., derivatives: Yes, restitution: Plain
 ) -> tuple[Array, Array, Array, Array]: ...
 @overload
 def rebound(
@@ -119,20 +119,20 @@ def rebound(
 ) -> tuple[Array, Array, Array, Array]: ...
 @overload
 def rebound(
-    psi1: Numbers | Labelled,
-    chi: Numbers | Labelled,
+    psi1: Numbers,
+    chi: Numbers,
     *,
     tolerance: float = ...,
     derivatives: bool = ...,
-    restitution: Numbers | Labelled | None = ...,
+    restitution: Numbers | None = ...,
 ) -> Any: ...
 def rebound(
     psi1: Numbers | Labelled,
-    chi: Numbers | Labelled,
+    chi: Numbers,
     *,
     tolerance: float = USUAL,
     derivatives: bool = False,
-    restitution: Numbers | Labelled | None = None,
+    restitution: Numbers | None = None,
 ) -> Any:
     """Return the dimensionless rebound psi2 of spheres, a float or an array of the inputs' shape.
 

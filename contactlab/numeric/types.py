@@ -48,15 +48,18 @@ Many: TypeAlias = (
     | Sequence[Sequence[_Row]]
     | Sequence[Sequence[Sequence[_Row]]]
 )
-#: What a user may give as real numbers.
-Numbers: TypeAlias = Number | Many
 
 
 class Labelled(Protocol):
     """An array of another library: of xarray, pandas, dask, JAX or PyTorch."""
 
-    def __array__(self) -> NDArray[np.generic]: ...
+    def __array__(self) -> NDArray[np.floating | np.integer]: ...
 
+
+#: What a user may give as real numbers where the answer is of NumPy.
+Plain: TypeAlias = Number | Many
+#: What a user may give as real numbers: those, and a column of a table or another labelled array.
+Numbers: TypeAlias = Plain | Labelled
 
 #: A float, or an array: the same on both sides of a function.
 Kind = TypeVar("Kind", float, Array, Real)

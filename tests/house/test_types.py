@@ -47,6 +47,7 @@ from typing import Any, assert_type
 import attrs
 import matplotlib.pyplot as plt
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 import contactlab as cl
@@ -74,6 +75,11 @@ evolved: Scene = attrs.evolve(scene, spin=np.linspace(0.0, 1.0, 3))
 assert_type(evolved.take(0), Scene)
 assert_type(simulation.run(evolved).psi2, Any)
 assert_type(result, cl.ImpactResult[float])
+column = pd.Series([1.0, 2.0])
+assert_type(Scene.nondimensional(psi1=column, chi=1.44), Scene[Array])
+assert_type(Sphere(column, steel), Sphere[Array])
+Scene.nondimensional(psi1=np.array(["a", "b"]), chi=1.44)  # refused
+Sphere(np.array([1j]), steel)  # refused
 assert_type(cl.create("tangential.annulus", annuli=60), cl.TangentialLaw)
 assert_type(cl.create("normal.viscoelastic", restitution=0.9), cl.NormalLaw)
 assert_type(cl.create("integrator.symplectic"), cl.Integrator)
