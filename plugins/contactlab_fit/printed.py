@@ -18,8 +18,8 @@ from contactlab.outcome.text_table import table
 from contactlab_fit import Fit, Ranked
 from contactlab_fit.conventions import Reading, Result
 
-#: Most letters of a refusal beside a reading.
-LETTERS = 160
+#: Most letters of a refusal beside a reading: options that it names stand in whole.
+LETTERS = 400
 
 
 def tried(readings: Sequence[Reading], fit_of: Callable[[Mapping[str, str]], Fit]) -> list[Result]:
