@@ -29,6 +29,8 @@ def main() -> int:
         these.add_parser("thin", help="write it, thinned, into the kernels for games")
         if table is elastic:
             _options(building, verifying)
+        else:
+            these.add_parser("shear", help="build the table of the loss in shear: half a minute")
     asked = parser.parse_args()
     if asked.table == "coupling":
         from contactlab.impact.coupling import FILE
