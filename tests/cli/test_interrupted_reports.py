@@ -62,7 +62,7 @@ def test_stability(run, monkeypatch, tmp_path, after):
 
 
 def test_figures(run, monkeypatch, tmp_path):
-    def interrupted(_):
+    def interrupted(*_, **__):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(paper_figures, "figure_4", interrupted)
