@@ -30,12 +30,8 @@ NONDIMENSIONAL = (
     (3.0, 49 / 34), (4.0, 49 / 34),
     (0.1, 1.75), (0.5, 1.75), (1.0, 1.75), (1.2, 1.75), (2.0, 1.75), (3.0, 1.75), (4.0, 1.75),
 )  # fmt: skip
-#: psi1 and chi beyond solid spheres: a thin shell, a dense core. Their errors are named apart.
-ELSEWHERE = (
-    (0.5, 0.83), (1.2, 0.83), (2.0, 0.83), (0.5, 3.0), (1.2, 3.0), (2.0, 3.0), (4.0, 3.0),
-)  # fmt: skip
-#: psi1 and chi of a quick benchmark, in the same two sets.
-QUICK, QUICK_ELSEWHERE = ((0.5, 49 / 34), (1.2, 49 / 34), (3.0, 49 / 34)), ((1.2, 3.0),)
+#: psi1 and chi of a quick benchmark.
+QUICK = ((0.5, 49 / 34), (1.2, 49 / 34), (3.0, 49 / 34))
 
 #: Ladders of resolution: parts (springs, annuli) if a law has them, else steps. The number of steps
 #: is then the number of parts times the ratio of the two defaults (ten for the paper's steps and
@@ -139,7 +135,7 @@ class Method:
         )
 
 
-def scenes(*, quick: bool = False, sized: bool = False, elsewhere: bool = False) -> list[Scene]:
+def scenes(*, quick: bool = False, sized: bool = False) -> list[Scene]:
     """Return the scenes: dimensionless ones by psi1 and chi, and a steel ball with spin.
 
     Parameters
@@ -148,19 +144,12 @@ def scenes(*, quick: bool = False, sized: bool = False, elsewhere: bool = False)
         Fewer scenes.
     sized : bool
         Scenes of a ball in SI instead of dimensionless ones, for laws with options in SI.
-    elsewhere : bool
-        Scenes beyond solid spheres instead, without the steel ball.
     """
-    if elsewhere:
-        pairs: tuple[tuple[float, float], ...] = QUICK_ELSEWHERE if quick else ELSEWHERE
-    else:
-        pairs = QUICK if quick else NONDIMENSIONAL
+    pairs = QUICK if quick else NONDIMENSIONAL
     if sized:
         fixed = [ball(psi1, chi) for psi1, chi in pairs]
     else:
         fixed = [Scene.nondimensional(psi1=psi1, chi=chi) for psi1, chi in pairs]
-    if elsewhere:
-        return fixed
     steel = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
     return [*fixed, Scene(Sphere(6.35e-3, steel), HalfSpace(steel), 0.15, 1.93, 0.9, -40.0)]
 
