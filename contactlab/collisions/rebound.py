@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.numeric.checks import FINITE, POSITIVE, Rule, pair_up, real, refuse
 from contactlab.numeric.labels import library_of
-from contactlab.numeric.types import Array, Labelled, Many, Number, Numbers, Plain, Real
+from contactlab.numeric.types import Array, Labelled, Many, Number, Plain, Real
 
 if TYPE_CHECKING:
     from contactlab.contracts.whole_impact import Tabulated
@@ -119,20 +119,20 @@ def rebound(
 ) -> tuple[Array, Array, Array, Array]: ...
 @overload
 def rebound(
-    psi1: Numbers,
-    chi: Numbers,
+    psi1: Plain | Labelled,
+    chi: Plain | Labelled,
     *,
     tolerance: float = ...,
     derivatives: bool = ...,
-    restitution: Numbers | None = ...,
+    restitution: Plain | Labelled | None = ...,
 ) -> Any: ...
 def rebound(
-    psi1: Numbers | Labelled,
-    chi: Numbers,
+    psi1: Plain | Labelled,
+    chi: Plain | Labelled,
     *,
     tolerance: float = USUAL,
     derivatives: bool = False,
-    restitution: Numbers | None = None,
+    restitution: Plain | Labelled | None = None,
 ) -> Any:
     """Return the dimensionless rebound psi2 of spheres, a float or an array of the inputs' shape.
 

@@ -53,13 +53,20 @@ Many: TypeAlias = (
 class Labelled(Protocol):
     """An array of another library: of xarray, pandas, dask, JAX or PyTorch."""
 
-    def __array__(self) -> NDArray[np.floating | np.integer]: ...
+    def __array__(self) -> NDArray[np.generic]: ...
+
+
+class Column(Labelled, Protocol):
+    """A column of a table, of pandas or xarray; an array of NumPy is none, for its kind counts."""
+
+    @property
+    def values(self) -> object: ...  # noqa: D102
 
 
 #: What a user may give as real numbers where the answer is of NumPy.
 Plain: TypeAlias = Number | Many
-#: What a user may give as real numbers: those, and a column of a table or another labelled array.
-Numbers: TypeAlias = Plain | Labelled
+#: What a user may give as real numbers: those, and a column of a table.
+Numbers: TypeAlias = Plain | Column
 
 #: A float, or an array: the same on both sides of a function.
 Kind = TypeVar("Kind", float, Array, Real)

@@ -78,8 +78,6 @@ assert_type(result, cl.ImpactResult[float])
 column = pd.Series([1.0, 2.0])
 assert_type(Scene.nondimensional(psi1=column, chi=1.44), Scene[Array])
 assert_type(Sphere(column, steel), Sphere[Array])
-Scene.nondimensional(psi1=np.zeros(2, np.str_), chi=1.44)  # refused
-Sphere(np.zeros(2, np.complex128), steel)  # refused
 assert_type(cl.create("tangential.annulus", annuli=60), cl.TangentialLaw)
 assert_type(cl.create("normal.viscoelastic", restitution=0.9), cl.NormalLaw)
 assert_type(cl.create("integrator.symplectic"), cl.Integrator)
