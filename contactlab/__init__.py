@@ -42,7 +42,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, overload
 
-from contactlab.numeric.names import imported_on_use
+from contactlab.numeric.names import import_on_use
 
 if TYPE_CHECKING:
     from contactlab.collisions.collide import collide
@@ -238,4 +238,4 @@ MODULES = {
     "testing": "testing",
 }
 
-__getattr__, __dir__ = imported_on_use(__name__, MODULES)
+__getattr__, __dir__ = import_on_use(__name__, MODULES)

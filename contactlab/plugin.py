@@ -23,7 +23,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from contactlab.numeric.names import imported_on_use
+from contactlab.numeric.names import import_on_use
 
 if TYPE_CHECKING:
     from contactlab.impact.material import Entry
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Case", "Column", "Entry", "Finding", "Shape", "Slopes", "Source", "hookimpl"]
 
-__getattr__, __dir__ = imported_on_use(
+__getattr__, __dir__ = import_on_use(
     __name__,
     {
         "Case": "study.stability_cases",

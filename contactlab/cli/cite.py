@@ -12,7 +12,7 @@ import argparse
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.compare import own_laws, simulations
-from contactlab.cli.scene import add_file, read, restituted
+from contactlab.cli.scene import add_file, read, with_restitution
 from contactlab.impact.material import works
 from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.registry.citations import bibtex, references, software
@@ -30,7 +30,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
 def execute(arguments: argparse.Namespace) -> int:
     """Print the entries: data and materials first, then laws, contactlab last."""
     file = read(arguments)
-    laws = restituted(arguments, file.laws if file else LawChoice())
+    laws = with_restitution(arguments, file.laws if file else LawChoice())
     own = [] if arguments.tangential else own_laws(arguments, laws, file.scene if file else None)
     texts = []
     if file is not None:

@@ -33,8 +33,8 @@ from contactlab.cli.scene import (
     add_groups,
     check_alone,
     read,
-    restituted,
     settle_chi,
+    with_restitution,
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.names import nearest
@@ -92,7 +92,7 @@ def execute(arguments: argparse.Namespace) -> int:
     for quantity in arguments.quantity or ():
         find_quantity(quantity, where="--quantity")
     file = shared.scene_file(arguments, partial(_file, arguments))
-    file = attrs.evolve(file, laws=restituted(arguments, file.laws))
+    file = attrs.evolve(file, laws=with_restitution(arguments, file.laws))
     named = bool(arguments.tangential)
     if arguments.all:
         compared = _all(arguments, file)
@@ -245,8 +245,8 @@ def own_laws(arguments: argparse.Namespace, laws: LawChoice, scene: Scene | None
     found = []
     for normal in arguments.normal or [None]:
         choice = laws.choose(normal=normal, integrator=integrator)
-        suited = choice.resolved() if scene is None else choice.suited_to(scene)
-        found.append(str(suited.tangential))
+        suit = choice.resolve() if scene is None else choice.suit_to(scene)
+        found.append(str(suit.tangential))
     return list(dict.fromkeys(found))
 
 
@@ -270,10 +270,10 @@ def simulations(
         chosen = dict(zip(KINDS, combination, strict=True))
         choice = laws.choose(**chosen)
         if not arguments.integrator:
-            choice = choice.suited()
+            choice = choice.suit()
         if defaults and not _fit(choice):
             continue
-        choice = choice.resolved()
+        choice = choice.resolve()
         settings = {
             path: value for path, value in arguments.settings if _knows(choice, path, used, offered)
         }

@@ -193,7 +193,7 @@ def _parser(names: Mapping[str, PluginInfo], called: bool) -> argparse.ArgumentP
     parser = Parser(
         prog="contactlab",
         usage="%(prog)s [-h] [--version] [--traceback] COMMAND ...",
-        description=about if called else "\n\n".join([about, *_listed(names)]),
+        description=about if called else "\n\n".join([about, *_list_commands(names)]),
         epilog=EPILOG,
         formatter_class=raw,
     )
@@ -225,7 +225,7 @@ def _parser(names: Mapping[str, PluginInfo], called: bool) -> argparse.ArgumentP
     return parser
 
 
-def _listed(names: Mapping[str, PluginInfo]) -> list[str]:
+def _list_commands(names: Mapping[str, PluginInfo]) -> list[str]:
     """Return the commands under their headings, a line each."""
     headings = {name: heading for heading, members in HEADINGS.items() for name in members}
     order = [*headings, *sorted(names.keys() - headings)]

@@ -46,7 +46,7 @@ def _text(one: ByRow) -> str:
     """Return a set with its words, and a row for each law."""
     headings = ["law", f"{one.quantity} rms", "within ±", "chi² a row", "worst row"]
     rows = [
-        [law, one.rms(law), _covered(one, law), one.chi2(law), one.worst(law)]
+        [law, one.rms(law), _count_within(one, law), one.chi2(law), one.worst(law)]
         for law in one.ordered
     ]
     words = [
@@ -57,7 +57,7 @@ def _text(one: ByRow) -> str:
     return "\n".join([f"{one.title} ({one.kind})", *words, table(headings, rows, digits=3)])
 
 
-def _covered(one: ByRow, law: str) -> str:
+def _count_within(one: ByRow, law: str) -> str:
     """Return how many rows cover the law, of those with an error."""
     told = int((one.errors > 0.0).sum())
     fails = one.rms(law) != one.rms(law)

@@ -83,7 +83,7 @@ def execute(arguments: argparse.Namespace) -> int:
                 history="fields" if arguments.stick_slip else history,
                 estimate_error=arguments.estimate_error,
             )
-    varied: Mapping[str, Real] = file.varied if file else _varied(arguments, scene)
+    varied: Mapping[str, Real] = file.varied if file else _find_ranges(arguments, scene)
     encounter = file.encounter if file else None
     collision = None
     if encounter is not None:
@@ -112,7 +112,7 @@ def execute(arguments: argparse.Namespace) -> int:
     return max(saved, status)
 
 
-def _varied(arguments: argparse.Namespace, scene: Scene) -> dict[str, Real]:
+def _find_ranges(arguments: argparse.Namespace, scene: Scene) -> dict[str, Real]:
     """Return the ranges of the arguments by name, each of the scene's shape."""
     groups = {"psi1": scene.psi1, "chi": scene.chi}
     return {name: value for name, value in groups.items() if np.ndim(getattr(arguments, name))}

@@ -145,7 +145,7 @@ def inputs(arguments: argparse.Namespace) -> Inputs:
     return Inputs(file, scene, compose_laws(arguments, file.laws if file else LawChoice()))
 
 
-def restituted(arguments: argparse.Namespace, choice: LawChoice) -> LawChoice:
+def with_restitution(arguments: argparse.Namespace, choice: LawChoice) -> LawChoice:
     """Return the laws of ``choice``, the normal law replaced by that of ``--restitution``."""
     if arguments.restitution is None:
         return choice
@@ -160,13 +160,13 @@ def restituted(arguments: argparse.Namespace, choice: LawChoice) -> LawChoice:
         )
         raise ValueError(told)
     settings = dict(getattr(arguments, "settings", ()))
-    return choice.without("normal").set(settings).restituted(arguments.restitution)
+    return choice.without("normal").set(settings).with_restitution(arguments.restitution)
 
 
 def compose_laws(arguments: argparse.Namespace, choice: LawChoice) -> Simulation:
     """Return the laws of ``choice``, replaced by the laws and options of the arguments."""
     settings = dict(arguments.settings)
-    choice = restituted(arguments, choice).choose(
+    choice = with_restitution(arguments, choice).choose(
         normal=arguments.normal, tangential=arguments.tangential, integrator=arguments.integrator
     )
     return choice.set(settings).simulation()

@@ -25,7 +25,7 @@ from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.study.bench_methods import Method, methods
 from contactlab.study.error_map import error_maps
 from contactlab.study.model_error import ModelError
-from contactlab.study.stability import Stability, expected_time, stability
+from contactlab.study.stability import Stability, estimate_time, stability
 from contactlab.study.stability_judge import NO_REFERENCE, RAISED, SKIPPED, WRONG, Outcome
 
 #: Most failures listed under the table; CSV and JSON hold every case.
@@ -51,7 +51,7 @@ def execute(arguments: argparse.Namespace) -> int:
     chosen = methods(laws, restitution=arguments.restitution)
     told = arguments.progress is not False
     if told:
-        cases, seconds = expected_time(chosen, quick=arguments.quick)
+        cases, seconds = estimate_time(chosen, quick=arguments.quick)
         about = f"{cases} cases, about {in_words(seconds)} of processor time"
         print(f"contactlab stability: {about}", file=sys.stderr, flush=True)
     with shared.progress(told, "stability") as progress:

@@ -121,7 +121,7 @@ def collide(
     array([ 2.    , -0.1144,  0.    ])
     """
     if type(encounter) is Gathering:
-        return _gathered(encounter, simulation, restitution, separating, history=history)
+        return _solve_gathering(encounter, simulation, restitution, separating, history=history)
     if type(encounter) is not Encounter:  # a call takes longer than this test
         of_kind("encounter", encounter, Encounter, remedy="make one: Encounter(...)", meant=INSTEAD)
     if history:
@@ -164,7 +164,7 @@ def collide(
     return Collision.by(encounter, result, met, **about)
 
 
-def _gathered(
+def _solve_gathering(
     gathering: Gathering,
     simulation: Simulation | None,
     restitution: object,

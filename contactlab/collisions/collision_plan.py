@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.collisions.rebound import restituted_error
+from contactlab.collisions.rebound import bound_restitution_error
 from contactlab.impact.body_cautions import contact_vectors
 from contactlab.impact.encounter import Encounter
 from contactlab.numeric.arrays import plain, some
@@ -35,7 +35,7 @@ def collision_plan(plan: Plan, met: Encounter | None, passed: NDArray[np.bool_])
 def by_rebound(plan: Plan, chi: Real, restitution: Real) -> Plan:
     """Return the plan of laws that answer as ``rebound`` does, with the words of ``rebound``."""
     marched = plan.columns.marched
-    error = np.where(marched, restituted_error(chi, restitution), plan.psi2_error)
+    error = np.where(marched, bound_restitution_error(chi, restitution), plan.psi2_error)
     low, high = float(np.min(restitution)), float(np.max(restitution))
     told = f"{low:g}" if low == high else f"{low:.4g}..{high:.4g}"
     said: dict[str, tuple[str, tuple[Any, ...] | None]] = {

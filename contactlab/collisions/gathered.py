@@ -94,7 +94,7 @@ class GatheringResult(Answer):
         told = bool(self.history)
         return plan_of_gathering(self.gathering, laws, self._way, self._motion, history=told)
 
-    def _shaped(self, value: Real, *trailing: int) -> Any:
+    def _shape(self, value: Real, *trailing: int) -> Any:
         """Return what each gathering has in the batch shape."""
         return np.asarray(value).reshape(*self.gathering.shape, *trailing)
 
@@ -103,7 +103,7 @@ class GatheringResult(Answer):
         lost = np.where(self._motion.status == Status.SUCCESS, 0.0, np.nan)
         whole = np.broadcast_to(value, (*self._scene.shape, *trailing))
         lost = lost.reshape(*lost.shape, *(1 for _ in trailing))
-        return np.asarray(self._shaped(whole + lost, self._scene.shape[-1], *trailing))
+        return np.asarray(self._shape(whole + lost, self._scene.shape[-1], *trailing))
 
     def _told(self, name: str, *trailing: int) -> Array:
         """Return an entry of the contacts that the march tells."""
@@ -140,7 +140,7 @@ class GatheringResult(Answer):
     def frame(self) -> Array:
         """n, t1 and t2 of each contact as rows, shape (..., C, 3, 3)."""
         axes = self.gathering.assembly.axes
-        shaped: Array = self._shaped(axes, axes.shape[1], 3, 3)
+        shaped: Array = self._shape(axes, axes.shape[1], 3, 3)
         return shaped
 
     @property

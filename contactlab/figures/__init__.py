@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from contactlab.numeric.names import imported_on_use
+from contactlab.numeric.names import import_on_use
 
 if TYPE_CHECKING:
     from contactlab.figures.files import save, save_figure
@@ -30,7 +30,7 @@ __all__ = [
     "styled",
 ]
 
-__getattr__, __dir__ = imported_on_use(
+__getattr__, __dir__ = import_on_use(
     __name__,
     {
         "draw_fits": "contactlab_fit.figures",

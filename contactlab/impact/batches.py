@@ -163,7 +163,7 @@ class Batches(Motions):
         object.__setattr__(taken, "shape", np.broadcast_shapes(*taken._shapes().values()))
         object.__setattr__(taken, "_axes", ())
         if (self._axes or self._varied) and not isinstance(part, int | tuple):
-            object.__setattr__(taken, "_varied", self._varied_at(part))
+            object.__setattr__(taken, "_varied", self._take_varying(part))
         if taken.shape or isinstance(part, int | tuple):
             return taken
         count = np.shape(taken.index)
@@ -184,7 +184,7 @@ class Batches(Motions):
         object.__setattr__(taken, "shape", (*found, self.shape[-1]))
         return taken
 
-    def _varied_at(self, part: Index) -> tuple[tuple[str, Array], ...]:
+    def _take_varying(self, part: Index) -> tuple[tuple[str, Array], ...]:
         """Return the values of each entry that varies, of the impacts that ``part`` indexes."""
         if not self._axes:
             return tuple((name, batch.lock_arrays(values[part])) for name, values in self._varied)
@@ -254,11 +254,11 @@ def varying(scene: AnyScene, entries: Mapping[str, Numbers]) -> AnyScene:
     return scene._with(_varied=lines)
 
 
-def unvaried(scene: AnyScene) -> AnyScene:
+def drop_varying(scene: AnyScene) -> AnyScene:
     """Return this batch without the values of entries that vary, which no law reads."""
     return scene._with(_axes=(), _varied=()) if scene._axes or scene._varied else scene
 
 
-def unnumbered(scene: AnyScene) -> AnyScene:
+def drop_index(scene: AnyScene) -> AnyScene:
     """Return this scene without ``index``: a law that asks for it raises ``NoIndexError``."""
     return scene._with(_index=None)

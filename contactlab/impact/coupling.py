@@ -77,7 +77,7 @@ def coupling_shift(scene: Scene) -> Real:
     return np.where(np.asarray(scene.friction_coefficient) == 0.0, 0.0, shift)
 
 
-def coupling_measured(scene: Scene) -> Any:
+def measures_coupling(scene: Scene) -> Any:
     """Return where the table of ``coupling_shift`` has an impact; theory goes beyond its psi1.
 
     Parameters
@@ -105,7 +105,7 @@ def coupling(scene: Scene) -> tuple[str, ...]:
     shape = np.broadcast_shapes(scene.shape, (1,))
     number, shift, known = (
         np.broadcast_to(each, shape).ravel()
-        for each in (coupling_number(scene), coupling_shift(scene), coupling_measured(scene))
+        for each in (coupling_number(scene), coupling_shift(scene), measures_coupling(scene))
     )
     told = shift >= LEAST_SHIFT
     if not told.any():

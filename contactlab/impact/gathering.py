@@ -183,8 +183,8 @@ class Gathering:
         names = tuple(bodies) if isinstance(bodies, Mapping) else ()
         for name in names:
             of_kind("bodies: name", name, str, remedy="give bodies by place as a list")
-        bodies = tuple(bodies.values()) if names else _listed("bodies", bodies)
-        touches = _listed("touches", self.touches)
+        bodies = tuple(bodies.values()) if names else _as_tuple("bodies", bodies)
+        touches = _as_tuple("touches", self.touches)
         for name, each in zip(names or range(len(bodies)), bodies, strict=True):
             of_kind(f"bodies[{name!r}]", each, Body, remedy="make one: Body(Sphere(...))")
         for k, touch in enumerate(touches):
@@ -388,7 +388,7 @@ class Gathering:
         return self.assembly.scene()
 
 
-def _listed(name: str, value: object) -> tuple[Any, ...]:
+def _as_tuple(name: str, value: object) -> tuple[Any, ...]:
     """Return a sequence as a tuple, or refuse what is none or is empty."""
     if isinstance(value, str | bytes) or not isinstance(value, Sequence):
         raise refuse(name, value, f"must be a list of {name}", f"give {name}=[...]")

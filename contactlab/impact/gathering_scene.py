@@ -119,7 +119,7 @@ class Assembly:
         W = self._inverse_mass()
         own = np.stack([join_components(each.inverse_mass, shape) for each in self.frames], axis=1)
         pull = self._pull()
-        loaded = self._loaded(pull)
+        loaded = self._find_loads(pull)
         links = Links(
             inverse_mass=W,
             velocity=velocity,
@@ -214,7 +214,7 @@ class Assembly:
                     pull[:, k, row] += side.sense * dot(axis, force) / side.body.mass
         return pull
 
-    def _loaded(self, pull: Array) -> Array:
+    def _find_loads(self, pull: Array) -> Array:
         """Return which contacts carry the forces, or refuse forces that press none of them."""
         loaded = self.of_contacts("loaded")
         for k in np.flatnonzero(loaded.any(axis=0)).tolist():

@@ -337,12 +337,12 @@ def instance(*kinds: type, remedy: str = "", optional: bool = False, **field: An
 
 
 def _option(
-    kind: type[T], checked: Callable[[str, object], T], default: object, **metadata: object
+    kind: type[T], check_value: Callable[[str, object], T], default: object, **metadata: object
 ) -> Any:
-    """Return an attrs field of ``kind`` with the converter ``checked(name, value)``."""
+    """Return an attrs field of ``kind`` with the converter ``check_value(name, value)``."""
 
     def convert(value: object, field: attrs.Attribute[object]) -> T:
-        return checked(field.name, value)
+        return check_value(field.name, value)
 
     convert.__annotations__["value"] = kind.__name__  # what signatures show
     return attrs.field(
@@ -364,12 +364,12 @@ def choice(*words: str, default: str) -> Any:
     """
     rule = f"must be one of {', '.join(map(repr, words))}"
 
-    def checked(name: str, value: object) -> str:
+    def check_value(name: str, value: object) -> str:
         if not isinstance(value, str) or value not in words:
             raise refuse(name, value, rule)
         return value
 
-    return _option(str, checked, default, range=rule, words=words)
+    return _option(str, check_value, default, range=rule, words=words)
 
 
 def flag(*, default: object) -> Any:
@@ -382,12 +382,12 @@ def flag(*, default: object) -> Any:
     """
     rule = "must be True or False"
 
-    def checked(name: str, value: object) -> bool:
+    def check_value(name: str, value: object) -> bool:
         if not isinstance(value, bool):
             raise refuse(name, value, rule)
         return value
 
-    return _option(bool, checked, default, range=rule)
+    return _option(bool, check_value, default, range=rule)
 
 
 def count(
@@ -410,10 +410,10 @@ def count(
         What a default of None stands for, where nothing else is chosen.
     """
 
-    def checked(name: str, value: object) -> Any:
+    def check_value(name: str, value: object) -> Any:
         if value is None and default is None:
             return None
         return whole(name, value, least=least, most=most)
 
     rule = f"must be a whole number from {least} to {most}"
-    return _option(int, checked, default, range=rule, unit="1", usual=usual)
+    return _option(int, check_value, default, range=rule, unit="1", usual=usual)

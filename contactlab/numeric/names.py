@@ -202,7 +202,7 @@ def _unfit(
     return "an argument is given twice"
 
 
-def imported_on_use(
+def import_on_use(
     package: str, modules: Mapping[str, str]
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
     """Return the functions ``__getattr__`` and ``__dir__`` of a package.

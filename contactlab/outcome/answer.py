@@ -42,10 +42,10 @@ class Checked(Plotted):
     @property
     def failures(self) -> dict[int, str]:
         """A sentence for each impact that failed, by its index in C order."""
-        return dict(self._failed())
+        return dict(self._iterate_failures())
 
     @abstractmethod
-    def _failed(self) -> Iterator[tuple[int, str]]:
+    def _iterate_failures(self) -> Iterator[tuple[int, str]]:
         """Yield index and sentence of each impact that failed, in order."""
 
     @property
@@ -57,7 +57,7 @@ class Checked(Plotted):
     def _status_at(self, index: int) -> Status:
         """Return the status of an impact by its index in C order."""
 
-    def _unfinished(self) -> str:
+    def _tell_missing(self) -> str:
         """Return what was not computed, and how to go on; empty if all was."""
         return ""
 
@@ -75,10 +75,10 @@ class Checked(Plotted):
             With the sentence of the first impact that failed, of those that are missing in a
             folder, or of the first caution.
         """
-        for index, sentence in self._failed():
+        for index, sentence in self._iterate_failures():
             where = f"impact {index}: " if self._of_many else ""
             raise ImpactError(where + sentence, self._status_at(index))
-        if missing := self._unfinished():
+        if missing := self._tell_missing():
             raise ImpactError(missing, Status.INTERRUPTED)
         for sentence in self.cautions if cautions else ():
             raise ImpactError(f"caution: {sentence}", Status.SUCCESS)
@@ -90,12 +90,12 @@ class Checked(Plotted):
 
     def __str__(self) -> str:
         """Return ``repr``, the first failure, what is missing and every caution, in lines."""
-        lines, failed = self._first_lines(), self._failed()
+        lines, failed = self._first_lines(), self._iterate_failures()
         for index, sentence in itertools.islice(failed, 1):
             count = 1 + sum(1 for _ in failed)
             where = f" (impact {index}; {count} in all)" if self._of_many else ""
             lines.append(f"failed{where}: {sentence}")
-        if missing := self._unfinished():
+        if missing := self._tell_missing():
             lines.append(missing)
         return "\n".join([*lines, *(f"caution: {text}" for text in self.cautions)])
 
@@ -109,7 +109,7 @@ class Answer(Checked):
     def _statuses(self) -> tuple[Any, Any]:
         """Return statuses and details of what was run."""
 
-    def _failed(self) -> Iterator[tuple[int, str]]:
+    def _iterate_failures(self) -> Iterator[tuple[int, str]]:
         ends = self._statuses()
         if succeeded(ends[0]):  # a look at each of a million takes long
             return

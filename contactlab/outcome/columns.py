@@ -246,7 +246,7 @@ class _Quantities(Mapping[str, Column]):
         self._state: object = None
         self._found: dict[str, Column] = {}
 
-    def _named(self) -> dict[str, Column]:
+    def _read_columns(self) -> dict[str, Column]:
         if self._state != state():
             self._found = {column.name: column for column in _numeric_columns()}
             self._state = state()
@@ -254,14 +254,14 @@ class _Quantities(Mapping[str, Column]):
 
     def __getitem__(self, name: str) -> Column:
         if name[:1] == name[-1:] == "|":
-            return _Size(*self._named()[name[1:-1]]._replace(name=name))
-        return self._named()[name]
+            return _Size(*self._read_columns()[name[1:-1]]._replace(name=name))
+        return self._read_columns()[name]
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._named())
+        return iter(self._read_columns())
 
     def __len__(self) -> int:
-        return len(self._named())
+        return len(self._read_columns())
 
 
 #: The columns of numbers by name, with angles in degrees and the rebound speed added.

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.registration.hooks import short, shortened
+from contactlab.registration.hooks import short, shorten
 from contactlab.registration.installed import PluginWarning
 
 HISTORY = "history"
@@ -49,7 +49,7 @@ def _numbers(value: Callable[[object], object], result: object) -> Any:
     try:
         numbers = np.asarray(given, dtype=float)
     except (TypeError, ValueError):
-        raise TypeError(f"it gave {shortened(given)}, which is no number") from None
+        raise TypeError(f"it gave {shorten(given)}, which is no number") from None
     if numbers.ndim and numbers.shape[: len(shape)] != shape:
         raise ValueError(f"it gave the shape {numbers.shape} for impacts of the shape {shape}")
     return given

@@ -223,7 +223,7 @@ class SweepFolder(Checked):
             If there is no such column, or a file is damaged.
         """
         wanted = self._wanted(names)
-        for path, about in self._unchanged():
+        for path, about in self._check_chunks():
             yield slice(*about.chunk), _read(path, self._form, self._names, about, wanted)
 
     def _wanted(self, names: Sequence[str]) -> Sequence[str]:
@@ -339,14 +339,14 @@ class SweepFolder(Checked):
         """The number of computed impacts of each status, by its name."""
         return dict(sum((Counter(about.counts) for _, about in self._abouts), Counter()))
 
-    def _unchanged(self) -> Iterator[tuple[Path, About]]:
+    def _check_chunks(self) -> Iterator[tuple[Path, About]]:
         """Yield the finished chunks; refuse a file that is not the one that was opened."""
         for path, about in self._abouts:
             _Unchanged(path, about, self._stamps[path]).check()
             yield path, about
 
-    def _failed(self) -> Iterator[tuple[int, str]]:
-        for path, about in self._unchanged():
+    def _iterate_failures(self) -> Iterator[tuple[int, str]]:
+        for path, about in self._check_chunks():
             if [*about.counts] != [Status.SUCCESS.name]:
                 for index, sentence in read_about(path, self._form).failures.items():
                     yield int(index), sentence
@@ -385,7 +385,7 @@ class SweepFolder(Checked):
         )
         return Status[next(names)]
 
-    def _unfinished(self) -> str:
+    def _tell_missing(self) -> str:
         if self.complete:
             return ""
         gaps = ", ".join(f"{first} to {stop}" for first, stop in self.missing)

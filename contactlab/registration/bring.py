@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
-from contactlab.registration.hooks import HOOKS, PluginError, shortened
+from contactlab.registration.hooks import HOOKS, PluginError, shorten
 from contactlab.registration.manager import MANAGER, Told
 from contactlab.registration.names import BLOCK_VARIABLE, HERE, PROJECT
 
@@ -29,7 +29,7 @@ def own_first(kind: str) -> bool:
 
     They do unless a plug-in of this program answers too, or something is blocked.
     """
-    return not (os.environ.get(BLOCK_VARIABLE) or MANAGER.answered_here(HOOKS[kind]))
+    return not (os.environ.get(BLOCK_VARIABLE) or MANAGER.answers_here(HOOKS[kind]))
 
 
 def sound(
@@ -49,7 +49,7 @@ def sound(
         if not rule:
             found.append(told)
             continue
-        what = shortened(getattr(told.item, "name", told.item))
+        what = shorten(getattr(told.item, "name", told.item))
         MANAGER.tell(told.info, PluginError(f"{told.info.source} brought {what}, {rule}"))
     return found
 

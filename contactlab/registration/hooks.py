@@ -170,7 +170,7 @@ def guard(source: str, failed: str, *, silent: bool = True) -> Iterator[None]:
         raise PluginError(f"{source} {failed}: {short(error)}{place}") from error
 
 
-def shortened(value: object, *, most: int = 60) -> str:
+def shorten(value: object, *, most: int = 60) -> str:
     """Return an object as one line of a message."""
     text = " ".join(repr(value).split())
     return text if len(text) <= most else text[: most - 3] + "..."

@@ -13,9 +13,9 @@ from contactlab.registration.hooks import short
 from contactlab.registration.names import (
     PROJECT,
     PluginInfo,
-    blocked_names,
     blocks,
     meant,
+    read_blocks,
     same_distribution,
 )
 
@@ -67,7 +67,7 @@ def by_name(infos: list[PluginInfo]) -> dict[str, list[PluginInfo]]:
 
 def describe_offers(found: Iterable[tuple[str, str, str, str]]) -> list[PluginInfo]:
     """Return what entry points offer, with what is blocked and which of one name is meant."""
-    blocking = blocked_names()
+    blocking = read_blocks()
     infos = [PluginInfo(*each, blocks(blocking, *each[:2])) for each in found]
     return [
         attrs.evolve(info, meant=info is meant(rivals))

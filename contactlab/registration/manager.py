@@ -21,7 +21,7 @@ from contactlab.registration.hooks import (
     PluginError,
     guard,
     short,
-    shortened,
+    shorten,
 )
 from contactlab.registration.installed import (
     PluginWarning,
@@ -38,12 +38,12 @@ from contactlab.registration.names import (
     KINDS,
     PROJECT,
     PluginInfo,
-    blocked_names,
     blocks,
     clash,
     is_place,
     kind_of,
     meant,
+    read_blocks,
     short_name,
 )
 
@@ -107,7 +107,7 @@ class Manager(pluggy.PluginManager):
 
     def _warn_of_unknown(self, infos: list[PluginInfo]) -> None:
         """Warn once of each blocked name that is not installed: a misspelt name blocks nothing."""
-        for entry in sorted(blocked_names() - self._warned):
+        for entry in sorted(read_blocks() - self._warned):
             if any(blocks({entry}, info.name, info.distribution) for info in infos):
                 continue
             self._warned.add(entry)
@@ -266,13 +266,13 @@ class Manager(pluggy.PluginManager):
         """
         self.load(kind, only=only, again=silent)
         found: list[Told] = []
-        for info, caller in self._asked(HOOKS[kind]):
+        for info, caller in self._find_hooks(HOOKS[kind]):
             try:
                 with guard(info.source, f"raised when asked for its {kind}", silent=silent):
                     answers = caller(**arguments)
                 for answer in answers:
                     if no_list(answer):
-                        rule = f"returned {shortened(answer)} when asked for its {kind}"
+                        rule = f"returned {shorten(answer)} when asked for its {kind}"
                         raise PluginError(f"{info.source} {rule}: must be a list; return [...]")
                 with guard(info.source, f"raised when asked for its {kind}", silent=silent):
                     found += [Told(info, item) for answer in answers for item in answer or ()]
@@ -280,7 +280,7 @@ class Manager(pluggy.PluginManager):
                 self.tell(info, error)
         return found
 
-    def answered_here(self, hook: str) -> bool:
+    def answers_here(self, hook: str) -> bool:
         """Return whether a plug-in that was registered in this program has a hook."""
         since, found = self._here.get(hook, (-1, False))
         if since != self.changes:
@@ -289,7 +289,7 @@ class Manager(pluggy.PluginManager):
             self._here[hook] = self.changes, found
         return found
 
-    def _asked(self, hook: str) -> list[tuple[PluginInfo, Callable[..., Any]]]:
+    def _find_hooks(self, hook: str) -> list[tuple[PluginInfo, Callable[..., Any]]]:
         """Return the plug-ins with a hook, in order, and what asks each alone with all wrappers."""
         since, callers = self._callers.get(hook, (-1, []))
         if since != self.changes:
@@ -308,7 +308,7 @@ class Manager(pluggy.PluginManager):
                 for impl in impls
             ]
             self._callers[hook] = self.changes, callers
-        blocking = blocked_names()
+        blocking = read_blocks()
         if not blocking:
             return callers
         return [

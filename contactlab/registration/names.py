@@ -102,7 +102,7 @@ def blocks(entries: set[str], name: str, distribution: str) -> bool:
     return False
 
 
-def blocked_names() -> set[str]:
+def read_blocks() -> set[str]:
     """Return the entries of ``CONTACTLAB_BLOCK_PLUGINS``, separated by commas or blanks."""
     return set(os.environ.get(BLOCK_VARIABLE, "").replace(",", " ").split())
 

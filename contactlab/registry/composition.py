@@ -170,12 +170,12 @@ def _by_names(normal: object, tangential: object, integrator: object, _: object)
 def _compose(normal: object, tangential: object, integrator: object) -> Laws:
     given = {"normal": normal, "tangential": tangential, "integrator": integrator}
     named = {kind: law(kind, value) for kind, value in given.items() if value is not None}
-    laws = _completed(named)
+    laws = _complete(named)
     check(laws)
     return laws
 
 
-def _completed(given: Mapping[str, Law]) -> Laws:
+def _complete(given: Mapping[str, Law]) -> Laws:
     """Return laws with the preferred ones of the kinds that are not named."""
     named: dict[str, Any] = {**given}
     first = named.get("normal") or law("normal", DEFAULT_NORMAL)
@@ -233,12 +233,12 @@ def _refuse_rigid(
     for name, tangential in elastic:
         if _fits(normal, tangential):
             runs, _ = _prefer("integrator", normal, tangential)
-            rule = f"with {_named(normal)} this integrator runs only rigid friction"
+            rule = f"with {_short_name(normal)} this integrator runs only rigid friction"
             remedy = f"use integrator={runs!r} (with {name}), or name tangential={rigid!r}"
-            raise refuse("integrator", _named(integrator), rule, remedy)
+            raise refuse("integrator", _short_name(integrator), rule, remedy)
 
 
-def _named(law: Law) -> str:
+def _short_name(law: Law) -> str:
     """Return the name of a law as a user writes it."""
     return REGISTRY.short_name(law)
 
@@ -273,9 +273,11 @@ def _lacking(law: Law, other: Law) -> str | None:
     kind, need = law_kind(law), min(lacking, key=str)
     if isinstance(need, str):
         what = NEEDS.get(need, f"{need!r} of the normal law")
-        return f"{kind} = {_named(law)}: needs {what}, which {_named(other)} does not offer"
+        return (
+            f"{kind} = {_short_name(law)}: needs {what}, which {_short_name(other)} does not offer"
+        )
     what = RUNS.get(need.__name__, f"a {need.__name__}")
-    return f"{kind} = {_named(law)}: runs {what}, and {_named(other)} is not one"
+    return f"{kind} = {_short_name(law)}: runs {what}, and {_short_name(other)} is not one"
 
 
 def _has(law: Law, kind: str, need: str | type) -> bool:
@@ -304,7 +306,7 @@ def _would_fit(laws: Laws) -> str:
 def _completes(named: Mapping[str, Law]) -> bool:
     """Return whether laws fit that are completed by preferred ones."""
     try:
-        return _fits(*_completed(named))
+        return _fits(*_complete(named))
     except ValueError:
         return False
 
@@ -313,7 +315,7 @@ def _usual(kind: str, others: Mapping[str, Law]) -> str:
     """Return the name of the preferred law of a kind beside others."""
     if kind == "normal":
         return DEFAULT_NORMAL
-    made = _completed(others)
+    made = _complete(others)
     after = (others["integrator"],) if "integrator" in others and kind == "tangential" else ()
     before = (made.normal,) if kind == "tangential" else (made.normal, made.tangential)
     return _prefer(kind, *before, after=after)[0]

@@ -35,7 +35,7 @@ def unfit(law: type[Law]) -> str | None:
             return f"{law.__name__}.{name} = {words!r}: must be {entries}"
     if "controls_error" in law.offers and law.resolution != "tolerance":
         return f"{law.__name__} offers 'controls_error': its resolution must be 'tolerance'"
-    return _exchanged(law) if issubclass(law, Integrator) else None
+    return _find_exchange(law) if issubclass(law, Integrator) else None
 
 
 def _word(value: object) -> bool:
@@ -46,7 +46,7 @@ def _word_or_law(value: object) -> bool:
     return _word(value) or (isinstance(value, type) and issubclass(value, Law))
 
 
-def _exchanged(law: type[Integrator]) -> str | None:
+def _find_exchange(law: type[Integrator]) -> str | None:
     """Return which method of an integrator has other first arguments than those of the contract."""
     for name in ORDERED:
         if name == "integrate_coupled" and not issubclass(law, CoupledIntegrator):

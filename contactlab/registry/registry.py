@@ -22,11 +22,11 @@ from contactlab.registration.names import (
     PAGE,
     PROJECT,
     PluginInfo,
-    blocked_names,
     blocks,
     clash,
     is_place,
     meant,
+    read_blocks,
     same_distribution,
     short_name,
     split_name,
@@ -84,7 +84,7 @@ class Registry:
 
     def _here(self) -> dict[str, tuple[type[Law], PluginInfo]]:
         """Return the laws that are registered at run time, by their names with "this program"."""
-        blocking = blocked_names()
+        blocking = read_blocks()
         found = {}
         for name, law in MANAGER.laws.items():
             own = PluginInfo(name, HERE, "", law.__module__, blocks(blocking, name, HERE))

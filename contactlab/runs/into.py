@@ -24,7 +24,7 @@ from contactlab.runs.fingerprints import fingerprint
 from contactlab.runs.into_folder import NAMES, ChunkFolder
 from contactlab.runs.pieces import Part, Piece
 from contactlab.runs.sweep import WHOLE_IMPACTS, block_for, cut, one_axis, solve_parts
-from contactlab.runs.target import checked_folder, held
+from contactlab.runs.target import check_folder, held
 from contactlab.solve.solve import accept_scene
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def swept_into(
         raise refuse("scenes", scenes, "must hold at least one Scene", remedy)
     given, (laws, _) = laws, bound(laws, begin)
     accept_scene(laws, begin)  # of scenes that are refused there is no folder
-    form = form_of(checked_folder("into", folder))
+    form = form_of(check_folder("into", folder))
     more = {"form": KIND, STATUSES: " ".join(NAMES)}
     waiting: dict[Chunk, tuple[Scene, str, Scene]] = {}
     solve = partial(solve_parts, laws, executor=executor)
@@ -89,7 +89,7 @@ def swept_into(
                 taken = scene.take(slice(*place))
                 if not isinstance(scenes, Scene):  # the index in the whole sweep
                     taken = taken.numbered(np.arange(*where))
-                part, mark = Part(where, batches.unvaried(taken), block), fingerprint(taken)
+                part, mark = Part(where, batches.drop_varying(taken), block), fingerprint(taken)
                 if target.holds(part._replace(scene=taken), mark):
                     done += where.size
                     continue

@@ -95,8 +95,8 @@ class ChunkFolder:
             with columns_of(self.found[chunk], self.form, NAMES, about.sums, "into") as content:
                 written = {name: content[name] for name in arrays}
             place = slice(first - chunk.first, stop - chunk.first)
-            kept = Finished(_named(written), about.computer).take(place)
-            refuse_other_bits("into", self.folder, fresh, _named(arrays), kept)
+            kept = Finished(_name_columns(written), about.computer).take(place)
+            refuse_other_bits("into", self.folder, fresh, _name_columns(arrays), kept)
 
     def write(self, piece: Piece, scene: str, result: ImpactResult, whole: Scene) -> None:
         """Write the columns of a chunk, those of the ``whole`` batch that it belongs to."""
@@ -159,7 +159,7 @@ def _arrays(
     return arrays, units
 
 
-def _named(arrays: Mapping[str, AnyArray]) -> dict[str, AnyArray]:
+def _name_columns(arrays: Mapping[str, AnyArray]) -> dict[str, AnyArray]:
     """Return columns with statuses by name."""
     return {**arrays, COLUMN_OF_STATUS: np.array(NAMES)[arrays[COLUMN_OF_STATUS]]}
 

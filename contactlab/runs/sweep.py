@@ -71,7 +71,7 @@ def swept(
     size, block = scene.shape[0], block_for(laws, scene)
     step = math.ceil(whole("chunk", block if chunk is None else chunk) / block) * block
     solve = partial(solve_parts, laws, executor=executor)
-    plain = batches.unvaried(scene)
+    plain = batches.drop_varying(scene)
     with _kept(keep, laws, scene, block) as kept:
         finished = [] if kept is None else kept.pieces()
         done = sum(piece.chunk.size for piece in finished)

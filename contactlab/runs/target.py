@@ -28,7 +28,7 @@ NUMBERS_FROM = (PROJECT, "numpy", "scipy")
 ANOTHER = "delete the folder, or name another for this sweep"
 
 
-def checked_folder(argument: str, folder: object) -> Path:
+def check_folder(argument: str, folder: object) -> Path:
     """Return the path of a folder, or refuse what is none."""
     path = Path(of_kind(argument, folder, str, os.PathLike, rule="must be the path of a folder"))
     if os.path.lexists(path) and not os.path.isdir(path):
@@ -47,7 +47,7 @@ def held(
     every piece, so that a piece of another sweep is refused. A folder of another sweep is refused
     here, and one that is in use.
     """
-    path, by_kind = checked_folder(argument, folder), laws.by_kind()
+    path, by_kind = check_folder(argument, folder), laws.by_kind()
     origins = {kind: REGISTRY.describe(law) for kind, law in by_kind.items()}
     about = {
         **{f"code of {name}": checksum for name, checksum in code_of(by_kind).items()},

@@ -125,7 +125,7 @@ def with_materials(tables: Mapping[str, object]) -> dict[str, object]:
     return completed
 
 
-def named_materials(
+def list_materials(
     tables: Mapping[str, object], of: Iterable[str] = BODY_SECTIONS
 ) -> tuple[str, ...]:
     """Return the names of materials in the tables ``of`` bodies, each once."""

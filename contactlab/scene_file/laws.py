@@ -88,7 +88,7 @@ class LawChoice:
         kept = {key: value for key, value in self.options.items() if key != kind}
         return attrs.evolve(self, **{kind: None}, options=kept)
 
-    def restituted(self, restitution: object) -> LawChoice:
+    def with_restitution(self, restitution: object) -> LawChoice:
         """Return the choice with the law of a restitution, one loss for pressure and shear.
 
         Parameters
@@ -124,7 +124,7 @@ class LawChoice:
             range; options of laws that are not chosen are checked too. If a scene that was read
             without ``allow_code`` names a law in a file or in a module.
         """
-        choice = self.resolved()
+        choice = self.resolve()
         for name, options in self.options.items():
             if name not in KINDS:  # check options of laws that are not chosen too
                 REGISTRY.create(name, **options)
@@ -133,7 +133,7 @@ class LawChoice:
         composition.check(laws)
         return Simulation.of(laws)
 
-    def resolved(self) -> LawChoice:
+    def resolve(self) -> LawChoice:
         """Return the choice with every law named."""
         choice = attrs.evolve(self, normal=self.normal or composition.DEFAULT_NORMAL)
         made = [choice.made("normal")]
@@ -145,16 +145,16 @@ class LawChoice:
             made.append(choice.made(kind))
         return choice
 
-    def suited_to(self, scene: Scene) -> LawChoice:
+    def suit_to(self, scene: Scene) -> LawChoice:
         """Return the choice with every law named, as those that answer a scene."""
-        choice = self.resolved()
+        choice = self.resolve()
         laws = self.simulation().laws
         for kind, used in ways(laws, scene)[-1].laws.by_kind().items():
             if used is not getattr(laws, kind):
                 choice = choice.choose(**{kind: REGISTRY.short_name(used)})
         return choice
 
-    def suited(self) -> LawChoice:
+    def suit(self) -> LawChoice:
         """Return the choice, without its integrator if that does not run the tangential law."""
         if self.integrator is None:
             return self
@@ -162,14 +162,14 @@ class LawChoice:
             self,
             integrator=None,
             options={key: value for key, value in self.options.items() if key != "integrator"},
-        ).resolved()
+        ).resolve()
         own = attrs.evolve(default, integrator=self.integrator, options=self.options)
         laws = (own.made("normal"), own.made("tangential"), own.made("integrator"))
         return default if composition.misfit(*laws) else own
 
     def _list_options(self) -> list[str]:
         """Return the options of the three laws: ``"tangential.annuli"``."""
-        choice = self.resolved()
+        choice = self.resolve()
         laws = {kind: type(choice.made(kind)) for kind in KINDS}
         return [f"{kind}.{name}" for kind in KINDS for name in signature(laws[kind]).parameters]
 
@@ -286,11 +286,11 @@ def read_laws(content: object, folder: Path, *, allow_code: bool) -> LawChoice:
     if table.has("restitution"):
         value = table.content["restitution"]
         if isinstance(value, str | list):
-            choice = table.make(choice.restituted, restitution=value)
+            choice = table.make(choice.with_restitution, restitution=value)
         else:
             remedy = f"or {OF_SPEED_IN_TOML}; leave it out for 1"
             number = table.number("restitution", remedy=remedy)
-            choice = choice.restituted(number)
+            choice = choice.with_restitution(number)
     if not table.has("options"):
         return choice
     raw = table.content["options"]

@@ -26,7 +26,7 @@ from contactlab.scene_file.entries import (
     POLAR,
     entry_path,
     is_option,
-    named_materials,
+    list_materials,
     replace_entry,
     with_materials,
     without_rivals,
@@ -182,7 +182,7 @@ def read_scene(
             varied=sweep.varied,
             laws=laws,
             measured=read_measured(document.get("measured", [])),
-            materials=named_materials(document),
+            materials=list_materials(document),
             defaulted=tuple(
                 name
                 for name in defaults or ()
@@ -220,7 +220,7 @@ def _of_gathering(
         varied=varied,
         laws=read_laws(document.get("simulation", {}), file.parent, allow_code=allow_code),
         measured=read_measured(document.get("measured", [])),
-        materials=named_materials(bodies, of=bodies),
+        materials=list_materials(bodies, of=bodies),
         tables=document,
     )
 

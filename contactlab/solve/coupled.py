@@ -101,7 +101,7 @@ class Coupled(Way):
             return Motion.nothing(
                 scene.shape, normal.status, normal.detail, axes=kinetics.slip_axes(scene)
             )
-        motion = self._ended_as_alone(self._answer(normal, recorder), normal)
+        motion = self._end_as_alone(self._answer(normal, recorder), normal)
         if recorder is None and kinetics.batch_of(scene) not in ((), (1,)):
             return self._apart(motion)
         return motion
@@ -129,7 +129,7 @@ class Coupled(Way):
                 raise faults.LawFaultError(Status.MALFORMED, faults.sentence(blamed, told, 1))
             return Motion.combine(normal, moved, kinetics.slip_axes(scene))
 
-    def _ended_as_alone(self, motion: Motion, normal: NormalMotion) -> Motion:
+    def _end_as_alone(self, motion: Motion, normal: NormalMotion) -> Motion:
         """Return a motion whose impacts without an end have the status of the approach alone."""
         ended = separates(normal)
         if every(ended):

@@ -136,7 +136,7 @@ class _Words:
         """Return a clause about all gatherings."""
         return Clause(text, np.ones(self.gathering.shape, dtype=bool), values or None)
 
-    def _numbered(self, numbers: Array) -> Any:
+    def _shape_numbers(self, numbers: Array) -> Any:
         """Return numbers of gatherings in the batch shape, one as a float."""
         shaped = np.asarray(numbers, dtype=float).reshape(self.gathering.shape)
         return shaped if shaped.ndim else float(shaped)
@@ -158,17 +158,17 @@ class _Words:
             found = able.resolving.resolutions(self.scene, law.normal, law.integrator)
             said += [] if found is None else [self._everywhere(f"resolution: {found.reason}")]
         closed = [k for k in range(open_.shape[-1]) if not open_[:, k].any()]
-        said.append(self._everywhere(f"contacts: {_named(closed)} closed at the start"))
+        said.append(self._everywhere(f"contacts: {_name_contacts(closed)} closed at the start"))
         for k in np.flatnonzero(open_.any(axis=0)).tolist():
             share = plan.gap_over_depth[..., k]
             how = "while others are closed"
             if np.all((share == 0.0) | (share >= IN_SEQUENCE)):
                 how = "one after another"
             text = f"contacts: touches[{k}] open by {{:.3g}} m, {{:.3g}} of its depth: {how}"
-            gap = self._numbered(links.gap[:, k])
+            gap = self._shape_numbers(links.gap[:, k])
             deep = share if np.ndim(share) else float(share)
             said.append(Clause(text, self._where(open_[:, k]), (gap, deep)))
-        ratio = self._numbered(self._ratio())
+        ratio = self._shape_numbers(self._ratio())
         said.append(self._everywhere("contact times: the longest {:.3g} of the shortest", ratio))
         if self.motion is not None and self.motion.contacts is not None:
             never = self.motion.contacts.touches == 0.0
@@ -254,7 +254,7 @@ class _Words:
                     f"{{:.2g}}; they feel one another through the body, by about {ACTS:g} of that "
                     "of the approach (model)"
                 )
-                yield Clause(text, self._where(most > NEAR), (self._numbered(most),))
+                yield Clause(text, self._where(most > NEAR), (self._shape_numbers(most),))
 
     def _name(self, place: int) -> str:
         """Return name or place of a body."""
@@ -270,7 +270,7 @@ class _Words:
                 "geometry: bodies move by {:.2g} of the least radius meanwhile, and normals and "
                 "contacts stay fixed (model)"
             )
-            yield Clause(text, self._where(moved > MOVES), (self._numbered(moved),))
+            yield Clause(text, self._where(moved > MOVES), (self._shape_numbers(moved),))
 
     def _weights(self) -> Iterator[Clause]:
         """Yield the caution of a force that no loaded contact carries."""
@@ -291,7 +291,7 @@ class _Words:
                     f"force on bodies[{self._name(place)}]: g T/v1 = {{:.2g}}, and no contact that "
                     "carries it is loaded: Touch(..., loaded=True) where the body lies (model)"
                 )
-                yield Clause(text, self._where(share > WEIGHT), (self._numbered(share),))
+                yield Clause(text, self._where(share > WEIGHT), (self._shape_numbers(share),))
 
     def _turning(self) -> Iterator[Clause]:
         """Yield the caution of spin about a normal, whose friction the springs leave out."""
@@ -304,7 +304,7 @@ class _Words:
                     f"spin about the normal of touches[{k}]: its friction is left out, rim speed "
                     "R omega = {:.2g} of v1 (model)"
                 )
-                yield Clause(text, self._where(turns), (self._numbered(about / self.speed),))
+                yield Clause(text, self._where(turns), (self._shape_numbers(about / self.speed),))
 
     def _of_laws(self) -> Iterator[Clause]:
         """Yield the doubts of the laws about each contact; the same of several are one."""
@@ -320,10 +320,10 @@ class _Words:
             for text in dict.fromkeys(told):
                 said.setdefault(text, []).append(k)
         for text, numbers in said.items():
-            yield self._everywhere(f"{_named(numbers)}: {text}")
+            yield self._everywhere(f"{_name_contacts(numbers)}: {text}")
 
 
-def _named(numbers: list[int]) -> str:
+def _name_contacts(numbers: list[int]) -> str:
     """Return contacts in words."""
     if not numbers:
         return "none"

@@ -30,19 +30,21 @@ def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
     Where no step can follow it, the motion is that of the ends alone.
     """
     closed = law if isinstance(law, ClosedFormNormalLaw) else None
-    return _closed(closed, scene) if closed is not None else _open(law, scene)
+    return _solve_closed_form(closed, scene) if closed is not None else _open(law, scene)
 
 
 def normal_or_failed(laws: Laws, scene: Scene) -> NormalMotion:
     """Return the normal motion of ``scene``; all its values are NaN if the law fails."""
     closed = laws.capability.closed
     try:
-        return _closed(closed, scene) if closed is not None else _open(laws.normal, scene)
+        return (
+            _solve_closed_form(closed, scene) if closed is not None else _open(laws.normal, scene)
+        )
     except faults.LawFaultError as fault:
         return FailedMotion(laws.normal, scene, fault.status, fault.detail)
 
 
-def _closed(law: ClosedFormNormalLaw, scene: Scene) -> NormalMotion:
+def _solve_closed_form(law: ClosedFormNormalLaw, scene: Scene) -> NormalMotion:
     """Return the motion in closed form."""
     try:
         motion = law.motion(scene)
@@ -101,7 +103,7 @@ def _common(law: NormalLaw, scene: Scene) -> MotionTable | None:
         return None
     try:
         with np.errstate(all="ignore"):
-            solved = _solve(law, batches.unnumbered(single))
+            solved = _solve(law, batches.drop_index(single))
     except faults.LawFaultError as fault:
         if isinstance(fault.__cause__, NoIndexError):
             return None

@@ -28,9 +28,9 @@ def ways(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
         if part.inverse_mass is None and laws.capability.unfollowed is None:
             found.append(Decoupled(where, part, laws))
         elif part.inverse_mass is None:
-            from contactlab.solve.unfollowed import followed_apart  # most laws need none
+            from contactlab.solve.unfollowed import follow_apart  # most laws need none
 
-            found += [Decoupled(*each, laws) for each in followed_apart(laws, where, part)]
+            found += [Decoupled(*each, laws) for each in follow_apart(laws, where, part)]
         else:
             from contactlab.solve.coupled import Coupled  # spheres need none of this
 

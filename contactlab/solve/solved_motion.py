@@ -103,7 +103,7 @@ class MotionTable:
         taken = {name: getattr(self, name)[np.ravel(index)] for name in columns}
         return attrs.evolve(self, shape=np.shape(index), **taken)
 
-    def shaped(self, values: Array) -> Any:
+    def restore_shape(self, values: Array) -> Any:
         """Return values of shape (items,) in the shape of the batch, or as a plain number."""
         return shape_as(values, self.shape)
 
@@ -181,17 +181,17 @@ class SolvedMotion(NormalMotion):
         self.law, self.scene, self.table, self.units = law, scene, table, units
         self.alike = not table.shape
         unit = Units() if units is None else units
-        self.duration = table.shaped(table.ends * table.unit) * unit.time
-        self.final_rate = table.shaped(table.last[:, RATE]) * unit.rate
-        self.total_load_impulse = table.shaped(table.last[:, LOAD_IMPULSE]) * (
+        self.duration = table.restore_shape(table.ends * table.unit) * unit.time
+        self.final_rate = table.restore_shape(table.last[:, RATE]) * unit.rate
+        self.total_load_impulse = table.restore_shape(table.last[:, LOAD_IMPULSE]) * (
             unit.force * unit.time
         )
-        self.maximum_approach = table.shaped(table.largest[:, APPROACH]) * unit.approach
-        self.maximum_force = table.shaped(table.largest[:, FORCE]) * unit.force
+        self.maximum_approach = table.restore_shape(table.largest[:, APPROACH]) * unit.approach
+        self.maximum_force = table.restore_shape(table.largest[:, FORCE]) * unit.force
         largest = _radius(table.largest[:, RADIUS_SQUARED])
-        self.maximum_radius = table.shaped(largest) * unit.radius
-        self.status = batch.spread_object(table.shaped(table.status), scene.shape)
-        self.detail = batch.spread_object(table.shaped(table.detail), scene.shape)
+        self.maximum_radius = table.restore_shape(largest) * unit.radius
+        self.status = batch.spread_object(table.restore_shape(table.status), scene.shape)
+        self.detail = batch.spread_object(table.restore_shape(table.detail), scene.shape)
 
     @property
     def shared(self) -> dict[Any, Any] | None:

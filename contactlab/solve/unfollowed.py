@@ -21,7 +21,7 @@ from contactlab.registry.registry import REGISTRY
 from contactlab.solve.way import Way
 
 
-def followed_apart(laws: Laws, where: Any, part: Scene) -> list[tuple[Any, Scene]]:
+def follow_apart(laws: Laws, where: Any, part: Scene) -> list[tuple[Any, Scene]]:
     """Return places and scenes of the impacts that no step follows, and of the others.
 
     Numbers that the former do not have are then nowhere beside those of the latter. ``where`` is

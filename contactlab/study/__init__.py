@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from contactlab.numeric.names import imported_on_use
+from contactlab.numeric.names import import_on_use
 
 if TYPE_CHECKING:
     from contactlab.impact.coupling import coupling_shift
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 __all__ = ["SOLID_CHI", "Comparison", "compare", "coupling_shift", "paper_data"]
 
-__getattr__, __dir__ = imported_on_use(
+__getattr__, __dir__ = import_on_use(
     __name__,
     {
         "SOLID_CHI": "study.paper_figures",

@@ -99,7 +99,7 @@ def candidates(laws: LawChoice) -> Candidates:
             if complaint := composition.misfit(normal, chosen.made("tangential")):
                 left_out[label] = complaint
             else:
-                simulations[label] = chosen.suited().simulation()
+                simulations[label] = chosen.suit().simulation()
     return Candidates(simulations, left_out)
 
 

@@ -172,7 +172,7 @@ def list_cases(methods: Sequence[Method], *, quick: bool = False) -> list[Cell]:
     return [case for method in methods for case in all_cases(method, quick=quick)]
 
 
-def expected_time(methods: Sequence[Method], *, quick: bool = False) -> tuple[int, float]:
+def estimate_time(methods: Sequence[Method], *, quick: bool = False) -> tuple[int, float]:
     """Return the number of cases, and about the processor time that they take, in s."""
     listed = list_cases(methods, quick=quick)
     largest = QUICK_LARGEST if quick else LARGEST

@@ -18,7 +18,7 @@ from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.numeric.progress import Count
 from contactlab.registration.bring import sound
-from contactlab.registration.hooks import PluginError, guard, hookimpl, shortened
+from contactlab.registration.hooks import PluginError, guard, hookimpl, shorten
 from contactlab.registration.manager import Told
 from contactlab.registration.names import PROJECT
 from contactlab.registry import composition
@@ -137,7 +137,7 @@ def _of_others(told: Told) -> Finding:
     try:
         with guard(f"{name} of {told.info.distribution}", "raised"):
             found = told.item()
-        rule = f"returned {shortened(found)}, no Finding"
+        rule = f"returned {shorten(found)}, no Finding"
     except PluginError as error:
         found, rule = None, str(error)
     if isinstance(found, Finding):

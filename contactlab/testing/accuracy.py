@@ -11,7 +11,7 @@ from contactlab.contracts import ClosedFormNormalLaw, Integrator, accuracy_of, r
 from contactlab.runs.simulation import Simulation
 from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing.check import apply_if, check, hold, within
-from contactlab.testing.integrators import CHI, march_alone, marched_impact
+from contactlab.testing.integrators import CHI, march_alone, march_impact
 from contactlab.testing.laws import DampedHertz, PressedSpring, Slider, SlidingForEver, Yielding
 from contactlab.testing.load_paths import scene
 from contactlab.testing.ways import at_resolution, fitting
@@ -38,7 +38,7 @@ def order(integrator: Integrator) -> None:
         errors = []
         for steps in LADDER:
             finer = at_resolution(integrator, steps)
-            change = marched_impact(
+            change = march_impact(
                 attrs.evolve(simulation, integrator=finer), 2.0
             ).slip_velocity_change
             errors.append(abs(change / exact - 1.0))
@@ -57,7 +57,7 @@ def controls_error(integrator: Integrator) -> None:
     for simulation in fitting(integrator, (PressedSpring(), SlidingForEver()), "normal.hertz"):
         exact = _exact(simulation, 7.0)
         unit = abs(scene(7.0, CHI).slip_velocity)
-        error = abs(marched_impact(simulation, 7.0).slip_velocity_change - exact) / unit
+        error = abs(march_impact(simulation, 7.0).slip_velocity_change - exact) / unit
         within(error, bound, f"psi2 is {error:.1e} off the exact solution.")
 
 
@@ -67,16 +67,14 @@ def finer_is_better(integrator: Integrator) -> None:
     for simulation in fitting(integrator, (PressedSpring(), SlidingForEver()), "normal.hertz"):
         exact = _exact(simulation, 7.0)
         unit = abs(scene(7.0, CHI).slip_velocity)
-        error = abs(marched_impact(simulation, 7.0).slip_velocity_change - exact) / unit
+        error = abs(march_impact(simulation, 7.0).slip_velocity_change - exact) / unit
         within(error, 0.05, f"psi2 is {error:.1e} off the exact solution.")
         if integrator.resolution is None or accuracy_of(integrator) is not None:
             continue
         value: Any = resolution_of(integrator)
         better = 4 * value if isinstance(value, int) else value / 16.0
         finer = at_resolution(integrator, better)
-        change = marched_impact(
-            attrs.evolve(simulation, integrator=finer), 7.0
-        ).slip_velocity_change
+        change = march_impact(attrs.evolve(simulation, integrator=finer), 7.0).slip_velocity_change
         finer_error = abs(change - exact) / unit
         within(
             finer_error,
@@ -103,7 +101,7 @@ def sliding_impulse_by(integrator: Integrator) -> None:
                 exact = -np.sign(psi1) * 2.0 * CHI * bounce
                 tried += 1
                 error = abs(
-                    impact.psi(marched_impact(simulation, psi1).slip_velocity_change) / exact - 1.0
+                    impact.psi(march_impact(simulation, psi1).slip_velocity_change) / exact - 1.0
                 )
                 within(
                     error,

@@ -25,7 +25,7 @@ from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing.check import NotApplicableError, apply_if, check, hold, within
 from contactlab.testing.impacts import CHI
 from contactlab.testing.integrators import CHI as SOLID
-from contactlab.testing.integrators import marched_impact
+from contactlab.testing.integrators import march_impact
 from contactlab.testing.load_paths import scene
 from contactlab.testing.ways import Way, at_resolution, sound, ways, whole_answers
 
@@ -153,9 +153,9 @@ def resolution_told(integrator: Integrator) -> None:
         stated = float(np.max(integrator.resolution_for(impact, normal, simulation.tangential)))
         value = type(resolution_of(integrator))(stated)
         asked = at_resolution(integrator, value)
-        change = marched_impact(simulation, 2.0).slip_velocity_change
+        change = march_impact(simulation, 2.0).slip_velocity_change
         as_stated = attrs.evolve(simulation, integrator=asked)
-        asked_change = marched_impact(as_stated, 2.0).slip_velocity_change
+        asked_change = march_impact(as_stated, 2.0).slip_velocity_change
         difference = abs(float(np.asarray(asked_change)) / float(np.asarray(change)) - 1.0)
         within(
             difference,

@@ -13,7 +13,7 @@ from contactlab.testing.faulty_laws import (
     UnsettledSpring,
     Unyielding,
 )
-from contactlab.testing.integrators import CHI, marched_impact
+from contactlab.testing.integrators import CHI, march_impact
 from contactlab.testing.laws import PressedSpring, Slider, SlidingForEver
 from contactlab.testing.load_paths import scene
 from contactlab.testing.ways import fitting
@@ -65,7 +65,7 @@ def bounded(integrator: Integrator) -> None:
         name = type(simulation.tangential).__name__
         endless = f"{name} is called without end."
         try:
-            motion = marched_impact(simulation, 2.0)
+            motion = march_impact(simulation, 2.0)
         except TooManyCallsError:
             raise CheckFailedError(endless) from None
         hold(TooManyCallsError.__name__ not in motion.detail, endless)

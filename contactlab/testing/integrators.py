@@ -22,7 +22,7 @@ from contactlab.testing.ways import sound
 CHI = 1.4411764706
 
 
-def marched_impact(
+def march_impact(
     simulation: Simulation, psi1: Real, recorder: Observer | None = None
 ) -> TangentialMotion:
     """Return the motion of an impact by the integrator alone, without whole-impact answers."""
@@ -42,7 +42,7 @@ def march_alone(
 def ends_well(integrator: Integrator) -> None:
     """An impact under a sound law ends with success and finite numbers (Integrator, 2)."""
     for simulation in sound(integrator):
-        motion = marched_impact(simulation, 2.0)
+        motion = march_impact(simulation, 2.0)
         hold(
             isinstance(motion, TangentialMotion),
             f"The integrator returns a {type(motion).__name__}, not a TangentialMotion.",
@@ -70,8 +70,8 @@ def observer_changes_nothing(integrator: Integrator) -> None:
     """An observer is called at increasing times, and changes no result (Integrator, 2)."""
     for simulation in sound(integrator):
         recorder = Recorder((), with_fields=True)
-        alone = marched_impact(simulation, 2.0)
-        watched = marched_impact(simulation, 2.0, recorder=recorder)
+        alone = march_impact(simulation, 2.0)
+        watched = march_impact(simulation, 2.0, recorder=recorder)
         for name in ENTRIES:
             hold(
                 same(getattr(alone, name), getattr(watched, name)),

@@ -55,7 +55,7 @@ def motion_obeys_newton(law: ClosedFormNormalLaw) -> None:
     per_time = motion.maximum_approach / impact.normal_speed
     time_rate, width = np.asarray(motion.scaled(phases).time_rate) * per_time, np.diff(phases)
 
-    def gathered(slope: Array) -> Array:
+    def gather(slope: Array) -> Array:
         return np.concatenate(([0.0], np.cumsum(0.5 * (slope[1:] + slope[:-1]) * width)))
 
     unit = 2.0 * impact.normal_speed
@@ -70,7 +70,7 @@ def motion_obeys_newton(law: ClosedFormNormalLaw) -> None:
         ("time", np.asarray(time), time_rate, motion.duration),
         ("load impulse", impulse, contact.friction_load * time_rate, motion.total_load_impulse),
     ):
-        gap = float(np.max(np.abs(change - gathered(slope)))) / float(scale)
+        gap = float(np.max(np.abs(change - gather(slope)))) / float(scale)
         within(gap, 1e-5, f"The {name} is {gap:.1e} off what its derivative adds up to.")
     for name, last, total in (
         ("duration", time[-1], motion.duration),

@@ -64,10 +64,10 @@ def checks_for(law: Law | str) -> list[Check]:
 
 def applies(law: Law, check: Check) -> bool:
     """Return whether ``check`` applies to ``law`` by its claim; see ``Check.claim``."""
-    return check.claim is None or check.claim in claims(law) or check.name in expected_to_fail(law)
+    return check.claim is None or check.claim in claims(law) or check.name in expects_to_fail(law)
 
 
-def expected_to_fail(law: Law) -> dict[str, str]:
+def expects_to_fail(law: Law) -> dict[str, str]:
     """Return the checks that ``law`` expects to fail, with its reasons."""
     return dict(getattr(law, "expected_failures", {}))
 
@@ -84,7 +84,7 @@ def outcome(law: Law, check: Check, *, seconds: float = SECONDS) -> Outcome:
     """
     if not applies(law, check):
         return Outcome(check.name, Verdict.NOT_CLAIMED, f"The law does not offer {check.claim!r}.")
-    reason = expected_to_fail(law).get(check.name)
+    reason = expects_to_fail(law).get(check.name)
     try:
         check(law, seconds=seconds)
     except CheckStoppedError as stopped:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from contactlab.contracts import Law
-from contactlab.testing.outcomes import applies, checks_for, expected_to_fail, made_law
+from contactlab.testing.outcomes import applies, checks_for, expects_to_fail, made_law
 
 
 def parametrize_with_checks(laws: Sequence[Law | str]) -> Any:
@@ -34,7 +34,7 @@ def parametrize_with_checks(laws: Sequence[Law | str]) -> Any:
         for check in checks_for(law):
             if not applies(law, check):
                 continue
-            reason = expected_to_fail(law).get(check.name)
+            reason = expects_to_fail(law).get(check.name)
             marks = []
             if reason is not None:
                 marks = [pytest.mark.xfail(reason=reason, strict=True)]

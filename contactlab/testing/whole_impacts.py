@@ -52,7 +52,7 @@ class AnsweredImpact(NamedTuple):
         return f"psi1 = {self.psi1}, chi = {self.chi:.3g}, {self.answer.reason!r}"
 
 
-def answered_impacts(law: TangentialLaw) -> Iterator[AnsweredImpact]:
+def iterate_answers(law: TangentialLaw) -> Iterator[AnsweredImpact]:
     """Iterate over the impacts that have whole-impact answers."""
     normal_law = REGISTRY.create("normal.hertz")
     for chi, psi1 in itertools.product(CHI, ANGLES):
@@ -70,7 +70,7 @@ def whole_impacts(law: TangentialLaw) -> None:
     """
     marches = [way for way in ways(law) if way.integrator is not None]
     apply_if(marches, "No integrator can march it.")
-    answered = [each for each in answered_impacts(law) if each.psi1 != 0.0]
+    answered = [each for each in iterate_answers(law) if each.psi1 != 0.0]
     apply_if(answered, "The law has no whole-impact answer for an impact with slip.")
     for way, each in itertools.product(marches, answered):
         psi1, chi, impact, _, answer = each
@@ -127,7 +127,7 @@ def whole_impact_form(law: TangentialLaw) -> None:
     """
     from scipy.integrate import trapezoid  # help and lists import this file and need no scipy
 
-    answered = list(answered_impacts(law))
+    answered = list(iterate_answers(law))
     apply_if(answered, "The law has no whole-impact answer.")
     for each in answered:
         impact, answer = each.scene, each.answer

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from contactlab.numeric.names import imported_on_use
+from contactlab.numeric.names import import_on_use
 
 if TYPE_CHECKING:
     from contactlab_fit.beside import with_measurements
@@ -38,6 +38,6 @@ MODULES = {
     "read_measurements": "measurements",
     "with_measurements": "beside",
 }
-__getattr__, __dir__ = imported_on_use(
+__getattr__, __dir__ = import_on_use(
     __name__, {name: f"contactlab_fit.{module}" for name, module in MODULES.items()}
 )

@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any, Unpack
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.scene import add_allow_code, restituted
+from contactlab.cli.scene import add_allow_code, with_restitution
 from contactlab.numeric.checks import whole
 from contactlab.outcome.files import distinct
 from contactlab.registration.hooks import Execute, hookimpl
@@ -263,7 +263,7 @@ def _simulations(arguments: argparse.Namespace, file: SceneFile) -> dict[str, Si
     if arguments.restitution is not None:
         if RESTITUTION in arguments.fit:
             raise ValueError(f"--restitution: is fitted too, by --fit {RESTITUTION}; leave one out")
-        chosen = restituted(arguments, file.laws)
+        chosen = with_restitution(arguments, file.laws)
         normals, own = [chosen.normal], None
         settings |= {f"normal.{k}": v for k, v in chosen.options.get("normal", {}).items()}
     if normals == [None] and own is None:

@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 
 from contactlab.impact.cautions import OUTSIDE
-from contactlab.impact.coupling import LEFT_OUT, coupling_measured, coupling_shift
+from contactlab.impact.coupling import LEFT_OUT, coupling_shift, measures_coupling
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.columns import QUANTITIES, foreign
 from contactlab_fit import outliers, patterns, plausible, tabulated
@@ -132,7 +132,7 @@ def cautions(problem: Problem, values: Array, *, of_any_friction: bool = False) 
     if theirs := [name for name in problem.measured if name in foreign()]:
         names = ", ".join(theirs)
         return [*said, f"effect of the unlike materials on the values: not known for {names}"]
-    if not np.all(coupling_measured(result.scene)):
+    if not np.all(measures_coupling(result.scene)):
         return [
             *said,
             f"effect of the unlike materials on the values: {OUTSIDE}",

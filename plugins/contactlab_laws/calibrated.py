@@ -11,7 +11,7 @@ from contactlab.numeric.taken import Taken
 OF_LOSS = frozenset({"viscous", "similar"})
 
 
-def waived_of_loss(restitution: object, loses: bool) -> frozenset[str]:
+def waives_of_loss(restitution: object, loses: bool) -> frozenset[str]:
     """Return the words of ``OF_LOSS`` that do not hold."""
     words = ("viscous", loses), ("similar", isinstance(restitution, float))
     return frozenset(word for word, holds in words if not holds)

@@ -14,7 +14,7 @@ from contactlab.impact.hertz import hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, quantity
 from contactlab.numeric.types import Real
-from contactlab_laws.calibrated import OF_LOSS, one_of_two, root, waived_of_loss
+from contactlab_laws.calibrated import OF_LOSS, one_of_two, root, waives_of_loss
 
 
 @lru_cache(maxsize=256)
@@ -71,7 +71,7 @@ class HuntCrossley(NormalLaw):
     def waives(self) -> frozenset[str]:
         """Return the words of a loss that does not hold."""
         loses = self.restitution not in (None, 1.0) or bool(self.damping)
-        return waived_of_loss(self.restitution, loses)
+        return waives_of_loss(self.restitution, loses)
 
     def start(self, scene: Scene) -> Parts:
         """Return stiffness and damping of the pair; the law has no memory."""

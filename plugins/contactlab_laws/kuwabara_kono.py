@@ -29,12 +29,12 @@ def rebound(number: float) -> float:
         u, rate = state
         return [rate, -2.5 * u * u * (u * u + 1.5 * number * rate)]
 
-    def released(_: float, state: Sequence[float] | Array) -> float:
+    def release(_: float, state: Sequence[float] | Array) -> float:
         return float(state[0] - max(-1.5 * number * state[1], 0.0) ** 0.5)
 
-    released.terminal, released.direction = True, -1  # type: ignore[attr-defined]
+    release.terminal, release.direction = True, -1  # type: ignore[attr-defined]
     motion = solve_ivp(
-        slope, (0.0, np.inf), [0.0, 1.0], method="DOP853", events=released,
+        slope, (0.0, np.inf), [0.0, 1.0], method="DOP853", events=release,
         rtol=TOLERANCE, atol=TOLERANCE,
     )  # fmt: skip
     return -float(motion.y[1, -1])

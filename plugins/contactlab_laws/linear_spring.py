@@ -27,7 +27,7 @@ from contactlab_laws.mindlin import (
     critical_share,
     cut,
     in_plane,
-    moved_in_plane,
+    move_in_plane,
     with_dashpot,
 )
 
@@ -84,11 +84,11 @@ class LinearSpring(CausalTangentialLaw):
         """Return the bound at the fewest steps; without a dashpot the books close to rounding."""
         return COARSEST_BOOKS
 
-    def _expected_failures(self) -> Mapping[str, str]:
+    def _list_failures(self) -> Mapping[str, str]:
         """Return the checks that a dashpot fails, if there is one."""
         return DAMPED if self.damping else {}
 
-    expected_failures: ClassVar[Any] = property(_expected_failures)
+    expected_failures: ClassVar[Any] = property(_list_failures)
 
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return k_t in N/m."""
@@ -131,7 +131,7 @@ class LinearSpring(CausalTangentialLaw):
     ) -> tuple[TangentialResponse, Any]:
         """Return the force, and the friction work: the work that the spring does not store."""
         if isinstance(state, InPlane):
-            return moved_in_plane(self, state, increment, before, after)
+            return move_in_plane(self, state, increment, before, after)
         limit = state.friction_coefficient * after.friction_load
         trial = state.spring + state.stiffness * increment.displacement
         spring = force = cut(trial, limit)

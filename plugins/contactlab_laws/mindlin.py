@@ -128,7 +128,7 @@ def in_plane(law: SteppedTangentialLaw, scene: Scene, normal: NormalMotion) -> I
     return InPlane(own._replace(**dict.fromkeys(names, zero)), scene.shape)
 
 
-def moved_in_plane(
+def move_in_plane(
     law: SteppedTangentialLaw,
     state: InPlane,
     increment: Increment,
@@ -212,13 +212,13 @@ class MindlinCap(CausalTangentialLaw):
     stiffness_factor: float = quantity("1", rule=POSITIVE, default=1.0)
     damping: float = quantity("1", rule=NON_NEGATIVE, default=0.0)
 
-    def _expected_failures(self) -> Mapping[str, str]:
+    def _list_failures(self) -> Mapping[str, str]:
         """Return the checks that this form fails by its nature, with the path that shows it."""
         passed = TAKEN if self.damping else SOFTER if self.stiffness_factor < 1.0 else frozenset()
         failed = {name: why for name, why in FAILURES[self.form].items() if name not in passed}
         return {**failed, **(DAMPED if self.damping else {})}
 
-    expected_failures: ClassVar[Any] = property(_expected_failures)
+    expected_failures: ClassVar[Any] = property(_list_failures)
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of every law, of partial slip, and of energy that the form makes."""
@@ -294,7 +294,7 @@ class MindlinCap(CausalTangentialLaw):
     ) -> tuple[TangentialResponse, Any]:
         """Return the force after the step, and the work of the mean force on the slip."""
         if isinstance(state, InPlane):
-            return moved_in_plane(self, state, increment, before, after)
+            return move_in_plane(self, state, increment, before, after)
         stiffness: Real = state.modulus * after.radius
         cap = state.friction_coefficient * after.friction_load
         # x + (x == 0) divides without a branch and without a warning, one impact and many alike

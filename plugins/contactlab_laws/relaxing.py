@@ -14,7 +14,7 @@ from contactlab.impact.hertz import hertz_scales, hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, quantity
 from contactlab.numeric.types import Either, Real
-from contactlab_laws.calibrated import OF_LOSS, one_of_two, waived_of_loss
+from contactlab_laws.calibrated import OF_LOSS, one_of_two, waives_of_loss
 
 
 class Parts(NamedTuple):
@@ -53,7 +53,7 @@ class Relaxing(NormalLaw):
 
     def waives(self) -> frozenset[str]:
         """Return the words of a loss that does not hold."""
-        return waived_of_loss(self.restitution, self.loses)
+        return waives_of_loss(self.restitution, self.loses)
 
     def restitution_in(self, scene: Scene) -> Real | None:
         """Return e of each impact, where no relaxation time is given."""

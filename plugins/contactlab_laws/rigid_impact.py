@@ -73,7 +73,7 @@ class _Books:
 
     def __init__(self, rate: float, e: float) -> None:
         self.rate, self.part = rate, e * e
-        self.pressed = self.returned = 0.0
+        self.pressed = self.restore = 0.0
         self.work = 0.0
 
     def follow(self, fall: float, until: float) -> float:
@@ -87,19 +87,19 @@ class _Books:
             if zero > until:
                 return until
             self.rate = 0.0
-        owed = self.part * self.pressed - self.returned
+        owed = self.part * self.pressed - self.restore
         # -V grows from r as r + fall p: r p + fall p²/2 = owed
         r = -self.rate
         more = (math.sqrt(r * r + 2.0 * fall * owed) - r) / fall
         more = min(more, until - impulse)
-        self.returned += more * (r + 0.5 * fall * more)
+        self.restore += more * (r + 0.5 * fall * more)
         self.rate -= fall * more
         return impulse + more if impulse + more < until else until
 
     @property
     def loss(self) -> float:
         """Work of the normal impulse that was not returned."""
-        return self.pressed - self.returned
+        return self.pressed - self.restore
 
 
 def _spatial(inverse: Array, before: Array, mu: float, e: float) -> tuple[Array, float, float]:
@@ -121,16 +121,16 @@ def _spatial(inverse: Array, before: Array, mu: float, e: float) -> tuple[Array,
         drag = W_nt + W_tt @ ratio
         return np.array([-(W[0, 0] + W_nt @ ratio), *-drag, y[0], ratio @ y[1:3]])
 
-    def compressed(_: float, y: Array) -> float:
+    def compress(_: float, y: Array) -> float:
         return float(y[0]) if pressed != pressed else 1.0
 
-    def returned(_: float, y: Array) -> float:
+    def restore(_: float, y: Array) -> float:
         return float(y[3] - (1.0 - e * e) * pressed) if pressed == pressed else 1.0
 
-    def stopped(_: float, y: Array) -> float:
+    def stop_slip(_: float, y: Array) -> float:
         return 1.0 if stuck else math.hypot(y[1], y[2]) - STOPPED * scale
 
-    events = [compressed, returned, stopped]
+    events = [compress, restore, stop_slip]
     for event in events:
         event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]
     reach = 1e3 * scale / float(np.linalg.eigvalsh(W)[0])

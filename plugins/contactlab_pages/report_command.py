@@ -15,7 +15,7 @@ from pathlib import Path
 import attrs
 
 from contactlab.cli import arguments as shared
-from contactlab.cli.scene import add_file, restituted
+from contactlab.cli.scene import add_file, with_restitution
 from contactlab.outcome.files import written
 from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.registration.names import full_name, short_name
@@ -50,9 +50,9 @@ def execute(arguments: argparse.Namespace) -> int:
     """Run the scene under the laws, write the page and print its path."""
     code = arguments.allow_code
     file = shared.scene_file(arguments, partial(read_scene, arguments.scene, allow_code=code))
-    file = attrs.evolve(file, laws=restituted(arguments, file.laws))
+    file = attrs.evolve(file, laws=with_restitution(arguments, file.laws))
     laws = file.laws.choose(normal=arguments.normal, integrator=arguments.integrator)
-    own = laws.suited_to(file.scene).tangential
+    own = laws.suit_to(file.scene).tangential
     simulations = {str(own): laws.simulation()}
     for name in arguments.tangential or DEFAULT_LAWS:
         name = short_name(full_name("tangential", name))
@@ -60,7 +60,7 @@ def execute(arguments: argparse.Namespace) -> int:
             continue
         try:
             chosen = laws.choose(tangential=name)
-            simulation = (chosen if arguments.integrator else chosen.suited()).simulation()
+            simulation = (chosen if arguments.integrator else chosen.suit()).simulation()
             accept_scene(simulation.laws, file.scene)
             simulations[name] = simulation
         except ValueError:  # a default that does not fit the file's normal law, or its bodies

@@ -14,7 +14,7 @@ from contactlab_laws.tables.restituted_regions import (
     BEYOND_ERROR,
     RESTITUTED_ERROR,
     WIDER_ERROR,
-    restituted_error,
+    bound_restitution_error,
 )
 from tests.collisions.test_collision import STEEL, meeting
 
@@ -90,8 +90,8 @@ def test_each_restitution_of_an_array_is_its_own():
     ],
 )  # fmt: skip
 def test_the_error_that_is_declared_of_a_restitution(chi, restitution, error):
-    assert float(restituted_error(chi, restitution)) == pytest.approx(error)
-    many = restituted_error(np.array([chi, 1.0]), restitution)
+    assert float(bound_restitution_error(chi, restitution)) == pytest.approx(error)
+    many = bound_restitution_error(np.array([chi, 1.0]), restitution)
     assert many[0] == pytest.approx(error)
 
 

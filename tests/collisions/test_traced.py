@@ -41,7 +41,7 @@ def test_the_formulas_with_loss_give_what_the_table_gives():
     psi1, chi = impacts(0.3, 2.5)
     e = np.random.default_rng(6).uniform(0.0, 1.0, psi1.size)
     e[:500], e[500:2500], e[2500:3000] = 0.0, 0.99 + 0.01 * e[500:2500], 1.0
-    tables = traced.restituted_constants()
+    tables = traced.list_constants()
     psi2 = traced.rebound_with_loss(np, tables, psi1, chi, e, joined=True)
     np.testing.assert_allclose(psi2, rebound(psi1, chi, restitution=e), atol=1e-9)
     low = np.minimum(e, 0.99)
@@ -56,7 +56,7 @@ def test_the_formulas_ask_for_the_standard_alone():
     given = [strict.asarray(each) for each in (psi1, chi, e)]
     elastic, lossy = (
         {name: strict.asarray(np.array(each)) for name, each in constants.items()}
-        for constants in (traced.elastic_constants(), traced.restituted_constants())
+        for constants in (traced.elastic_constants(), traced.list_constants())
     )
     psi2 = np.asarray(traced.rebound(strict, elastic, *given[:2]))
     np.testing.assert_allclose(psi2, rebound(psi1, chi), atol=1e-9)
@@ -70,7 +70,7 @@ def test_the_formulas_ask_for_the_standard_alone():
 def test_out_of_the_table_psi2_is_nan(psi1, chi):
     psi1, chi, e = np.array([psi1]), np.array([chi]), np.array([1.0])
     assert np.isnan(traced.rebound(np, traced.elastic_constants(), psi1, chi)).all()
-    tables = traced.restituted_constants()
+    tables = traced.list_constants()
     assert np.isnan(traced.rebound_with_loss(np, tables, psi1, chi, e, joined=True)).all()
 
 

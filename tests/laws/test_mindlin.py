@@ -10,7 +10,7 @@ from contactlab.impact.error_model import range_of
 from contactlab.scene_file import read_scene
 from contactlab.study.scores import DEFAULT_SCENE
 from contactlab.study.stability_references import itself
-from contactlab_laws.march.fixed import needed_steps
+from contactlab_laws.march.fixed import find_least_steps
 from tests.laws.exact_laws import CHI, order, rms, simulation
 
 #: psi2 that compiled codes give, steps converged, chi = 49/34, to three decimals.
@@ -146,7 +146,7 @@ def test_heavy_inertia_within_the_declared_error_from_the_first_steps_admitted(
     """
     law = contactlab.create("tangential.mindlin_cap")
     scene = Scene.nondimensional(psi1=psi1, chi=chi)
-    needed = int(needed_steps(Simulation().normal_motion(scene), law))
+    needed = int(find_least_steps(Simulation().normal_motion(scene), law))
 
     def fixed(steps):
         march = contactlab.create(f"integrator.{integrator}", steps=steps, refine=False)

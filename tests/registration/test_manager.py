@@ -158,7 +158,7 @@ CODE = """
 import sys, contactlab
 {first}
 {second}
-asked = [info.module for info, _ in contactlab.plugin_manager()._asked("contactlab_materials")]
+asked = [info.module for info, _ in contactlab.plugin_manager()._find_hooks("contactlab_materials")]
 print(asked)
 """
 

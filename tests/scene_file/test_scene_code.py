@@ -80,8 +80,8 @@ def test_a_scene_that_names_code_is_read_and_refused(tmp_path, ran, name, where,
     laws = read_scene("scene.toml" if folder else path).laws
     for made in (
         laws.simulation,
-        laws.resolved,
-        laws.suited if kind == "integrator" else laws.resolved,
+        laws.resolve,
+        laws.suit if kind == "integrator" else laws.resolve,
         lambda: laws.set({"tangential.share": 1.0}).simulation(),
         lambda: laws.choose(**{kind: getattr(laws, kind)}).simulation(),
         lambda: Simulation(**{kind: getattr(laws, kind)}),

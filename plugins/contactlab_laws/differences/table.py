@@ -62,12 +62,12 @@ def key(law: Law) -> str:
     return f"{type(law).__module__}.{type(law).__qualname__}".replace(".law.", ".")
 
 
-def _called(law: Law) -> str:
+def _name_normal(law: Law) -> str:
     """Return the name of a normal law of this shelf."""
-    return _named(type(law).__name__)
+    return _name_law(type(law).__name__)
 
 
-def _named(law: str) -> str:
+def _name_law(law: str) -> str:
     """Return the name of a law by that of its class: ``kuwabara_kono`` for ``KuwabaraKono``."""
     return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", law).lower()
 
@@ -97,8 +97,8 @@ def springs(scene: Scene, normal: NormalMotion, *, part: str = "spring") -> tupl
             return ()
         told = f"psi2 is off by up to {_above(size, AROUND)}"
     return (
-        f"model: under {_called(normal.law)} each {part} is limited separately, which violates "
-        f"Coulomb's law locally; {told}. annulus has the right limit.",
+        f"model: under {_name_normal(normal.law)} each {part} is limited separately, which "
+        f"violates Coulomb's law locally; {told}. annulus has the right limit.",
     )
 
 
@@ -154,7 +154,8 @@ def choice(scene: Scene, normal: NormalMotion, *, shared: bool = False) -> tuple
         }
         least, most = (pick(sizes, key=sizes.__getitem__) for pick in (min, max))
         size_text = (
-            f"{_above(sizes[least])} ({_named(least)}) to {_above(sizes[most])} ({_named(most)})"
+            f"{_above(sizes[least])} ({_name_law(least)}) to "
+            f"{_above(sizes[most])} ({_name_law(most)})"
         )
     else:
         size = _largest(e, measured[own], shared)

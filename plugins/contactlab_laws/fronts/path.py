@@ -16,7 +16,7 @@ import numpy as np
 from contactlab_laws.fronts.compiled import OUTGROWN, UNSETTLED
 from contactlab_laws.fronts.phases import DRAWN, GROSS, LOCKED, STICK, first_fall, step
 from contactlab_laws.fronts.series import Laws, Rows, value
-from contactlab_laws.hertz.motion import scaled_motion, velocity_factor
+from contactlab_laws.hertz.motion import scale_motion, velocity_factor
 
 #: Where slip or stick ends with a smaller V, it ends with maximum compression.
 AT_REST = 1e-14
@@ -182,14 +182,14 @@ class Impact:
         self.radius, self.rate, self.margin = radius, last, margin + rise
         self.change, self.work = change, self.work + work
         self.deepest = max(self.deepest, radius)
-        return self._stopped() if stops else None
+        return self._stop() if stops else None
 
     # --------------------------------------------------------------------- what comes after
 
     def _after(self, event: int, front: float) -> Part:
         """Return what comes after slip has stopped, a piece is spent, or the edge met the front."""
         if event == 0:
-            return self._stopped(front)
+            return self._stop(front)
         if event == 1:
             self.memory.pop()
         else:
@@ -213,7 +213,7 @@ class Impact:
             memory[-1] = Drawn(self.sign, outer, piece.length)
         return self._drawn
 
-    def _stopped(self, front: float = 0.0) -> Part:
+    def _stop(self, front: float = 0.0) -> Part:
         """Slip has stopped: its zone locks. In unloading the edge slips on with the other sign."""
         self.margin = 0.0
         self.memory.append(Locked(self.sign, self.lack, front, self.radius))
@@ -279,5 +279,5 @@ def _hertz_time(press: float, left: float, *ends: tuple[float, float]) -> float:
     """Return T between two u and V of gross slip, where V² + ``press`` u⁵ is ``left``."""
     top, speed = (left / press) ** 0.2, math.sqrt(left)
     radius, rate = np.array(ends[0]) / top, np.array(ends[1]) / speed
-    begin, end = scaled_motion(np.arctan2(radius, rate / velocity_factor(radius)))[2]
+    begin, end = scale_motion(np.arctan2(radius, rate / velocity_factor(radius)))[2]
     return float(top * top / speed * (end - begin))

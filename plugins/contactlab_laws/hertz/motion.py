@@ -54,7 +54,7 @@ def rising_time(phase: Array) -> Array:
     return phase * mean
 
 
-def scaled_motion(phase: Array) -> tuple[Array, Array, Array]:
+def scale_motion(phase: Array) -> tuple[Array, Array, Array]:
     """Return u = sqrt(zeta), V and T at ``phase``."""
     u = np.maximum(np.sin(phase), 0.0)
     rising = rising_time(np.minimum(phase, np.pi - phase))
@@ -167,7 +167,7 @@ class HertzMotion(ClosedFormMotion):
     def at(self, phase: Real) -> NormalSample:
         """Return the motion at ``phase`` in [0, pi]."""
         speed = self.scene.normal_speed
-        u, rate, instant = remember(scaled_motion, phase)
+        u, rate, instant = remember(scale_motion, phase)
         instant = instant * (self.maximum_approach / speed)
         approach = u * u * self.maximum_approach
         force = u**3 * self.maximum_force

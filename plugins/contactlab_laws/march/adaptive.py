@@ -29,8 +29,8 @@ from contactlab_laws.march import coupled, coupled_steps
 from contactlab_laws.march.division import midpoints
 from contactlab_laws.march.fixed import (
     MOST_STEPS,
+    find_least_steps,
     in_groups,
-    needed_steps,
     refine_count,
     refusals,
 )
@@ -103,7 +103,7 @@ class Adaptive(CoupledIntegrator):
 
         try:
             with faults.blaming(law):
-                needed = needed_steps(normal, law)
+                needed = find_least_steps(normal, law)
             motion = in_groups(normal, FIRST, needed, refine_count(FIRST, needed), even)
             if observer is not None:
                 _march(normal, law, motion.counters.get("steps", FIRST), observer)
@@ -123,7 +123,7 @@ class Adaptive(CoupledIntegrator):
         The tolerance is that of the velocities over the greatest of them at first touch.
         """
         assert isinstance(tangential, CausalTangentialLaw)
-        needed = coupled_steps.needed_steps(scene, normal, tangential)
+        needed = coupled_steps.find_least_steps(scene, normal, tangential)
         count = np.where(needed <= MOST_STEPS, np.maximum(needed, FIRST), np.inf)
         refused = Status.TOO_FEW_STEPS, refusals(FIRST, needed)
         before = coupled.march_coupled(scene, normal, tangential, count, None, refused, usual=USUAL)
@@ -189,7 +189,7 @@ class Adaptive(CoupledIntegrator):
         last = attrs.evolve(_march(normal, law, count), counters=counters)
         if not _succeeds(last):
             return last
-        error, allowed = self._error(*before, last), self._tolerated_change(normal.scene)
+        error, allowed = self._error(*before, last), self._allow_change(normal.scene)
         unresolved: Any = np.asarray(~(error <= allowed))
         if not unresolved.any():
             return last
@@ -208,7 +208,7 @@ class Adaptive(CoupledIntegrator):
             merged, counters={"steps": finer.counters["steps"], "evaluations": evaluations}
         )
 
-    def _tolerated_change(self, scene: Scene) -> Any:
+    def _allow_change(self, scene: Scene) -> Any:
         """Return the tolerance as a change of slip velocity, in m/s."""
         unit, _, speed = range_of(scene)
         return max(self.tolerance, ROUNDING) * np.maximum(unit, speed)

@@ -29,7 +29,7 @@ DEEPEST = 1e10
 TOO_DEEP = "Friction presses the contact deeper than the steps resolve."
 
 
-def needed_steps(scene: Scene, normal: NormalMotion, law: CausalTangentialLaw) -> Real:
+def find_least_steps(scene: Scene, normal: NormalMotion, law: CausalTangentialLaw) -> Real:
     """Return the least steps in the approach without friction that resolve every oscillation."""
     # omega² <= k_n W_nn + k_t tr W_tt; both stiffnesses grow as the contact radius, and the energy
     # bounds the radius.
@@ -37,7 +37,7 @@ def needed_steps(scene: Scene, normal: NormalMotion, law: CausalTangentialLaw) -
     normal_stiffness = 2.0 * scene.pair.effective_modulus * normal.maximum_radius
     tangential = judges.stiffness_of(law, normal.scene, normal)
     if scene.links is not None:
-        return _needed_by_all(scene, normal, law, (normal_stiffness, tangential))
+        return _find_largest_need(scene, normal, law, (normal_stiffness, tangential))
     inertia = W[..., 1, 1]
     if not scene.planar:
         inertia = inertia + scene.pair.cross_stiffness_ratio * W[..., 2, 2]
@@ -45,7 +45,7 @@ def needed_steps(scene: Scene, normal: NormalMotion, law: CausalTangentialLaw) -
     return resolving(omega * approach_duration(normal) * deepest(scene) ** 0.1, law)
 
 
-def _needed_by_all(
+def _find_largest_need(
     scene: Scene, normal: NormalMotion, law: CausalTangentialLaw, stiffness: tuple[Real, Real]
 ) -> Real:
     """Return the least steps in the shortest contact of a gathering, for each of its contacts."""
@@ -54,10 +54,10 @@ def _needed_by_all(
     sides = pressed, dragged, np.asarray(scene.pair.cross_stiffness_ratio) * dragged
     wide = np.stack([np.broadcast_to(each, scene.shape) for each in sides], axis=-1)
     omega = np.sqrt(scene.links.fastest(wide * (deepest(scene) ** 0.2)[..., None]))
-    return resolving(np.broadcast_to(omega * _counted(scene, normal), scene.shape), law)
+    return resolving(np.broadcast_to(omega * _count_duration(scene, normal), scene.shape), law)
 
 
-def _ended(normal: NormalMotion) -> Mask:
+def _come_to_an_end(normal: NormalMotion) -> Mask:
     """Return the impacts whose approach without friction came to an end."""
     return np.asarray(np.asarray(normal.status, dtype=object) == Status.SUCCESS)
 
@@ -67,14 +67,14 @@ def approach_duration(normal: NormalMotion) -> Real:
 
     An approach that never ends counts as Hertz's impact that is as deep.
     """
-    ended = _ended(normal)
+    ended = _come_to_an_end(normal)
     if np.all(ended):
         return normal.duration
     as_deep = DURATION_CONSTANT * normal.maximum_approach / normal.scene.normal_speed
     return np.where(ended, normal.duration, np.minimum(normal.duration, as_deep))
 
 
-def _counted(scene: Scene, normal: NormalMotion) -> Any:
+def _count_duration(scene: Scene, normal: NormalMotion) -> Any:
     """Return the duration in s that is divided in steps: of a gathering that of the shortest."""
     duration = approach_duration(normal)
     return duration if scene.links is None else np.min(duration, axis=-1, keepdims=True)
@@ -119,9 +119,11 @@ def divide(scene: Scene, normal: NormalMotion, count: Real, usual: float) -> Div
     """Return the steps of impacts, ``count`` and ``usual`` as of ``march_coupled``."""
     longest = LONGEST / np.sqrt(np.maximum(kinetics.free_share(scene), LEAST_SHARE))
     # steps raised for a contact that grows without end are no reason to follow it longer
-    lasting = np.where(_ended(normal), count, np.minimum(count, usual))
+    lasting = np.where(_come_to_an_end(normal), count, np.minimum(count, usual))
     with np.errstate(invalid="ignore"):
-        step = np.where(np.isfinite(count), _counted(scene, normal) / np.asarray(count), math.nan)
+        step = np.where(
+            np.isfinite(count), _count_duration(scene, normal) / np.asarray(count), math.nan
+        )
     most = longest * lasting
     if scene.links is not None:
         most = contacts.most_steps(scene, approach_duration(normal), step)

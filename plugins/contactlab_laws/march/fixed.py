@@ -46,7 +46,7 @@ RAISE = 1.25
 EvenMarch = Callable[[NormalMotion, int], TangentialMotion]
 
 
-def needed_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene | None = None) -> Real:
+def find_least_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene | None = None) -> Real:
     """Return the least steps an impact that resolve omega = sqrt(stiffness/mass), batch shape.
 
     ``scene`` is that of ``normal`` unless friction changes the approach.
@@ -54,7 +54,7 @@ def needed_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene | None =
     assert isinstance(law, SteppedTangentialLaw)
     if scene is not None and scene.inverse_mass is not None:
         assert isinstance(law, CausalTangentialLaw)
-        return np.maximum(coupled_steps.needed_steps(scene, normal, law), float(LEAST_STEPS))
+        return np.maximum(coupled_steps.find_least_steps(scene, normal, law), float(LEAST_STEPS))
     scene = normal.scene
     stiffness: Any = judges.stiffness_of(law, scene, normal)
     if not scene.shape and isinstance(stiffness, float):
@@ -143,17 +143,17 @@ class FixedSteps(CoupledIntegrator):
 
     def resolution_for(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Real:
         """Return how many steps each impact takes."""
-        steps: Real = self._taken(needed_steps(normal, tangential, scene))
+        steps: Real = self._taken(find_least_steps(normal, tangential, scene))
         return steps
 
     def errors(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Errors:
         """Return the errors that the tangential law declares for as many steps."""
         if scene.inverse_mass is None:
-            needed = needed_steps(normal, tangential, scene)
+            needed = find_least_steps(normal, tangential, scene)
             taken = self._taken(needed)
         else:
             assert isinstance(tangential, CausalTangentialLaw)
-            needed = coupled_steps.needed_steps(scene, normal, tangential)
+            needed = coupled_steps.find_least_steps(scene, normal, tangential)
             taken = self._take_coupled(needed)
         declared = tangential.errors(scene, normal, taken)
         if every(followed := np.less_equal(needed, taken) & np.isfinite(taken)):
@@ -169,7 +169,7 @@ class FixedSteps(CoupledIntegrator):
         self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw
     ) -> tuple[str, ...]:
         """Return a sentence if the steps are too few: the steps taken instead, or needed."""
-        needed = needed_steps(normal, tangential, scene)
+        needed = find_least_steps(normal, tangential, scene)
         most = _most(needed)
         if most <= self._steps:
             return ()
@@ -201,7 +201,7 @@ class FixedSteps(CoupledIntegrator):
 
         try:
             with faults.blaming(law):
-                needed = needed_steps(normal, law)
+                needed = find_least_steps(normal, law)
             if observer is not None:
                 needed = float(np.max(needed))
             return in_groups(normal, self._steps, needed, self._taken(needed), even)
@@ -217,7 +217,7 @@ class FixedSteps(CoupledIntegrator):
     ) -> TangentialMotion:
         """Return the motion, ``steps`` counted on the approach without friction."""
         assert isinstance(tangential, CausalTangentialLaw)
-        needed = coupled_steps.needed_steps(scene, normal, tangential)
+        needed = coupled_steps.find_least_steps(scene, normal, tangential)
         taken = self._take_coupled(needed)
         refused = Status.TOO_FEW_STEPS, refusals(self._steps, needed)
         return coupled.march_coupled(

@@ -24,7 +24,7 @@ class Line(NamedTuple):
         """Return numbers of a batch in the arrangement of ``row``."""
         return row(value)
 
-    def shaped(self, force: Vectors, shape: tuple[int, ...]) -> Any:
+    def restore_shape(self, force: Vectors, shape: tuple[int, ...]) -> Any:
         """Return forces in the shape of the batch."""
         return shape_as(force, shape)
 
@@ -72,7 +72,7 @@ class Plane(NamedTuple):
         value = np.asarray(value)
         return row(value[..., 0]) + 1j * row(value[..., 1])
 
-    def shaped(self, force: Vectors, shape: tuple[int, ...]) -> Any:
+    def restore_shape(self, force: Vectors, shape: tuple[int, ...]) -> Any:
         """Return forces in the shape of the batch, (..., 2)."""
         return np.stack((force.real, force.imag), axis=-1).reshape(*shape, 2)
 

@@ -149,9 +149,9 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
         if scene.shape or where:
             reason = "the impact slips from start to end"
             known = (*known, sliding(scene, normal, where=where, reason=reason, stops=False))
-        return (*known, *self._tabulated(scene, normal))
+        return (*known, *self._look_up(scene, normal))
 
-    def _tabulated(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
+    def _look_up(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
         """Return the answer of ``rebound``, where it is asked for or no step can follow."""
         if "kelvin_voigt" not in normal.claims:
             return ()

@@ -151,7 +151,7 @@ def advance(
         state.memory, contact, motion, direction, grows=state.grows, splits=state.splits
     )
     work, loss = (shape_as(each * scales.metres, shape) for each in (work, loss))
-    response = TangentialResponse(direction.shaped(acts, shape), work, True, loss)
+    response = TangentialResponse(direction.restore_shape(acts, shape), work, True, loss)
     return response, state._replace(memory=memory)
 
 

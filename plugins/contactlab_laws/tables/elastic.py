@@ -16,7 +16,7 @@ from contactlab_laws.tables.file import Stored, read
 from contactlab_laws.tables.patches import (
     Patches,
     chebyshev_of_values,
-    compiled_polynomial,
+    compile_polynomial,
     count_terms,
     nodes,
     powers_of_chebyshev,
@@ -159,9 +159,9 @@ def _single() -> Callable[[float, float], float]:
     table = load_table()
     stuck, slip, seam = table.cuts
     cuts = SingleCuts(
-        compiled_polynomial(stuck),
-        (float(slip[0]), compiled_polynomial(slip[1:])),
-        compiled_polynomial(seam),
+        compile_polynomial(stuck),
+        (float(slip[0]), compile_polynomial(slip[1:])),
+        compile_polynomial(seam),
     )
     grid, patches, last = table.grid.tolist(), table.patches.single, SIZE - 1
 

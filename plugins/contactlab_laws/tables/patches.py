@@ -178,7 +178,7 @@ def _compile(arguments: str, *lines: str) -> Any:
     return names["function"]
 
 
-def compiled_polynomial(terms: Array) -> Callable[[float], float]:
+def compile_polynomial(terms: Array) -> Callable[[float], float]:
     """Return the polynomial with ``terms``, lowest first, as a function of a plain float."""
     text = _horner_text(terms[::-1].tolist(), "x")
     function: Callable[[float], float] = _compile("x", f"return {text}")

@@ -66,7 +66,7 @@ def _shifting(origins: Array, count: int) -> Array:
 
 
 @cache
-def restituted_constants() -> dict[str, Any]:
+def list_constants() -> dict[str, Any]:
     """Return the table of restitutions, and the elastic one."""
     table = restituted.load_table()
     return {
@@ -116,7 +116,7 @@ def rebound_with_loss(
     xp : module
         Functions of the array API standard.
     constants : mapping of str to array
-        ``restituted_constants``, as arrays of that library.
+        ``list_constants``, as arrays of that library.
     psi1, chi, e : array
         Numbers of the impacts, arrays of one shape and type.
     joined : bool

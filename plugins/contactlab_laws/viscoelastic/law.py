@@ -21,7 +21,7 @@ from contactlab.numeric.arrays import plain
 from contactlab.numeric.checks import Rule, quantity, refuse
 from contactlab.numeric.types import Either, Real
 from contactlab_laws.relaxing import Parts, Relaxing
-from contactlab_laws.tables.restituted_regions import RESTITUTED_CHI, restituted_error
+from contactlab_laws.tables.restituted_regions import RESTITUTED_CHI, bound_restitution_error
 from contactlab_laws.viscoelastic.relaxation import number_of
 
 #: c above this leaves nothing to rebound with at 30 m/s.
@@ -161,14 +161,14 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
     @staticmethod
     def rebound_error(*impact: Any) -> Any:
         """Return that of the table, and of springs beyond it."""
-        return restituted_error(*impact)
+        return bound_restitution_error(*impact)
 
     @staticmethod
     def table_of_arrays() -> Mapping[str, Any]:
         """Return the table of restitutions, and the elastic one under names of its own."""
         from contactlab_laws.tables import traced  # only for arrays of other libraries
 
-        return traced.restituted_constants()
+        return traced.list_constants()
 
     @staticmethod
     def rebound_of_arrays(xp: Any, tables: Any, *impact: Any, **options: Any) -> Any:

@@ -11,7 +11,7 @@ from contactlab.contracts import WholeImpact, from_change
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
 from contactlab_laws.tables import restituted
-from contactlab_laws.tables.restituted_regions import RESTITUTED_CHI, restituted_error
+from contactlab_laws.tables.restituted_regions import RESTITUTED_CHI, bound_restitution_error
 from contactlab_laws.viscoelastic.rebound import rebound
 
 
@@ -28,7 +28,7 @@ def look_up(scene: Scene, restitution: Real, *, beyond: bool) -> tuple[WholeImpa
         e = np.broadcast_to(e, chi.shape).ravel()
     change = rebound(inside[1].ravel(), inside[0].ravel(), e).reshape(chi.shape)
     change = change - inside[1]
-    error = restituted_error(inside[0], restitution)
+    error = bound_restitution_error(inside[0], restitution)
     known = np.clip(inside[0], *RESTITUTED_CHI)
     shear = restituted.shear_loss(inside[1].ravel(), known.ravel(), e).reshape(chi.shape)
     single = not scene.shape

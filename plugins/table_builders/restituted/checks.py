@@ -10,7 +10,7 @@ import numpy as np
 import contactlab
 from contactlab_laws.tables.file import read
 from contactlab_laws.tables.restituted import SHIPPED, rebound
-from contactlab_laws.tables.restituted_regions import REGIONS, border, restituted_error
+from contactlab_laws.tables.restituted_regions import REGIONS, border, bound_restitution_error
 from contactlab_laws.viscoelastic.batch import extrapolate_steps
 from contactlab_laws.viscoelastic.relaxation import number_of
 
@@ -38,7 +38,9 @@ def verify(count: int, seed: int) -> int:
             psi1 = 1.0 + (border(chi, e) - 1.0) * u if region.slips else u
             found = rebound(psi1, chi, float(e))
             off = np.abs(found - extrapolate_steps(psi1, chi, number_of(float(e)), **GRID))
-            rows += zip(off, restituted_error(chi, e), psi1, chi, np.full(size, e), strict=True)
+            rows += zip(
+                off, bound_restitution_error(chi, e), psi1, chi, np.full(size, e), strict=True
+            )
         worst, bound, *at = max(rows)
         rms = float(np.sqrt(np.mean([row[0] ** 2 for row in rows])))
         kind = "slips first" if region.slips else "sticks"
