@@ -274,3 +274,16 @@ def test_a_missing_section_is_found(value, missing):
 def test_a_scene_shows_a_user_forty_one_members():
     """What solvers alone ask are functions of ``impact.kinetics``."""
     assert len([name for name in dir(contactlab.Scene) if not name.startswith("_")]) <= 41
+
+
+@pytest.mark.parametrize(
+    ("law", "most"), [("SteppedTangentialLaw", 16), ("NormalLaw", 11), ("Integrator", 12)]
+)
+def test_an_author_of_a_law_sees_few_members(law, most):
+    bases = [
+        base
+        for base in getattr(contracts, law).__mro__
+        if base.__module__.startswith("contactlab.contracts")
+    ]
+    names = {name for base in bases for name in (*vars(base), *base.__annotations__)}
+    assert len({name for name in names if not name.startswith("_")}) <= most

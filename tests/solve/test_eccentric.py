@@ -565,23 +565,6 @@ def test_jams_of_bodies_that_hardly_move_end_with_balanced_books_or_a_status(psi
             assert result.status in (Status.UNRESOLVED, Status.UNBALANCED)
 
 
-def test_books_that_do_not_balance_are_a_status():
-    class Pushing(type(create("tangential.linear_spring"))):
-        api_version = 2
-
-        def advance(self, state, increment, before, after):
-            response, new = super().advance(state, increment, before, after)
-            return response._replace(friction_work=3.0 * response.friction_work), new
-
-    simulation = Simulation(tangential=Pushing(), integrator="symplectic")
-    one = simulation.run(rod(-30.0, slip=0.5).scene)
-    assert one.status is Status.UNBALANCED
-    assert math.isnan(one.psi2)
-    many = simulation.run(planar(psi1=[3.0, 1e-9], chi=0.4, lam=0.0, eta=0.0))
-    assert [*many.status] == [Status.UNBALANCED, Status.SUCCESS]
-    assert np.isnan(many.psi2).tolist() == [True, False]
-
-
 def test_a_stopped_sweep_keeps_what_is_done_and_resumes_on_other_workers(tmp_path, monkeypatch):
     monkeypatch.setattr(sweeping, "block_for", lambda *_: 1000)
     scene, folder = random_planar(2500, 15), tmp_path / "kept"
