@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from functools import lru_cache
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 import attrs
 import numpy as np
 
 from contactlab.contracts.law import Law, law_kind
-from contactlab.contracts.parameters import Combined
 from contactlab.impact.cautions import name_bodies
 from contactlab.impact.material import Material
 from contactlab.impact.of_speed import spread_over
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import Rule, real, refuse, some_known, unit_remedy
+from contactlab.numeric.checks import real, refuse, some_known, unit_remedy
 from contactlab.numeric.named import Named, OfImpacts, mark_of, split_heading
 from contactlab.numeric.names import nearest
 from contactlab.numeric.taken import Taken
 from contactlab.numeric.types import Array, Real
 from contactlab.registry.composition import Laws
+from contactlab.registry.read_options import Read, options_read
 from contactlab.registry.registry import REGISTRY
 
 
@@ -32,47 +31,6 @@ class Body(Protocol):
         """The material."""
 
 
-class Read(NamedTuple):
-    """An option of a law that is not one number of its own.
-
-    Attributes
-    ----------
-    name, unit : str
-    rule : Rule
-    per_impact : bool
-        Whether each impact may have its own number.
-    material : Combined or None
-        How it follows from two materials; None if it does not.
-    required : bool
-        Whether the option or the materials must give it.
-    """
-
-    name: str
-    unit: str
-    rule: Rule
-    per_impact: bool
-    material: Combined | None
-    required: bool
-
-
-@lru_cache(maxsize=128)
-def options_read(law_class: type[Law]) -> tuple[Read, ...]:
-    """Return the options of a law that materials give, or that each impact has its own of."""
-    fields: Any = attrs.fields(law_class) if attrs.has(law_class) else ()
-    return tuple(
-        Read(
-            field.name,
-            field.metadata["unit"],
-            field.metadata["rule"],
-            field.metadata.get("per_impact", False),
-            field.metadata.get("material"),
-            field.metadata.get("required", False),
-        )
-        for field in fields
-        if "per_impact" in field.metadata or "material" in field.metadata
-    )
-
-
 def bound(laws: Laws, scene: Scene) -> tuple[Laws, Scene]:
     """Return laws with the options that materials give, and the scene with those of each impact.
 
@@ -81,18 +39,12 @@ def bound(laws: Laws, scene: Scene) -> tuple[Laws, Scene]:
     ValueError
         If an option is given twice or not at all, in another unit, or for other impacts.
     """
-    if not _read_any(type(laws.normal), type(laws.tangential), type(laws.integrator)):
+    if not laws.capability.reads:
         return laws, scene
     used, scene = bound_laws(laws, scene)
     pairs = zip(laws.by_kind().items(), used, strict=True)
     changed = {kind: own for (kind, law), own in pairs if own is not law}
     return laws.changed(**changed) if changed else laws, scene
-
-
-@lru_cache(maxsize=128)
-def _read_any(*classes: type[Law]) -> bool:
-    """Return whether any law has such an option; every run asks."""
-    return any(options_read(each) for each in classes)
 
 
 def bound_laws(laws: Iterable[Law], scene: Scene) -> tuple[list[Any], Scene]:

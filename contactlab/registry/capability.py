@@ -17,6 +17,7 @@ from contactlab.contracts.tangential import (
     shares_loss,
 )
 from contactlab.registry.acceptance import may_refuse
+from contactlab.registry.read_options import options_read
 
 
 class Capability(NamedTuple):
@@ -36,6 +37,8 @@ class Capability(NamedTuple):
         The laws that may refuse a scene.
     unnamed : tuple of Law
         The laws that have a resolution, and nobody named it.
+    reads : bool
+        True if a law has options that materials give, or that each impact has its own of.
     """
 
     closed: ClosedFormNormalLaw | None
@@ -52,6 +55,7 @@ class Capability(NamedTuple):
     shares_loss: bool
     refusing: tuple[Law, ...]
     unnamed: tuple[Law, ...]
+    reads: bool
 
     @classmethod
     def of(cls, normal: NormalLaw, tangential: TangentialLaw, integrator: Integrator) -> Capability:
@@ -72,6 +76,7 @@ class Capability(NamedTuple):
             shares_loss=shares_loss(tangential, normal),
             refusing=tuple(filter(may_refuse, laws)),
             unnamed=tuple(filter(_leaves_resolution, laws)),
+            reads=any(options_read(type(law)) for law in laws),
         )
 
 

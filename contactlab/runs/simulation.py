@@ -193,7 +193,9 @@ class Simulation:
             values, or the history of a batch is requested whose impacts have different instants.
         """
         started, recorder = time.perf_counter(), None
-        laws, scene = bound(self.laws, _scene(scene))
+        laws, scene = self.laws, _scene(scene)
+        if laws.capability.reads:
+            laws, scene = bound(laws, scene)
         if _history(history):
             recorder = Recorder(scene.shape, with_fields=history == "fields")
         ways, flat = solve.accept_scene(laws, scene, as_one=bool(history)), scene

@@ -15,8 +15,9 @@ from contactlab.outcome.motion import Motion
 from contactlab.registration.names import KINDS
 from contactlab.registry import composition
 from contactlab.registry.acceptance import accept
-from contactlab.registry.bound import bound, options_read
+from contactlab.registry.bound import bound
 from contactlab.registry.composition import Laws
+from contactlab.registry.read_options import options_read
 from contactlab.solve.coupled import Coupled
 from contactlab.solve.gathering_plan import MICRON, GatheringPlan, gathering_plan
 

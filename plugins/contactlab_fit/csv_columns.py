@@ -14,7 +14,7 @@ from contactlab.numeric.names import nearest
 from contactlab.numeric.units import CONVERSIONS, SAME_UNITS, factor
 from contactlab.outcome.columns import QUANTITIES, foreign
 from contactlab.outcome.files import content
-from contactlab.registry.bound import options_read
+from contactlab.registry.read_options import options_read
 from contactlab.registry.registry import REGISTRY
 from contactlab.scene_file.entries import ENTRIES, PROPERTY, is_option
 
