@@ -102,7 +102,7 @@ acceptance answer answers batches bodies bound bring capability cautions composi
 decoupled energy error_model failed_motion groups hertz history hooks installed inverse_mass
 kinetics
 law_classes law_words loading manager material motion names normal_motion
-of_speed plan planning registry result scene simulation solve tabled way
+of_speed plan planning read_options registry result scene simulation solve tabled way
 """
 
 
