@@ -164,7 +164,7 @@ def from_change(
     psi2_error: Real,
     reason: str,
     counter: str | None = None,
-    in_shear: Real = 0.0,
+    in_shear: Real | None = None,
 ) -> WholeImpact:
     """Return the answer for impacts of which only the change of psi is known.
 
@@ -185,15 +185,17 @@ def from_change(
         Why these impacts need no march, for the plan.
     counter : str, optional
         Name under which the result counts the impacts.
-    in_shear : float or array
+    in_shear : float or array, optional
         Energy lost in shear, over m_t (mu v1/kappa)²/2.
     """
     unit = scene.friction_coefficient * scene.normal_speed / scene.pair.stiffness_ratio
     change: Any = psi_change * unit
     lost: Any = -scene.pair.tangential_mass * change * (scene.slip_velocity + 0.5 * change)
     lost = chosen(lost < 0.0, 0.0, lost)
-    shear: Any = in_shear * (0.5 * scene.pair.tangential_mass * unit * unit)
-    shear = chosen(shear > lost, lost, shear)
+    shear: Any = 0.0
+    if in_shear is not None:
+        shear = in_shear * unit * (0.5 * scene.pair.tangential_mass * unit)
+        shear = chosen(shear > lost, lost, shear)
     return WholeImpact(
         where=where,
         slip_velocity_change=change,

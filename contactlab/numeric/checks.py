@@ -337,11 +337,14 @@ def instance(*kinds: type, remedy: str = "", optional: bool = False, **field: An
 
 
 def _option(
-    kind: type[T], check_value: Callable[[str, object], T], default: object, **metadata: object
+    kind: type[T],
+    check_value: Callable[[str, object], T | None],
+    default: object,
+    **metadata: object,
 ) -> Any:
     """Return an attrs field of ``kind`` with the converter ``check_value(name, value)``."""
 
-    def convert(value: object, field: attrs.Attribute[object]) -> T:
+    def convert(value: object, field: attrs.Attribute[object]) -> T | None:
         return check_value(field.name, value)
 
     convert.__annotations__["value"] = kind.__name__  # what signatures show
@@ -377,12 +380,14 @@ def flag(*, default: object) -> Any:
 
     Parameters
     ----------
-    default : bool or attrs.Factory
-        The value used if none is given.
+    default : bool or None
+        The value used if none is given. None may be given where it is the default.
     """
     rule = "must be True or False"
 
-    def check_value(name: str, value: object) -> bool:
+    def check_value(name: str, value: object) -> bool | None:
+        if value is None and default is None:
+            return None
         if not isinstance(value, bool):
             raise refuse(name, value, rule)
         return value
@@ -410,7 +415,7 @@ def count(
         What a default of None stands for, where nothing else is chosen.
     """
 
-    def check_value(name: str, value: object) -> Any:
+    def check_value(name: str, value: object) -> int | None:
         if value is None and default is None:
             return None
         return whole(name, value, least=least, most=most)

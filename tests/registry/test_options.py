@@ -42,7 +42,7 @@ def test_an_option_of_a_law_is_one_number(name):
     """An array, one value for each impact, was taken by eleven laws."""
     for option in options(REGISTRY.law_class(name)):
         value = 0.5 if option.default is None else option.default
-        several = "pairs" in option.rule or "whole" in option.rule
+        several = any(word in option.rule for word in ("pairs", "whole", "True or False"))
         one = isinstance(value, float) and not several
         alone = {option.name: np.array(value)[()]} if one else {}
         assert contactlab.create(name, **alone) is not None

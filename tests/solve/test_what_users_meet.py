@@ -62,7 +62,7 @@ def test_a_collision_tells_its_cautions_too():
         made.check(cautions=True)
     small = Sphere(0.01, STEEL)
     fine = collide(Encounter(small, small, 0.2, normal=[1, 0, 0], velocity=[0.01, 0.01, 0]))
-    assert str(fine) == repr(fine)
+    assert "caution" not in str(fine)
     assert fine.check(cautions=True) is fine
 
 
@@ -155,7 +155,7 @@ BALL = Sphere(0.01, STEEL)
 RESULT = Simulation().run(Scene.nondimensional(psi1=1.2, chi=1.44), history=True)
 #: What a user writes, and a key word of the answer.
 WRONG_NAMES = {
-    "Simulation(normal='tsuji', restitution=0.9)": r"'normal.viscoelastic', restitution=0.9\)",
+    "Simulation(normal='jkr', restitution=0.9)": r"viscoelastic takes it",
     "Simulation(law='springs')": "did you mean 'tangential'",
     "Simulation('springs')": "write arguments as name=value; arguments: normal, tangential",
     "Sphere(diameter=0.02, material=STEEL)": "did you mean 'radius', half the diameter",

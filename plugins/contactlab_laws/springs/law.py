@@ -49,11 +49,6 @@ NOISE = (
 SHEAR_LOSS = Rule(lambda value: (value >= 0.0) & (value <= 8.0), "must be one number from 0 to 8")
 
 
-def _tables(law: Springs) -> bool:
-    """Return whether springs answer from the table where nobody says so."""
-    return law.springs is None and law.grid == "largest" and law.shear_loss == 1.0
-
-
 @attrs.frozen(kw_only=True)
 class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
     """Mindlin's partial slip as a bundle of independent springs.
@@ -83,9 +78,9 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
         Relaxation time in shear over that in pressure, under a viscous normal law: 1, the
         default, is the theory of one loss for both (theory §15); 0 is shear without loss. Other
         numbers are for fits. Normal laws that are not viscous have no loss in shear.
-    table : bool
+    table : bool, optional
         Take psi2 and the loss in shear from the table of restitutions where it is there: under
-        ``normal.viscoelastic`` with a restitution, chi 0.3 to 3. The default is True unless springs
+        ``normal.viscoelastic`` with a restitution, chi 0.3 to 3. By default it does unless springs
         are named, or another grid or loss in shear. What asks for a history is marched. Below a
         restitution of 0.01 psi2 is always that of ``contactlab.rebound``.
 
@@ -103,7 +98,7 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
     springs: int | None = count(default=None, usual=50, most=100_000)
     grid: str = choice("largest", "doubling", default="largest")
     shear_loss: float = quantity("1", rule=SHEAR_LOSS, default=1.0)
-    table: bool = flag(default=attrs.Factory(_tables, takes_self=True))
+    table: bool | None = flag(default=None)
 
     def __attrs_post_init__(self) -> None:
         if self.grid == "doubling" and self.number % 2:
@@ -159,7 +154,9 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
         e = None if rate is None else -rate / scene.normal_speed
         if rate is None and getattr(normal.law, "restitution", None) is not None:
             e = number_in(normal.law, "restitution", scene)
-        if e is None or (rate is None and not self.table):
+        named = self.springs is not None or self.grid != "largest" or self.shear_loss != 1.0
+        wanted = self.table or (self.table is None and not named)
+        if e is None or (rate is None and not wanted):
             return ()
         from contactlab_laws.viscoelastic import whole_impacts  # springs need no table
 

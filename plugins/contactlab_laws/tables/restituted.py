@@ -130,13 +130,13 @@ def shear_loss(psi1: Array, chi: Array, restitution: Real) -> Array:
     """Return the energy lost in shear over m_t (mu v1/kappa)²/2, shape (impacts,).
 
     To 2e-3 max(1, psi1)², for chi from 0.3 to 3; 0 of impacts that slip throughout, as of the
-    marched ones. It is linear in e above ``JOINED``, and that of ``LEAST`` below.
+    marched ones. It is that of ``JOINED`` times a line in e above, and that of ``LEAST`` below.
     """
     if psi1.size < FEW:
         e = np.broadcast_to(restitution, psi1.shape).tolist()
         return np.array(list(map(_single_shear, psi1.tolist(), chi.tolist(), e)))
     speed, lost = np.abs(psi1), np.zeros(psi1.shape)
-    who = np.flatnonzero(sticks(speed, chi, restitution))
+    who = np.flatnonzero(sticks(speed, chi, np.minimum(restitution, JOINED)))
     if not who.size:
         return lost
     e = part_of(restitution, who)
@@ -149,10 +149,9 @@ def shear_loss(psi1: Array, chi: Array, restitution: Real) -> Array:
 
 def _single_shear(psi1: float, chi: float, e: float) -> float:
     """Return ``shear_loss`` of one impact, in plain floats."""
-    speed, end = abs(psi1), border(chi, e)
-    if speed >= 1.0 and speed >= end:
+    speed, most = abs(psi1), min(max(e, LEAST), JOINED)
+    if speed >= 1.0 and speed >= border(chi, min(e, JOINED)):
         return 0.0
-    most = min(max(e, LEAST), JOINED)
     found = _single(speed, chi, most, border(chi, most), SHEAR, power=2)
     return max(found, 0.0) * min((1.0 - e) / (1.0 - JOINED), 1.0)
 
