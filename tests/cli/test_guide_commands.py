@@ -1,6 +1,7 @@
 """The commands that the guide shows run as they stand."""
 
 import re
+import shlex
 import shutil
 from importlib import import_module
 from pathlib import Path
@@ -50,7 +51,7 @@ def test_the_examples_of_a_command_run(run, command, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert lines(SECTIONS[command])
     for line in lines(SECTIONS[command]):
-        words = line.split()
+        words = shlex.split(line)
         assert words[0] == command
         ran = run(*words)
         assert ran.status == 0, f"{line}: {ran.err}"
@@ -66,7 +67,7 @@ def test_the_first_commands_of_a_newcomer_run(run, tmp_path, monkeypatch):
     section = text("getting-started").partition("## On the command line")[2]
     assert len(lines(section)) >= 4
     for line in lines(section):
-        assert run(*line.split()).status == 0, line
+        assert run(*shlex.split(line)).status == 0, line
 
 
 #: Commands that other tests run, for they are long.
@@ -81,5 +82,5 @@ def test_the_commands_told_at_once_run(run, tmp_path, monkeypatch):
     assert len(commands) == 15
     for line in commands:
         if not line.startswith(LONG):
-            ran = run(*line.split())
+            ran = run(*shlex.split(line))
             assert ran.status == 0, f"{line}: {ran.err}"

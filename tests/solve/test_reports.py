@@ -154,8 +154,8 @@ def test_an_integrator_alone_gets_a_law_that_it_runs(capsys):
     assert json.loads(capsys.readouterr().out)["psi2"] == pytest.approx(-0.18048, abs=3e-3)
 
 
-#: Files of the core and the studies that may name laws of ours: the table of defaults, the names that
-#: type checkers know, what validation expects of which law, and which laws a benchmark asks.
+#: Files of the core and the studies that may name laws of ours: the table of defaults, the names
+#: that type checkers know, what validation expects of which law, and which laws a benchmark asks.
 TABLES = {
     "registry/composition.py",
     "registry/named_laws.py",
