@@ -112,10 +112,10 @@ def swept_into(
             if failed is not None:
                 raise failed
             target.finish(stop)
-        except KeyboardInterrupt:  # the folder tells that it is not complete
+        except KeyboardInterrupt as error:  # the folder tells that it is not complete
             if not return_partial:
                 words = f"{done} impacts are in {folder}: the same sweep goes on"
-                raise KeyboardInterrupt(words) from None
+                raise type(error)(words) from None
         finally:
             pieces.close()
     return SweepFolder(path)

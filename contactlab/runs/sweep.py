@@ -88,12 +88,12 @@ def swept(
                 done += piece.chunk.size
                 if progress is not None:
                     progress(done, size)
-        except KeyboardInterrupt:
+        except KeyboardInterrupt as error:
             if kept is not None and finished:
                 kept.keep(finished[-1])  # which may have been on its way to the disk
             if not return_partial:
                 where = f" are in {keep}: the same sweep goes on" if keep else ""
-                raise KeyboardInterrupt(f"{done} of {size} impacts{where}") from None
+                raise type(error)(f"{done} of {size} impacts{where}") from None
             gaps = _gaps(finished, size)
             finished += [
                 leave_open(gap, kinetics.slip_axes(scene), Status.INTERRUPTED) for gap in gaps

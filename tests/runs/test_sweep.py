@@ -477,3 +477,19 @@ def test_a_pool_without_submit_is_refused_with_what_has_one(library, line):
     pool = type("Pool", (), {"__module__": library})()
     with pytest.raises(ValueError, match=re.escape(line)):
         Simulation(**RIGID).sweep(scene(3), executor=pool)
+
+
+class Late(KeyboardInterrupt):
+    """What a limit of time raises."""
+
+
+@pytest.mark.parametrize("to_disk", [False, True])
+def test_an_interrupt_stays_of_its_kind(monkeypatch, tmp_path, to_disk):
+    blocks_of(monkeypatch, 10)
+
+    def stop(done, total):
+        raise Late
+
+    into = tmp_path / "swept" if to_disk else None
+    with pytest.raises(Late, match="impacts"):
+        Simulation(**RIGID).sweep(scene(), progress=stop, into=into)
