@@ -72,17 +72,18 @@ def nearest(name: str, known: Iterable[str], *, alike: float = 0.5) -> str:
     """
     names = {_plain(each): each for each in known}
     plain = _plain(name)
-    words = (plain, *SYMBOLS.get(plain, ()))
+    front, dot, last = plain.rpartition(".")
+    words = (plain, *(f"{front}{dot}{each}" for each in SYMBOLS.get(last, ())))
     meant = [names[word] for word in words if word in names] or [
         names[each] for word in words for each in names if each.endswith(f".{word}")
     ]
-    if not meant:
+    if not meant and last not in REMARKS:  # which would be wrong of another name
         import difflib  # slow to import, needed for misspelt names only
 
         if "." not in plain:
             names = {each.rpartition(".")[2]: full for each, full in names.items()} | names
         meant = [names[each] for each in difflib.get_close_matches(plain, names, 1, alike)]
-    remark = REMARKS.get(plain.rpartition(".")[2], "")
+    remark = REMARKS.get(last, "")
     return f"did you mean {' or '.join(map(repr, meant[:2]))}{remark}? " if meant else ""
 
 

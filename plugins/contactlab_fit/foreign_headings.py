@@ -14,6 +14,7 @@ from contactlab.outcome.columns import QUANTITIES
 from contactlab.scene_file.entries import ENTRIES
 from contactlab_fit.conventions import ForeignHeadingsError, readings, ways
 from contactlab_fit.csv_columns import (
+    ERROR,
     HEADING,
     measurable,
     name_and_unit,
@@ -121,6 +122,7 @@ def _guesses(
     """Return the ways to read each column, each name once, and columns that others determine."""
     found: dict[str, dict[str, str]] = {}
     meant: dict[str, str] = {}
+    errors: dict[str, str] = {}
     taken = {*known}
     headings = sorted(unknown, key=lambda text: "vz" not in text.lower())  # z before y
     club = _club(unknown)
@@ -131,6 +133,9 @@ def _guesses(
         if guess == "spin" and guess in taken:
             guess = "rebound_spin"
         name = guess.lstrip("-")
+        if name_and_unit(text)[0]:
+            errors[text] = name
+            continue
         if not guess or name in taken or (club and name in OF_THE_GROUND):
             continue
         try:
@@ -148,6 +153,9 @@ def _guesses(
         meant[text] = name
         each = ways(text, guess, sized, club=club)
         found[text] = {_with_unit(text, way, club=club): words for way, words in each.items()}
+    for text, name in errors.items():
+        if name in measurable() and name in taken:  # an error of either sign is the same
+            found[text] = {_with_unit(text, name, club=club).replace(name, f"{name}{ERROR}"): ""}
     twice: set[str] = set()
     for had, rivals in RIVALS:
         names = {*known, *meant.values()} - {meant[text] for text in twice}
@@ -198,7 +206,8 @@ def _nearest(name: str) -> str:
     """Return the quantity that a misspelt name means; empty for none."""
     dotted = "." in name
     known = [each for each in (*ENTRIES, *measurable()) if ("." in each) is dotted]
-    near = re.search(r"did you mean '([\w.]+)'", nearest(name, known, alike=MISSPELT))
+    stripped = name.strip("|")
+    near = re.search(r"did you mean '([\w.]+)'", nearest(stripped, known, alike=MISSPELT))
     alike = near and near[1].count("_") == name.count("_")  # a word more is another quantity
     return near[1] if near and alike else ""
 

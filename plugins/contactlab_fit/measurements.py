@@ -17,6 +17,7 @@ from contactlab_fit.csv_columns import (
     ERROR,
     UnknownHeadingError,
     known_names,
+    measurable,
     name_and_unit,
     read_columns,
     read_heading,
@@ -93,7 +94,9 @@ class Measurements:
             return self
         for name in quantities:
             if name not in self.measured:
-                had = f"{nearest(name, self.measured)}had: {', '.join(self.measured)}"
+                known = self.measured if name in measurable() else measurable()
+                near = nearest(name, self.measured) or nearest(name, known)
+                had = f"{near}had: {', '.join(self.measured)}"
                 raise refuse("quantities", name, "was not measured", had)
         measured = {name: self.measured[name] for name in quantities}
         rows = np.any([np.isfinite(values) for values in measured.values()], axis=0)

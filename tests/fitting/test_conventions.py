@@ -42,6 +42,10 @@ def read_table(heading, **columns):
     return read_measurements({"angle_deg": [20.0], heading: [-0.4]}, **columns)
 
 
+#: A quantity of another meaning whose name is like the old one.
+RESTITUTED = read_measurements({"angle_deg": [20.0], "normal_restitution": [0.9]})
+
+
 @pytest.mark.parametrize(
     "door",
     [
@@ -50,13 +54,30 @@ def read_table(heading, **columns):
         lambda: read_table("x", columns={"x": OLD}),
         lambda: fit({"psi2": np.zeros(6)}, GROUPS, simulation=Simulation(tangential="walton"),
                     parameters=[f"tangential.{OLD}"]),
+        lambda: fit({"psi2": np.zeros(6)}, GROUPS, simulation=Simulation(tangential="walton"),
+                    parameters=[OLD]),
         lambda: fit({"beta0": np.zeros(6)}, GROUPS, quantities=[OLD]),
+        lambda: fit({"psi2": np.zeros(6)}, GROUPS, quantities=[OLD]),
+        lambda: RESTITUTED.only([OLD]),
     ],
 )  # fmt: skip
 def test_the_old_name_is_refused_with_the_new_one_and_its_sign(door):
     words = "did you mean '(tangential.)?beta0', which is -slip_restitution in results, and the "
     with pytest.raises((AttributeError, ValueError), match=words):
         door()
+
+
+@pytest.mark.parametrize(
+    ("heading", "words"),
+    [("beta0", ""), (OLD, "--column slip_restitution=-beta0 ")],
+)
+def test_errors_of_the_old_name_keep_their_size(heading, words):
+    table = {"angle_deg": [20.0], heading: [-0.4], f"{OLD}_error": [0.1]}
+    added = f"{words}--column {OLD}_error=beta0_error$"
+    with pytest.raises(ValueError, match=added):
+        read_measurements(table)
+    names = dict(re.findall(r"--column (\S+?)=([\w-]+)", added))
+    np.testing.assert_array_equal(read_measurements(table, columns=names).errors["beta0"], [0.1])
 
 
 @pytest.mark.parametrize(
