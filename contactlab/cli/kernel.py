@@ -20,6 +20,7 @@ from contactlab.registration.hooks import Execute, hookimpl
 FILES = (
     "contactlab_springs.h", "contactlab_springs.mjs", "contactlab_springs.d.mts",
     "contactlab_bounce.h", "contactlab_bounce.mjs", "contactlab_bounce.d.mts",
+    "contactlab_springs.d.cts", "contactlab_bounce.d.cts",
     "contactlab_impact.h", "contactlab_bodies.h", "contactlab_march.h",
     "package.json", "README.md", "LICENSE",
 )  # fmt: skip
