@@ -48,8 +48,10 @@ html_title = f"contactlab {version}"
 html_theme_options = {"navigation_with_keys": True}
 exclude_patterns = ["gallery-source", "**sg_execution_times.rst"]
 html_extra_path = ["explore.html"]
-html_static_path = ["site.css"]
+html_static_path = ["site.css", "site.js"]
 html_css_files = ["site.css"]
+html_js_files = ["site.js"]
+html_favicon = "favicon.svg"
 autosummary_generate = False  # the tables lead to the pages of the rooms
 html_copy_source = html_show_sourcelink = True
 suppress_warnings = [
@@ -116,6 +118,10 @@ SPACES = {
 
 #: What the text says to type, and a section where it names one.
 TYPED = re.compile(r"contactlab guide ([a-z][a-z-]*)(?: (\d+))?")
+#: A thumbnail's link: its attributes, the end of its tag, and its words.
+THUMBNAIL = re.compile(
+    r'(thumbcontainer"[^>]*><img[^>]*>\s*<p><a [^>]*)(><span class="doc">)([^<"]*)'
+)
 #: Letters of a formula from which on it has a line of its own on a phone, where it can be scrolled.
 LONG = 24
 #: Width over height of a picture from which on it has panels beside each other.
@@ -156,6 +162,19 @@ def scrolled(app: Any, doctree: nodes.document, _: str) -> None:
             place += node
 
 
+def named(app: Any, error: Exception | None) -> None:
+    """Tell readers of a screen the level of captions, and where a thumbnail leads.
+
+    The theme leaves out the one, and the gallery hides the words of its links.
+    """
+    for path in [] if error else Path(app.outdir).rglob("*.html"):
+        page = path.read_text("utf-8")
+        told = page.replace('role="heading">', 'role="heading" aria-level="2">')
+        told = THUMBNAIL.sub(r'\1 aria-label="\3"\2\3', told)
+        if told != page:
+            path.write_text(told, "utf-8")
+
+
 def mathml(latex: str, display: str) -> str:
     """Return a formula as MathML, which browsers draw without a network."""
     formula = convert(latex, display=display)
@@ -187,4 +206,5 @@ def setup(app: Any) -> None:
     app.connect("autodoc-skip-member", left_out)
     app.connect("doctree-resolved", linked)
     app.connect("doctree-resolved", scrolled)
+    app.connect("build-finished", named)
     app.connect("autodoc-process-docstring", attributes_apart, priority=900)

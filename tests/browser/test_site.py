@@ -8,6 +8,7 @@ import os
 import re
 import subprocess
 import sys
+from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote
 from xml.etree import ElementTree
@@ -255,6 +256,62 @@ def test_the_gallery_is_in_its_order_and_has_every_script(site):
     scripts = {path.stem for path in (TOP / "examples").glob("*.py")}
     assert list(dict.fromkeys(shown))[:3] == ["one_impact", "signs", "law_swap"]
     assert scripts <= set(shown)
+
+
+class Accessible(HTMLParser):
+    """Collect icons, headings without a level, and links of thumbnails without a name."""
+
+    def __init__(self):
+        super().__init__()
+        self.icons, self.levelless, self.thumbnails = [], [], []
+        self.pictured = False
+
+    def handle_starttag(self, tag, attributes):
+        told = dict(attributes)
+        if tag == "link" and "icon" in told.get("rel", "").split():
+            self.icons.append(told["href"])
+        if told.get("role") == "heading" and not told.get("aria-level", "").isdigit():
+            self.levelless.append(told)
+        if "sphx-glr-thumbcontainer" in told.get("class", ""):
+            self.pictured = True
+        elif tag == "a" and self.pictured:
+            self.thumbnails.append((told["href"], told.get("aria-label")))
+            self.pictured = False
+
+
+def test_a_reader_of_a_screen_is_told_of_headings_and_thumbnails(site):
+    for topic in ("index", "search", "theory-impact", "gallery/index"):
+        found = Accessible()
+        found.feed((site / f"{topic}.html").read_text("utf-8"))
+        assert found.levelless == []
+        (icon,) = found.icons
+        assert ElementTree.parse((site / topic).parent / icon.split("?")[0]).getroot() is not None
+    names = dict(found.thumbnails)  # of the gallery
+    assert len(names) == len(found.thumbnails) > 20
+    for page, name in names.items():
+        text = (site / "gallery" / page).read_text("utf-8")
+        heading = re.search(r"<h1>(.*?)<a ", text)[1]
+        assert name == html.unescape(re.sub("<[^>]*>", "", heading)), page
+
+
+@pytest.mark.parametrize("width", [390, 1240])
+def test_what_is_scrolled_is_reached_by_the_keyboard(site, opened, width):
+    screen = {"width": width, "height": 844, "deviceScaleFactor": 1, "mobile": width < 400}
+    places = []
+    for topic in ("load-paths", "theory-impact", "laws"):
+        page = opened(site / f"{topic}.html")
+        page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", screen)
+        try:
+            places += page.execute_async_script(
+                "const done = arguments[0]; requestAnimationFrame(() => setTimeout(() => done("
+                "[...document.querySelectorAll('article *')].filter(e => e.clientWidth && "
+                "['auto', 'scroll'].includes(getComputedStyle(e).overflowX))"
+                ".map(e => [e.scrollWidth > e.clientWidth, e.tabIndex === 0]))))"
+            )
+        finally:
+            page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    assert any(scrolled for scrolled, _ in places)
+    assert all(scrolled == reached for scrolled, reached in places)
 
 
 def test_links_within_the_site_lead_somewhere(site):
