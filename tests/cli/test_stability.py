@@ -69,7 +69,9 @@ def test_a_law_that_is_silently_wrong_fails_it_and_is_named(run, monkeypatch, tm
         law, "whole_impacts", lambda me, scene, normal: answer(me, halved(scene), normal)
     )
     monkeypatch.setattr(
-        stability, "methods", lambda _: [Method(tangential="springs", integrator="symplectic")]
+        stability,
+        "methods",
+        lambda *_, **__: [Method(tangential="springs", integrator="symplectic")],
     )
     ran = run(*COMMAND, "--out", tmp_path / "s.csv")
     assert ran.status == 1
