@@ -140,6 +140,8 @@ def _profile(
             if (outside - bound) * sign >= 0.0:
                 outside = bound
             if excess(outside) > 0.0:
+                if excess(inside) >= 0.0:  # numbers without scatter: rounding alone
+                    return inside
                 return float(brentq(excess, inside, outside, rtol=TOLERANCE))
             if outside == bound:
                 break
