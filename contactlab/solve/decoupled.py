@@ -68,9 +68,8 @@ class Decoupled(Way):
             size, accuracy = psi_magnitude(scene), laws.capability.accuracy
             most = math.inf if accuracy is None else accuracy * (1.0 + ROUNDING) * size
             always = laws.capability.whole is not None
-            answered = answers(
-                normal, laws.tangential, always=always, history=history, largest_error=most
-            )
+            law = laws.asked or laws.tangential
+            answered = answers(normal, law, always=always, history=history, largest_error=most)
             bound = judges.books_bound_of(laws.tangential, scene)
             return Prepared(normal, answered, self._columns(normal, answered, size), bound)
         except BaseException as error:
