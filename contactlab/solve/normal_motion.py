@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 
 import attrs
@@ -65,8 +66,8 @@ def _open(law: NormalLaw, scene: Scene) -> NormalMotion:
     from contactlab.solve.solved_motion import SolvedMotion, Units  # not for closed forms
 
     if "similar" in claims(law):
-        one = Scene.nondimensional(psi1=0.0, chi=1.0)
-        alone = _common(law, one)
+        one = _unit_impact()
+        alone = _kept_table(law, one)
         if alone is not None and alone.status[0] is Status.SUCCESS:
             return SolvedMotion(law, scene, alone, Units.of(scene, one))
     table = _common(law, scene)
@@ -93,8 +94,18 @@ def _common(law: NormalLaw, scene: Scene) -> MotionTable | None:
     if not all(isinstance(number, float) for number in numbers):
         return None
     single = attrs.evolve(scene, friction_coefficient=0.0, tangential_velocity=0.0, spin=0.0)
-    if single.shape:
-        return None
+    return None if single.shape else _kept_table(law, single)
+
+
+@cache
+def _unit_impact() -> Scene:
+    """Return the impact to which motions that are alike but for their units are scaled."""
+    one = Scene.nondimensional(psi1=0.0, chi=1.0)
+    return attrs.evolve(one, friction_coefficient=0.0)
+
+
+def _kept_table(law: NormalLaw, single: Scene) -> MotionTable | None:
+    """Return the table of one impact without friction, or None if the law takes a batch alone."""
     key = law, single
     try:
         if key in _TABLES:

@@ -47,8 +47,10 @@ class Relaxing(NormalLaw):
     @property
     def loses(self) -> bool:
         """True if there is any loss."""
-        time = self.relaxation_time
-        loses = self.restitution is not None and bool(np.any(self.restitution != 1.0))
+        e, time = self.restitution, self.relaxation_time
+        if isinstance(e, float):
+            return e != 1.0
+        loses = e is not None and bool(np.any(e != 1.0))
         return loses or (time is not None and bool(np.any(time)))
 
     def waives(self) -> frozenset[str]:
