@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -12,6 +12,7 @@ from contactlab.contracts import faults
 from contactlab.contracts.law import claims
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw, unfollowed_rate
+from contactlab.contracts.parameters import number_in
 from contactlab.contracts.status import Status
 from contactlab.impact import batches
 from contactlab.impact.batches import NoIndexError
@@ -70,6 +71,8 @@ def _open(law: NormalLaw, scene: Scene) -> NormalMotion:
         alone = _kept_table(law, one)
         if alone is not None and alone.status[0] is Status.SUCCESS:
             return SolvedMotion(law, scene, alone, Units.of(scene, one))
+    if (found := _of_restitutions(law, scene)) is not None:
+        return SolvedMotion(law, scene, found, Units.of(scene, _unit_impact()))
     table = _common(law, scene)
     if table is not None:
         return SolvedMotion(law, scene, table)
@@ -102,6 +105,25 @@ def _unit_impact() -> Scene:
     """Return the impact to which motions that are alike but for their units are scaled."""
     one = Scene.nondimensional(psi1=0.0, chi=1.0)
     return attrs.evolve(one, friction_coefficient=0.0)
+
+
+def _of_restitutions(law: NormalLaw, scene: Scene) -> MotionTable | None:
+    """Return the table of impacts that are similar to those of a few restitutions, or None."""
+    from contactlab.solve.solved_motion import MotionTable
+
+    if not isinstance(getattr(law, "restitution", None), np.ndarray):
+        return None
+    few, which = np.unique(number_in(law, "restitution", scene), return_inverse=True)
+    if few.size > MOST_KEPT // 2:
+        return None
+    tables = []
+    for e in few.tolist():
+        alone: Any = attrs.evolve(law, restitution=e)  # type: ignore[misc]  # attrs classes
+        table = _kept_table(alone, _unit_impact()) if "similar" in claims(alone) else None
+        if table is None or table.status[0] is not Status.SUCCESS:
+            return None
+        tables.append(table)
+    return MotionTable.joined(tables).take(which.reshape(scene.shape))
 
 
 def _kept_table(law: NormalLaw, single: Scene) -> MotionTable | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple, Self
 
 import attrs
@@ -69,6 +70,22 @@ class MotionTable:
         """Return the table; ``last`` and ``largest`` follow from the other entries."""
         table = cls(**entries, last=np.empty(0), largest=_largest(entries["values"]))
         return attrs.evolve(table, last=table.at(table.ends))
+
+    @classmethod
+    def joined(cls, tables: Sequence[MotionTable]) -> Self:
+        """Return the tables of single motions as the items of one, ended by steps of no width."""
+        most = max(table.values.shape[1] for table in tables)
+        edges, values = [], []
+        for table in tables:
+            more = 0, most - table.values.shape[1]
+            edges.append(np.pad(table.edges, ((0, 0), more), mode="edge"))
+            values.append(np.pad(table.values, ((0, 0), more, (0, 0), (0, 0)), mode="edge"))
+        names = "unit", "last", "largest", "status", "detail"
+        others = {name: np.concatenate([getattr(one, name) for one in tables]) for name in names}
+        shape = (len(tables),)
+        return cls(
+            shape=shape, edges=np.concatenate(edges), values=np.concatenate(values), **others
+        )
 
     @property
     def ends(self) -> Array:

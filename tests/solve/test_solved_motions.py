@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status, create
 from contactlab.contracts import ClosedFormNormalLaw, NormalContact, NormalLaw
 from contactlab.contracts.faults import LawFaultError
 from contactlab.solve.normal_motion import normal_motion
@@ -166,3 +166,24 @@ class Raising(LinearSpring):
 
     def start(self, scene):
         raise ArithmeticError("no start")
+
+
+def test_impacts_of_a_few_restitutions_move_as_each_alone():
+    """Their motions have other numbers of steps, and other units of time."""
+    e = np.array([0.9, 0.3, 0.9, 0.98])
+    chi, psi1 = np.array([0.2, 3.5, 4.0, 5.0]), np.array([0.5, 1.5, 2.0, 0.3])
+    together = Scene.nondimensional(psi1=psi1, chi=chi)
+    motion = normal_motion(create("normal.viscoelastic", restitution=e), together)
+    phase = np.linspace(0.0, np.pi, 30)
+    samples = motion.at(phase[:, None])
+    for k, each in enumerate(e.tolist()):
+        law = create("normal.viscoelastic", restitution=each)
+        alone = normal_motion(law, Scene.nondimensional(psi1=float(psi1[k]), chi=float(chi[k])))
+        for name in ("duration", "final_rate", "maximum_force", "total_load_impulse"):
+            assert getattr(motion, name)[k] == pytest.approx(getattr(alone, name), rel=1e-14)
+        own = alone.at(phase)
+        assert samples.approach[:, k] == pytest.approx(own.approach, abs=1e-14)
+        assert samples.contact.force[:, k] == pytest.approx(own.contact.force, abs=1e-13)
+        taken = motion.take(np.arange(4) == k)
+        assert taken.final_rate[0] == motion.final_rate[k]
+        assert -motion.final_rate[k] == pytest.approx(each, abs=1e-6)
