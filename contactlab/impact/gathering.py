@@ -173,6 +173,7 @@ class Gathering:
     names: tuple[str, ...] = attrs.field(init=False)
     places: tuple[tuple[int, int | None], ...] = attrs.field(init=False, repr=False)
     shape: tuple[int, ...] = attrs.field(init=False, repr=False)
+    _alone: tuple[Encounter, ...] = attrs.field(init=False, repr=False)
 
     def __init__(
         self, bodies: Mapping[str, Body] | Sequence[Body], touches: Sequence[Touch]
@@ -223,6 +224,7 @@ class Gathering:
     def _common_shape(self) -> Any:
         """Return the batch shape, or refuse shapes that do not broadcast."""
         shapes: dict[str, tuple[int, ...]] = {}
+        alone = []
         for name, body in zip(self.names or range(len(self.bodies)), self.bodies, strict=True):
             for entry in ("velocity", "spin", "force", "position"):
                 if (value := getattr(body, entry)) is not None:
@@ -231,9 +233,11 @@ class Gathering:
             for entry in ("gap", "restitution"):
                 shapes[f"touches[{k}].{entry}"] = np.shape(getattr(touch, entry))
             try:
-                shapes[f"touches[{k}]"] = self.alone(k).shape
+                alone.append(self._make_alone(k))
             except ValueError as error:
                 raise ValueError(f"touches[{k}]: {error}") from None
+            shapes[f"touches[{k}]"] = alone[k].shape
+        object.__setattr__(self, "_alone", tuple(alone))
         remedy = "give one number or vector, or as many as there are gatherings"
         return common_shape(shapes, what="Gathering: the batch shapes", remedy=remedy)
 
@@ -245,6 +249,10 @@ class Gathering:
         contact : int
             Place of the contact among ``touches``.
         """
+        return self._alone[contact]
+
+    def _make_alone(self, contact: int) -> Encounter:
+        """Return the encounter that ``alone`` returns."""
         touch, (place, other) = self.touches[contact], self.places[contact]
         one, two = self.bodies[place], None if other is None else self.bodies[other]
         target: Any = touch.second if two is None else two.shape

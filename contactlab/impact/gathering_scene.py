@@ -6,7 +6,6 @@ import math
 from itertools import combinations
 from typing import Any, Protocol
 
-import attrs
 import numpy as np
 
 from contactlab.impact.bodies import Pair
@@ -22,6 +21,7 @@ from contactlab.impact.body_contact import (
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.links import Links, energy_of
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import change_entries
 from contactlab.numeric.checks import first_of, refuse
 from contactlab.numeric.types import Array, Real
 from contactlab.numeric.vectors import components, dot, join_components
@@ -87,13 +87,14 @@ class Assembly:
         """Return the encounter of a contact in each of the gatherings."""
         alone = self.gathering.alone(contact)
         velocity = np.broadcast_to(alone.velocity, (*self._wide, 3))
-        spread = attrs.evolve(alone, velocity=velocity)
+        spread = change_entries(alone, velocity=velocity, shape=self._wide)
         return spread.take(np.full(self._wide, True)) if len(self._wide) > 1 else spread
 
     def flat(self, value: Real, *trailing: int) -> Array:
         """Return what each gathering has, shape (count, *trailing)."""
-        whole = np.broadcast_to(value, (*self.gathering.shape, *trailing))
-        return np.array(whole, dtype=np.asarray(value).dtype).reshape(self.count, *trailing)
+        whole = np.empty((*self.gathering.shape, *trailing), dtype=np.asarray(value).dtype)
+        whole[...] = value
+        return whole.reshape(self.count, *trailing)
 
     def of_contacts(self, entry: str) -> Array:
         """Return an entry of every contact, shape (count, C)."""
@@ -167,11 +168,7 @@ class Assembly:
         ]
         names = [*ELASTIC, *(name for name in OF_ELLIPSES if any(name in one for one in found))]
         columns = {name: [one.get(name, 1.0) for one in found] for name in names}
-        wide = {
-            name: [np.broadcast_to(each, (self.count,)) for each in column]
-            for name, column in columns.items()
-        }
-        return {name: np.stack(column, axis=-1) for name, column in wide.items()}
+        return {name: join_components(column, (self.count,)) for name, column in columns.items()}
 
     def _inverse_mass(self) -> Any:
         """Return W, dense for few contacts and batches, else sparse."""

@@ -92,7 +92,7 @@ def components(vectors: Array) -> tuple[Any, ...]:
     """Return x, y and z, or x and y: contiguous arrays, or floats for a single vector."""
     if vectors.ndim == 1:
         return tuple(vectors.tolist())
-    return tuple(np.ascontiguousarray(np.moveaxis(vectors, -1, 0)))
+    return tuple(vectors[..., k].copy() for k in range(vectors.shape[-1]))
 
 
 def join_components(components: Vector | Rows, shape: tuple[int, ...]) -> Array:
@@ -100,9 +100,16 @@ def join_components(components: Vector | Rows, shape: tuple[int, ...]) -> Array:
     if not shape:
         return np.array(components)
     parts: Any = components
-    if isinstance(components[0], Sequence):
-        return np.stack([join_components(row, shape) for row in parts], axis=len(shape))
-    return np.stack([np.broadcast_to(each, shape) for each in parts], axis=-1)
+    if isinstance(parts[0], Sequence):
+        joined = np.empty((*shape, len(parts), len(parts[0])))
+        for k, row in enumerate(parts):
+            for n, each in enumerate(row):
+                joined[..., k, n] = each
+        return joined
+    joined = np.empty((*shape, len(parts)))
+    for k, each in enumerate(parts):
+        joined[..., k] = each
+    return joined
 
 
 def entry(tensors: Array, row: int, column: int) -> Any:
