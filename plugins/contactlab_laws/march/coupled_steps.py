@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlab.contracts import CausalTangentialLaw, NormalMotion, Scene, judges
-from contactlab.contracts.status import Status
+from contactlab.contracts.status import Status, succeeded
 from contactlab.impact import kinetics
 from contactlab.impact.hertz import DURATION_CONSTANT
 from contactlab.numeric.types import Mask, Real
@@ -67,9 +67,9 @@ def approach_duration(normal: NormalMotion) -> Real:
 
     An approach that never ends counts as Hertz's impact that is as deep.
     """
-    ended = _come_to_an_end(normal)
-    if np.all(ended):
+    if succeeded(normal.status):
         return normal.duration
+    ended = _come_to_an_end(normal)
     as_deep = DURATION_CONSTANT * normal.maximum_approach / normal.scene.normal_speed
     return np.where(ended, normal.duration, np.minimum(normal.duration, as_deep))
 
