@@ -126,12 +126,14 @@ def sticks(speed: Real, chi: Real, e: Real) -> Any:
     return speed < np.maximum(border(chi, e), 1.0)
 
 
-def shear_loss(psi1: Array, chi: Array, restitution: Real) -> Array:
-    """Return the energy lost in shear over m_t (mu v1/kappa)²/2, shape (impacts,).
+def shear_loss(psi1: Any, chi: Any, restitution: Any) -> Any:
+    """Return the energy lost in shear over m_t (mu v1/kappa)²/2, a float or shape (impacts,).
 
     To 2e-3 max(1, psi1)², for chi from 0.3 to 3; 0 of impacts that slip throughout, as of the
     marched ones. It is that of ``JOINED`` times a line in e above, and that of ``LEAST`` below.
     """
+    if isinstance(psi1, float):
+        return _single_shear(psi1, chi, restitution)
     if psi1.size < FEW:
         e = np.broadcast_to(restitution, psi1.shape).tolist()
         return np.array(list(map(_single_shear, psi1.tolist(), chi.tolist(), e)))

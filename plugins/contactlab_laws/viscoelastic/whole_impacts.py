@@ -9,6 +9,7 @@ import numpy as np
 
 from contactlab.contracts import WholeImpact, from_change
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import some
 from contactlab.numeric.types import Real
 from contactlab_laws.tables import restituted
 from contactlab_laws.tables.restituted_regions import RESTITUTED_CHI, bound_restitution_error
@@ -18,31 +19,40 @@ from contactlab_laws.viscoelastic.rebound import rebound
 def look_up(scene: Scene, restitution: Real, *, beyond: bool) -> tuple[WholeImpact, ...]:
     """Return the answer for the impacts whose chi is in the table, or for all; or nothing."""
     low, high = (0.0, math.inf) if beyond else RESTITUTED_CHI
-    chi, psi1 = np.broadcast_arrays(np.asarray(scene.chi), np.asarray(scene.psi1))
-    where: Any = (chi >= low) & (chi <= high) & np.isfinite(psi1)
-    if not where.any():
+    where: Any = (scene.chi >= low) & (scene.chi <= high) & np.isfinite(scene.psi1)
+    if not some(where):
         return ()
-    inside = np.where(where, chi, 1.0), np.where(where, psi1, 0.0)
-    e: Any = restitution
-    if not isinstance(e, float):
-        e = np.broadcast_to(e, chi.shape).ravel()
-    change = rebound(inside[1].ravel(), inside[0].ravel(), e).reshape(chi.shape)
-    change = change - inside[1]
-    error = bound_restitution_error(inside[0], restitution)
-    known = np.clip(inside[0], *RESTITUTED_CHI)
-    shear = restituted.shear_loss(inside[1].ravel(), known.ravel(), e).reshape(chi.shape)
-    single = not scene.shape
+    if scene.shape:
+        change, error, shear = _look_up_many(scene, restitution, where)
+    else:  # plain numbers take a third of the time
+        where, psi1, chi = True, float(scene.psi1), float(scene.chi)
+        change = rebound(psi1, chi, restitution) - psi1
+        error = float(bound_restitution_error(chi, restitution))
+        known = min(max(chi, RESTITUTED_CHI[0]), RESTITUTED_CHI[1])
+        shear = restituted.shear_loss(psi1, known, restitution)
     reason = "the answer is in the table of restitutions"
     if beyond:
         reason = "the answer is that of contactlab.rebound, as no step can follow e below 0.01"
     return (
         from_change(
             scene,
-            where=True if single else where,
-            psi_change=float(change) if single else change,
-            psi2_error=float(error) if single else error,
+            where=where,
+            psi_change=change,
+            psi2_error=error,
             reason=reason,
             counter="tabulated",
-            in_shear=float(shear) if single else shear,
+            in_shear=shear,
         ),
     )
+
+
+def _look_up_many(scene: Scene, restitution: Real, where: Any) -> tuple[Any, Any, Any]:
+    """Return change of psi, error and loss in shear of the impacts of a batch that are asked."""
+    chi, psi1 = np.where(where, scene.chi, 1.0), np.where(where, scene.psi1, 0.0)
+    e: Any = restitution
+    if not isinstance(e, float):
+        e = np.broadcast_to(e, chi.shape).ravel()
+    change = rebound(psi1.ravel(), chi.ravel(), e).reshape(chi.shape) - psi1
+    known = np.clip(chi, *RESTITUTED_CHI)
+    shear = restituted.shear_loss(psi1.ravel(), known.ravel(), e).reshape(chi.shape)
+    return change, bound_restitution_error(chi, restitution), shear
