@@ -126,17 +126,15 @@ def sticks(speed: Real, chi: Real, e: Real) -> Any:
     return speed < np.maximum(border(chi, e), 1.0)
 
 
-def shear_loss(psi1: Any, chi: Any, restitution: Any) -> Any:
-    """Return the energy lost in shear over m_t (mu v1/kappa)²/2, a float or shape (impacts,).
+def shear_loss(psi1: Array, chi: Array, restitution: Real) -> Array:
+    """Return the energy lost in shear over m_t (mu v1/kappa)²/2, shape (impacts,).
 
     To 2e-3 max(1, psi1)², for chi from 0.3 to 3; 0 of impacts that slip throughout, as of the
     marched ones. It is that of ``JOINED`` times a line in e above, and that of ``LEAST`` below.
     """
-    if isinstance(psi1, float):
-        return _single_shear(psi1, chi, restitution)
     if psi1.size < FEW:
         e = np.broadcast_to(restitution, psi1.shape).tolist()
-        return np.array(list(map(_single_shear, psi1.tolist(), chi.tolist(), e)))
+        return np.array(list(map(single_shear_loss, psi1.tolist(), chi.tolist(), e)))
     speed, lost = np.abs(psi1), np.zeros(psi1.shape)
     who = np.flatnonzero(sticks(speed, chi, np.minimum(restitution, JOINED)))
     if not who.size:
@@ -149,7 +147,7 @@ def shear_loss(psi1: Any, chi: Any, restitution: Any) -> Any:
     return lost
 
 
-def _single_shear(psi1: float, chi: float, e: float) -> float:
+def single_shear_loss(psi1: float, chi: float, e: float) -> float:
     """Return ``shear_loss`` of one impact, in plain floats."""
     speed, most = abs(psi1), min(max(e, LEAST), JOINED)
     if speed >= 1.0 and speed >= border(chi, min(e, JOINED)):

@@ -10,7 +10,7 @@ import numpy as np
 from contactlab.contracts import WholeImpact, from_change
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import some
-from contactlab.numeric.types import Real
+from contactlab.numeric.types import Mask, Real
 from contactlab_laws.tables import restituted
 from contactlab_laws.tables.restituted_regions import RESTITUTED_CHI, bound_restitution_error
 from contactlab_laws.viscoelastic.rebound import rebound
@@ -29,7 +29,8 @@ def look_up(scene: Scene, restitution: Real, *, beyond: bool) -> tuple[WholeImpa
         change = rebound(psi1, chi, restitution) - psi1
         error = float(bound_restitution_error(chi, restitution))
         known = min(max(chi, RESTITUTED_CHI[0]), RESTITUTED_CHI[1])
-        shear = restituted.shear_loss(psi1, known, restitution)
+        e: Any = restitution
+        shear = restituted.single_shear_loss(psi1, known, e)
     reason = "the answer is in the table of restitutions"
     if beyond:
         reason = "the answer is that of contactlab.rebound, as no step can follow e below 0.01"
@@ -46,7 +47,7 @@ def look_up(scene: Scene, restitution: Real, *, beyond: bool) -> tuple[WholeImpa
     )
 
 
-def _look_up_many(scene: Scene, restitution: Real, where: Any) -> tuple[Any, Any, Any]:
+def _look_up_many(scene: Scene, restitution: Real, where: Mask) -> tuple[Any, Any, Any]:
     """Return change of psi, error and loss in shear of the impacts of a batch that are asked."""
     chi, psi1 = np.where(where, scene.chi, 1.0), np.where(where, scene.psi1, 0.0)
     e: Any = restitution
