@@ -168,15 +168,12 @@ class TangentialLaw(Law, kind="tangential"):
         central, smooth = slip == 0.0, friction == 0.0
         if kinetics.turns(scene) and "normal_spin" in claims(self):
             central = central & (scene.normal_spin == 0.0)
-        reasons = (
-            (central, "central impact, no slip velocity"),
-            (smooth, "friction coefficient 0"),
-        )
-        return tuple(
-            no_force(scene, where=where, reason=reason)
-            for where, reason in reasons
-            if where is not False  # not of one impact, which it does not hold for
-        )
+        found: tuple[WholeImpact, ...] = ()
+        if central is not False:  # of one impact, which it holds for, or of a batch
+            found = (no_force(scene, where=central, reason="central impact, no slip velocity"),)
+        if smooth is not False:
+            found += (no_force(scene, where=smooth, reason="friction coefficient 0"),)
+        return found
 
     def errors(
         self, scene: Scene, normal: NormalMotion, steps: Real, accuracy: float | None = None

@@ -414,7 +414,6 @@ def _result(
 def _scene(scene: object) -> Scene:
     """Return ``scene``, or refuse an object of another class."""
     if type(scene) is Scene:
-        solve.refuse_gathering(scene)
         return scene
     from contactlab.impact.encounter import Encounter  # needed for the refusal only
     from contactlab.impact.gathering import Gathering

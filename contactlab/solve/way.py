@@ -142,9 +142,10 @@ class Way(Entries, ABC):
 
     def outcome(self, history: bool | str, recorder: Recorder | None) -> tuple[PlanColumns, Motion]:
         """Return columns of the plan, and motion; a law that raises costs its impacts only."""
-        scene, laws = self.scene, self.laws
-        batch = kinetics.batch_of(scene) if scene.shape else ()  # a gathering is never divided
-        divisible = recorder is None and math.prod(batch) > 1
+        scene, laws, divisible = self.scene, self.laws, False
+        if scene.shape and recorder is None:
+            batch = kinetics.batch_of(scene)  # a gathering is never divided
+            divisible = math.prod(batch) > 1
         if divisible and scene.shape[0] > (most := self.most_at_a_time()):
             return self.solve_parts(blocks(scene.shape[0], int(most)))
         try:
@@ -160,8 +161,8 @@ class Way(Entries, ABC):
             )
             return PlanColumns.nothing(scene.shape), nothing
         # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
-        bound = prepared.books_bound + WORK_ACCURACY * (laws.capability.accuracy or 0.0)
-        normal, _, columns, _ = prepared
+        normal, _, columns, own = prepared
+        bound = own + WORK_ACCURACY * (laws.capability.accuracy or 0.0)
         bare = self.both or type(normal) is UnfollowedMotion  # isinstance is slow
         error = columns.restitution_error
         if not scene.shape and passes(
