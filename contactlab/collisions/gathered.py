@@ -128,7 +128,7 @@ class GatheringResult(Answer):
 
     def __getitem__(self, body: str | int) -> Body:
         """Return a body by its name or place, with its velocity and spin after the impact."""
-        names: Any = self.gathering.names or range(len(self.gathering.bodies))
+        names = self.gathering.names or range(len(self.gathering.bodies))
         if isinstance(body, bool) or body not in names:
             known = ", ".join(map(repr, names))
             raise refuse("body", body, "is the name of no body", f"there are {known}")

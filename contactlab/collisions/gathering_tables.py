@@ -77,7 +77,7 @@ def write_csv(hit: GatheringResult, path: str | Path) -> None:
 
 def write_history_csv(hit: GatheringResult, path: str | Path) -> None:
     """Write one row for each instant and contact."""
-    history: Any = hit.history
+    history = hit.history
     columns = history.columns()
     headings = ["contact", *(csv_heading(name, history.unit(name), hit._scene) for name in columns)]
     count = len(hit.gathering.touches)

@@ -42,7 +42,7 @@ def rebounding(
     # From psi1 = 4 chi + 1 on bodies slip throughout, eq. (46), and the change of psi is
     # constant. So psi1 is cut there: it stays finite, with all digits, at any slip and friction.
     chi = pair.inertia_ratio
-    end: Any = 4.0 * chi + 1.0
+    end = 4.0 * chi + 1.0
     with np.errstate(all="ignore"):
         # m/s for each unit of psi, eq. (29)
         unit: Real = part.friction_coefficient * contact.approach / pair.stiffness_ratio
@@ -127,7 +127,7 @@ def turn_bodies(encounter: Encounter, moved: Moved, change: Real) -> Moved:
     """
     axis = np.stack(np.broadcast_arrays(*encounter.meeting().normal), axis=-1)
     about = np.asarray(change)[..., None] * axis
-    share: Any = 1.0
+    share: Real = 1.0
     body, target = encounter.body, encounter.target
     if isinstance(body, Sphere) and isinstance(target, Sphere):
         own, other = (inverse_turning_mass(each, body.radius) for each in (body, target))

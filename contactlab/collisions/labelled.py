@@ -39,7 +39,7 @@ def by_labels(
         If labels differ, arrays with labels stand beside arrays without, or two packages meet.
     """
     library, owner = _library(arguments)
-    module: Any = importlib.import_module(MODULES[library])
+    module = importlib.import_module(MODULES[library])
     ways = {"xarray": _by_dimensions, "pandas": _by_index, "dask": _lazily}
     apply: Callable[..., Any] = ways[library]
     checked = {

@@ -33,7 +33,7 @@ class Combined(NamedTuple):
 
 
 def _by_compliance(first: Real, second: Real, materials: tuple[Material, Material]) -> Any:
-    parts: Any = map(normal_compliance, materials)
+    parts = map(normal_compliance, materials)
     one, other = parts
     return (first * one + second * other) / (one + other)
 

@@ -192,7 +192,7 @@ def from_change(
     change: Any = psi_change * unit
     lost: Any = -scene.pair.tangential_mass * change * (scene.slip_velocity + 0.5 * change)
     lost = chosen(lost < 0.0, 0.0, lost)
-    shear: Any = 0.0
+    shear: Real = 0.0
     if in_shear is not None:
         shear = in_shear * unit * (0.5 * scene.pair.tangential_mass * unit)
         shear = chosen(shear > lost, lost, shear)

@@ -228,7 +228,7 @@ def spin_about(encounter: _Meeting, normal: Sequence[Real]) -> Any:
     if encounter.shape and not (moving(encounter.spin) or moving(encounter.target_spin)):
         return 0.0  # of one encounter three products take less
     spins = [components(spin) for spin in (encounter.spin, encounter.target_spin)]
-    omega: Any = 0.0
+    omega: Real = 0.0
     for n, one, other in zip(normal, *spins, strict=True):
         omega = omega + (one - other) * n
     if not some(omega != 0.0):
@@ -255,7 +255,7 @@ def _spin_alone(encounter: _Meeting, bodies: Sequence[Side], n: Vector, round_: 
 
 def turning_compliance(bodies: Sequence[Side], normal: Vector, radius: Real) -> Any:
     """Return radius² n·J⁻¹·n of both bodies, in 1/kg."""
-    total: Any = 0.0
+    total: Real = 0.0
     for _, body, _, _ in bodies:
         if isinstance(body, Sphere):
             total = total + inverse_turning_mass(body, radius)
@@ -344,7 +344,7 @@ def gap_of(encounter: _Meeting, t1: Vector, t2: Vector) -> Gap:
     bodies = encounter.body, encounter.target
     (one, other, axis), (two, another, across) = (_curvatures(body, t1, t2) for body in bodies)
     mean = 0.5 * ((one + other) + (two + another))
-    elliptic: Any = False
+    elliptic: Mask = False
     if any(getattr(body, "cross_radius", None) is not None for body in bodies):
         uneven: Any = 0.5 * ((one - other) * axis * axis + (two - another) * across * across)
         size = abs(uneven)
@@ -376,7 +376,7 @@ def _curvatures(
     """Return both principal curvatures of a body in 1/m, and the direction of the first."""
     if isinstance(body, RigidBody):
         return body.curvatures(t1, t2)
-    curvature: Any = 0.0 if isinstance(body, HalfSpace) else 1.0 / body.radius
+    curvature: Real = 0.0 if isinstance(body, HalfSpace) else 1.0 / body.radius
     return curvature, curvature, 1.0 + 0.0j
 
 

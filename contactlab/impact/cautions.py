@@ -67,7 +67,7 @@ def size_of_contact(scene: Scene, radius: Real) -> float:
     Between bodies that are no spheres: of the minor semi-axis over the least radius of curvature,
     and of the major one over the distances of the centres of mass.
     """
-    largest: Any = radius / scene.pair.radius
+    largest = radius / scene.pair.radius
     encounter = scene.encounter
     if encounter is None or encounter.of_spheres:
         return float(np.max(largest))

@@ -11,7 +11,7 @@ import numpy as np
 from contactlab.impact.cautions import OUTSIDE
 from contactlab.impact.scene import Scene
 from contactlab.impact.table import between_nodes, read_rows
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Array, Mask, Real
 
 #: Shift of psi2 by one-way coupling, to 0.002, by the half-space law; its builder is
 #: ``python -m table_builders coupling build``. The nodes are psi1, chi, nu, and Lambda.
@@ -90,7 +90,7 @@ def measures_coupling(scene: Scene) -> Any:
     """
     (_, *axes), kappa = nodes().axes, np.asarray(scene.pair.stiffness_ratio)
     nu = (2.0 - 2.0 * kappa) / (2.0 - kappa)
-    within: Any = True
+    within: Mask = True
     for entry, axis in zip((scene.chi, nu, coupling_number(scene)), axes, strict=True):
         slack = ROUNDING * axis[-1]
         within = within & (entry >= axis[0] - slack) & (entry <= axis[-1] + slack)

@@ -358,7 +358,7 @@ class Encounter:
         """Return in words that friction alone presses sliding bodies together, else nothing."""
         if self.of_spheres:
             return ""
-        one: Any = self.take(index)
+        one = self.take(index)
         contact = one.meeting()
         (pressed, coupling), _ = inverse_mass_of(sides(one, contact.normal), contact[:2])
         lam = one.friction_coefficient * coupling / pressed

@@ -240,7 +240,7 @@ class Assembly:
             after["velocity"][:, place] += pushed / self.flat(body.shape.mass)[:, None]
         for k, met in enumerate(self.met):
             for side, changes in changes_of(met, axes[:, k], impulse[:, k]):
-                moved: Any = self.gathering.places[k][side.sense < 0.0]
+                moved = self.gathering.places[k][side.sense < 0.0]
                 for entry, change in changes.items():
                     after[entry][:, moved] += join_components(change, (self.count,))
         return after["velocity"], after["spin"]

@@ -203,7 +203,7 @@ def slip_speed(scene: Motions) -> Any:
 def rubs(scene: Motions) -> bool:
     """Return whether any impact has friction and slip at first touch."""
     slip: Any = slip_speed(scene)
-    friction: Any = scene.friction_coefficient
+    friction = scene.friction_coefficient
     return bool(np.any((slip != 0.0) & (friction != 0.0)))
 
 
@@ -228,8 +228,8 @@ def rim(scene: Motions, spin: Real) -> Any:
 
 def normal_inertia(scene: Motions) -> Any:
     """Return J about the normal in kg m², 1/J the sum of both bodies'; 0 without spin about it."""
-    inverse: Any = scene.pair.inverse_spin_mass
-    size: Any = scene.pair.radius
+    inverse = scene.pair.inverse_spin_mass
+    size = scene.pair.radius
     return chosen(inverse > 0.0, quotient(size * size, inverse), 0.0)
 
 
@@ -344,7 +344,7 @@ def most_slip_change(scene: Motions) -> Any:
     if scene.inverse_mass is not None:
         return math.inf + 0.0 * slip_speed(scene)
     pair = scene.pair
-    friction: Any = scene.friction_coefficient * scene.normal_speed
+    friction = scene.friction_coefficient * scene.normal_speed
     # This is 4 chi in psi; psi itself would be infinite without friction.
     return 2.0 * (friction * (pair.normal_mass / pair.tangential_mass))
 
@@ -398,7 +398,7 @@ def energies(scene: Motions, rate: Real, change: Real) -> tuple[Any, Any, Any]:
     rate, change : float or array
         Rate of approach after, and change of the slip velocity, in m/s.
     """
-    speed: Any = scene.normal_speed
+    speed = scene.normal_speed
     if scene.inverse_mass is None:
         return scene.pair.energies(speed, scene.slip_velocity, rate, change)
     before = scene._components(speed, scene.slip_velocity)

@@ -125,8 +125,8 @@ def gross_slip(psi1: Array, chi: Array, w: Array) -> tuple[Any, Any]:
     psi1, chi, w : float or array
         As in ``shift_and_loss``; not negative.
     """
-    shift: Any = 0.0
-    loss: Any = 0.0
+    shift: Real = 0.0
+    loss: Real = 0.0
     for angle in (np.arange(POINTS) + 0.5) * (math.pi / POINTS):
         rate, weight = math.cos(angle), math.sin(angle) ** 1.8 * (math.pi / POINTS)
         over = w / (psi1 - 2.0 * chi + (2.0 * chi - 1.0) * rate)

@@ -38,7 +38,7 @@ def between_nodes(entries: Sequence[Real], axes: Sequence[Array], values: Array)
         Numbers at the nodes.
     """
     places = [_place(*pair) for pair in zip(entries, axes, strict=True)]
-    found: Any = 0.0
+    found: Real = 0.0
     for corner in itertools.product((0, 1), repeat=len(places)):
         weight: Real = 1.0
         for (_, share), up in zip(places, corner, strict=True):

@@ -30,7 +30,7 @@ def touches_of_spheres(
     reach: Real,
 ) -> Iterator[tuple[Any, Any, Array, Real]]:
     """Yield first, second, normal and gap in m of spheres and walls that are in reach."""
-    pairs: Any = bodies.items() if isinstance(bodies, Mapping) else enumerate(bodies)
+    pairs = bodies.items() if isinstance(bodies, Mapping) else enumerate(bodies)
     named: list[tuple[Any, Any]] = [*pairs]
     for name, body in named:
         if not isinstance(body.shape, Sphere):

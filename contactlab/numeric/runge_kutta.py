@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from functools import cache
 from operator import mul
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -193,7 +193,7 @@ def _tableau() -> Tableau:
     """Return scipy's coefficients: stages, end of the step, and three stages for the polynomial."""
     from scipy.integrate import DOP853  # only laws without closed form need scipy
 
-    method: Any = DOP853
+    method = DOP853
     inner = [np.array(row[:stage]) for stage, row in enumerate(method.A)]
     more = [np.array(row[: len(inner) + 1 + k]) for k, row in enumerate(method.A_EXTRA)]
     stages = [*inner, np.array(method.B), *more]

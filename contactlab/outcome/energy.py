@@ -220,7 +220,7 @@ def raise_errors(
     if not some(doubted):
         return columns
     speed: Any = scene.normal_speed
-    rate: Any = BOOKS_TELL * np.asarray(off)
+    rate = BOOKS_TELL * np.asarray(off)
     with np.errstate(all="ignore"):
         slip: Real = rate * speed * np.asarray(scene.psi_scale)
         psi2 = np.where(doubted, np.maximum(columns.psi2_error, slip), columns.psi2_error)

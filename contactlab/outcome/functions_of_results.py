@@ -42,7 +42,7 @@ def values_of(
 def _numbers(value: Callable[[object], object], result: object) -> Any:
     """Return the numbers of a function of a result, or refuse what is none, or of another shape."""
     of: Any = result
-    given: Any = value(result)
+    given = value(result)
     shape = of.scene.shape
     if given is None or type(given) is float:
         return given

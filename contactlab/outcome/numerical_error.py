@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -97,7 +97,7 @@ def _is_fine(result: WithPlan) -> bool:
 def _errors(result: WithPlan) -> tuple[Array, Array]:
     """Return estimated and declared error in the batch shape, NaN where there is none."""
     shape = result.scene.shape
-    estimate: Any = np.nan if result.psi2_error_estimate is None else result.psi2_error_estimate
+    estimate = np.nan if result.psi2_error_estimate is None else result.psi2_error_estimate
     declared = np.broadcast_to(np.asarray(result.plan.psi2_error, dtype=np.float64), shape)
     return np.broadcast_to(np.asarray(estimate, dtype=np.float64), shape), declared
 

@@ -97,7 +97,7 @@ def draw_result(
 
 def _abscissa(result: Drawn) -> str:
     """Return psi1, or the first entry that varies where psi1 does not tell the impacts apart."""
-    psi1: Any = result.psi1
+    psi1 = result.psi1
     if np.shape(psi1) == result.scene.shape and np.ptp(psi1) > 0.0:
         return "psi1"
     return next(iter(result.scene.varied), "psi1")
@@ -166,7 +166,7 @@ def _quantities(axes: Axes, result: Drawn, x: str, y: str) -> Axes:
 
 def _band(axes: Axes, result: Drawn, x: Array, y: Array, order: Places) -> None:
     """Draw the visible numerical error of psi2, estimated or else declared."""
-    error: Any = result.psi2_error_estimate
+    error = result.psi2_error_estimate
     if error is None:
         error = result.plan.psi2_error
     error = np.broadcast_to(np.asarray(error, dtype=float), result.scene.shape).ravel()

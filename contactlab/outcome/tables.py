@@ -292,7 +292,7 @@ def _contact(result: ImpactResult) -> list[Row]:
     size = size_of_contact(scene, motion.maximum_radius)
     sizes: list[Row] = [["largest contact radius", motion.maximum_radius, "m"]]
     if scene.pair.axis_ratio != 1.0:
-        axes: Any = zip(("t1", "t2"), semi_axes(scene.pair), strict=True)
+        axes = zip(("t1", "t2"), semi_axes(scene.pair), strict=True)
         sizes[0][0] = "largest contact radius, of the circle as stiff"
         sizes += [
             [f"largest semi-axis along {name}", motion.maximum_radius * axis, "m"]

@@ -8,7 +8,6 @@ import pickle
 from collections.abc import Callable, Mapping
 from enum import Enum
 from functools import singledispatch
-from typing import Any
 
 import attrs
 import numpy as np
@@ -30,7 +29,7 @@ def _feed(tree: object, update: Callable[[bytes], None]) -> None:
 @singledispatch
 def _content(tree: object, update: Callable[[bytes], None]) -> None:
     """Pass the bytes of a tree to ``update``."""
-    kind: Any = type(tree)
+    kind = type(tree)
     if not attrs.has(kind):
         with contextlib.suppress(Exception):  # a function made in a function is known by its work
             update(pickle.dumps(tree))

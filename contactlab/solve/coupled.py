@@ -196,7 +196,7 @@ class Coupled(Way):
         """Return how many impacts, or gatherings, have springs that stay in the cache."""
         if self.scene.links is None:
             return self.at_a_time
-        law: Any = self.laws.tangential
+        law = self.laws.tangential
         springs = 1 if law.resolution is None else resolution_of(law) or 1
         return max(1.0, IN_CACHE // (self.scene.shape[-1] * max(springs, 1)))
 

@@ -105,7 +105,7 @@ class Decoupled(Way):
             Reason(each.reason, each.balanced, each.fields is not None) for _, each in answered
         )
         # the load impulse of a frictionless impact is M_n v1 (1 + e), at most twice M_n v1
-        restitution: Any = CLOSED_FORM + 2.0 * normal.accuracy
+        restitution: Real = CLOSED_FORM + 2.0 * normal.accuracy
         for each in answered:
             if each.answer.normal is not None:
                 restitution = math.nan  # the law changed it, and declares no error of it

@@ -79,7 +79,7 @@ def gathering_plan(
     scene, shape = way.scene, gathering.shape
     prepared = way.prepare(False)
     contacts = scene.shape[-1]
-    normal: Any = prepared.normal
+    normal = prepared.normal
     times = np.broadcast_to(normal.duration, scene.shape)
     depth = np.broadcast_to(normal.maximum_approach, scene.shape)
     assert scene.links is not None
@@ -233,7 +233,7 @@ class _Words:
 
     def _sizes(self) -> Array:
         """Return the greatest contact radius of each contact: of the run, or alone at v1."""
-        told: Any = self.normal if self.motion is None else self.motion
+        told = self.normal if self.motion is None else self.motion
         return np.broadcast_to(told.maximum_radius, self.scene.shape)
 
     def _near(self) -> Iterator[Clause]:

@@ -77,7 +77,7 @@ def _find_gaps(way: Way) -> Mask:
         prepared = way.prepare(False)
     except faults.LawFaultError:
         return False
-    missing: Any = prepared.columns.marched
+    missing = prepared.columns.marched
     for where, answer in prepared.answered:
         missing = missing | (where & ~np.isfinite(answer.slip_velocity_change))
     return np.asarray(missing)

@@ -208,7 +208,7 @@ def _of_bodies(simulation: Simulation, result: ImpactResult) -> tuple[float, flo
         return np.nan, UNDECLARED, ["a number that is not finite"]
     if "books" not in law.expected_failures:
         start: Real = books.start
-        bound: Any = law.books_bound(result.scene.central)
+        bound = law.books_bound(result.scene.central)
         bound = max(BODIES_BOOKS, bound if np.isfinite(bound) else 0.0)
         if books.end > start * (1.0 + BODIES_GAIN):
             wrong.append(f"{float(books.end / start - 1.0):.2g} of the energy from nothing")

@@ -233,7 +233,7 @@ def _first_slip() -> Finding:
         psi1 = 1.0 + 0.2 * (1 + place) * (each - 1.0)  # slips at first touch, stops before V = 0
         slip = slips[place] * psi1 / psi[place]
         start = attrs.evolve(scene.take(place), tangential_velocity=slip)
-        history: Any = _exact_laws().run(start, history=True).check().history
+        history = _exact_laws().run(start, history=True).check().history
         limit = float(start.friction_coefficient) * history.normal_force
         full = np.abs(history.tangential_force) >= limit * (1.0 - 1e-9)
         stopped = int(np.argmin(full)) - 1
@@ -319,7 +319,7 @@ def _codes(number: int, form: str) -> Finding:
 def _scalars(name: str, scene: Scene, published: dict[str, float], bound: float) -> Finding:
     """Return the finding of Hertz's law against published scalars of a normal impact."""
     sim = Simulation(tangential="frictionless", integrator="symplectic")
-    motion: Any = sim.run(scene).check().motion
+    motion = sim.run(scene).check().motion
     computed = {
         "force": motion.maximum_force,
         "approach": motion.maximum_approach,

@@ -152,7 +152,7 @@ def impact_repeatable(law: TangentialLaw | Integrator) -> None:
     """A run does not change the law, is repeatable, and does not depend on an observer."""
     for way in ways_of_bodies(law):
         kept = copy.deepcopy(law)
-        first: Any = meet(way, 1.2, 1.44)[1]
+        first = meet(way, 1.2, 1.44)[1]
         meet(way, 3.5, 3.0)
         again = meet(way, 1.2, 1.44)[1]
         hold(same(first, again), f"The same impact, run twice, ends differently ({way}).")

@@ -65,7 +65,7 @@ def as_met(table: Measurements, scene: object) -> Measurements:
         return table  # of other bodies than spheres columns change a file
     elif isinstance(scene, Scene) and isinstance(scene.target, Sphere):
         arm = -np.asarray(scene.target.radius), 0.0
-    spin: Any = table.given.get(SPIN, None if table.struck else own.get(SPIN))
+    spin = table.given.get(SPIN, None if table.struck else own.get(SPIN))
     if spin is not None and arm is None:
         check_spin(f"{table.source}: {SPIN}" if table.source else SPIN, spin)
         spin = None

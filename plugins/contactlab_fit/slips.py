@@ -353,7 +353,7 @@ def _of_law(law: str) -> str:
 def _free_restitution(problem: Problem, values: Array) -> Wider:
     """Return the problem with a restitution to fit; None without a table of such impacts."""
     setup, parameters = problem.model.setup, problem.model.parameters
-    laws: Any = setup.simulation or tabulated.with_loss(SOME_LOSS)
+    laws = setup.simulation or tabulated.with_loss(SOME_LOSS)
     names = [parameter.name for parameter in parameters]
     own = getattr(setup.simulation and laws.normal, RESTITUTION, 1.0)
 

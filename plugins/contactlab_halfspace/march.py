@@ -132,7 +132,7 @@ def follow(
             if contact is not None and contact.limit is not None:
                 pressed[: contact.rings] = contact.limit
             kept.append((new, slip, pressed))
-    departures: Any = None
+    departures: Array | None = None
     if isinstance(pressure, Answering):
         departures = np.stack((pressure.approach, pressure.rate, pressure.excess))[..., None]
     works = np.array([6.0 * chi * pressure.stiffness * work])

@@ -32,7 +32,7 @@ class Parts(NamedTuple):
 
 def press(parts: Parts, approach: Real, rate: Real, powers: tuple[float, float]) -> NormalContact:
     """Return the contact of P = k z^n + c z^m z', ``powers`` (n, m), without tension; b² = R z."""
-    touching: Any = approach >= 0.0
+    touching = approach >= 0.0
     inside: Any = approach * touching  # NaN stays NaN
     damping = parts.damping * inside ** powers[1] * touching
     force = parts.stiffness * inside ** powers[0] + damping * rate

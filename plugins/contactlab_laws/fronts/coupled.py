@@ -50,7 +50,7 @@ def motion(
     W: Any = scene.inverse_mass
     mu: Any = scene.friction_coefficient
     speed: Any = scene.normal_speed
-    kappa: Any = scene.pair.stiffness_ratio
+    kappa = scene.pair.stiffness_ratio
     smooth: Any = mu == 0.0
     numbers = join_components((scene.psi1, scene.chi, scene.lam, scene.eta), shape).reshape(-1, 4).T
     if observer is None or some(smooth) or numbers.shape[1] != 1:

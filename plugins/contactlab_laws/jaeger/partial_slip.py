@@ -105,7 +105,7 @@ def _hertzian(normal: NormalMotion) -> bool:
     """Return whether the friction load is that of a Hertz contact of the same radius."""
     pair, shape = normal.scene.pair, normal.scene.shape
     contact = normal.at(PHASES.reshape(-1, *(1 for _ in shape))).contact
-    radius: Any = contact.radius
+    radius = contact.radius
     hertz = (4.0 / 3.0) * pair.effective_modulus * radius**3 / pair.radius
     off = np.abs(np.asarray(contact.friction_load) - hertz)
     return bool(np.all(~(off > CLOSE * hertz)))

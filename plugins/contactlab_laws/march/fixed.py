@@ -56,7 +56,7 @@ def find_least_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene | No
         assert isinstance(law, CausalTangentialLaw)
         return np.maximum(coupled_steps.find_least_steps(scene, normal, law), float(LEAST_STEPS))
     scene = normal.scene
-    stiffness: Any = judges.stiffness_of(law, scene, normal)
+    stiffness = judges.stiffness_of(law, scene, normal)
     if not scene.shape and isinstance(stiffness, float):
         single = math.sqrt(stiffness / scene.pair.tangential_mass) * float(normal.duration)
         least = single / LARGEST_PHASE_STEP

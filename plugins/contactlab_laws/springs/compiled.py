@@ -134,9 +134,9 @@ def _motion(
     def column_of(place: int) -> Real:
         return np.array(end[..., place]) if scene.shape else float(end[place])
 
-    slip: Any = column_of(1) if scene.planar else np.array(end[..., 1:3])
+    slip = column_of(1) if scene.planar else np.array(end[..., 1:3])
     change = column_of(0)
-    after: Any = rate + change if scene.shape else float(rate) + change
+    after = rate + change if scene.shape else float(rate) + change
     contacts = None
     if scene.links is not None:
         contacts = Contacts(
@@ -163,7 +163,7 @@ def _motion(
 
 def _contacts(scene: Scene, normal: NormalMotion, shear_loss: float | None) -> Array:
     """Return the contacts at the start, rows as of ``contactlab_march_contact``."""
-    pair: Any = scene.pair
+    pair = scene.pair
     c = np.zeros((*scene.shape, CONTACT))
     if scene.links is not None:
         c[..., :3], c[..., 3], c[..., 4:7] = (

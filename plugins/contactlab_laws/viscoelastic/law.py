@@ -145,7 +145,7 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
     def respond(self, state: Parts, approach: Real, rate: Real) -> tuple[NormalContact, Parts]:
         """Return force and radius; where the contact was left behind, it is Hertz's (2) anew."""
         inside: Any = approach * (approach > 0.0)
-        lead: Any = state.time * rate
+        lead: Real = state.time * rate
         edge = inside + lead * (lead < 0.0)
         edge = edge * (edge > 0.0)
         force = state.stiffness * edge**0.5 * (1.5 * (inside + lead) - 0.5 * edge)
