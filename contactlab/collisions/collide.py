@@ -197,7 +197,7 @@ def _alone(given: object, restitution: Real, simulation: Simulation) -> None:
         raise refuse("restitution", given, "stands in place of a simulation", remedy)
 
 
-def _at_speeds(restitution: Callable[..., Numbers], encounter: Encounter) -> Any:
+def _at_speeds(restitution: Callable[..., Numbers], encounter: Encounter) -> Real:
     """Return the restitution at the normal speed of each encounter; 1 where bodies separate."""
     shape, approach = encounter.shape, encounter.meeting().approach
     apart = np.broadcast_to(~(np.asarray(approach) >= LEAST), shape)

@@ -452,7 +452,7 @@ def laws_of(restitution: float) -> Simulation:
     return Simulation.of(laws.changed(named=frozenset({"normal"})))
 
 
-def bound_restitution_error(chi: Real, restitution: Real) -> Any:
+def bound_restitution_error(chi: Real, restitution: Real) -> Real:
     """Return the bound of the error of psi2 below a restitution of 1, as its law declares it."""
     return _law("normal").rebound_error(chi, restitution)
 

@@ -32,7 +32,7 @@ class Combined(NamedTuple):
     of: Callable[[Any, Any, tuple[Material, Material]], Any]
 
 
-def _by_compliance(first: Real, second: Real, materials: tuple[Material, Material]) -> Any:
+def _by_compliance(first: Real, second: Real, materials: tuple[Material, Material]) -> Real:
     parts = map(normal_compliance, materials)
     one, other = parts
     return (first * one + second * other) / (one + other)

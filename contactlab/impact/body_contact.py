@@ -238,7 +238,7 @@ def spin_about(encounter: _Meeting, normal: Sequence[Real]) -> Any:
     return np.broadcast_to(omega, encounter.shape) if encounter.shape else omega
 
 
-def _spin_alone(encounter: _Meeting, bodies: Sequence[Side], n: Vector, round_: Mask) -> Any:
+def _spin_alone(encounter: _Meeting, bodies: Sequence[Side], n: Vector, round_: Mask) -> Real:
     """Return the spin about the normal that a couple alone moves; ``round_`` where it may.
 
     It is 0 where a body is off centre, or the normal is no principal axis of its inertia.
@@ -253,7 +253,7 @@ def _spin_alone(encounter: _Meeting, bodies: Sequence[Side], n: Vector, round_: 
     return spin if some(spin != 0.0) else 0.0
 
 
-def turning_compliance(bodies: Sequence[Side], normal: Vector, radius: Real) -> Any:
+def turning_compliance(bodies: Sequence[Side], normal: Vector, radius: Real) -> Real:
     """Return radius² n·J⁻¹·n of both bodies, in 1/kg."""
     total: Real = 0.0
     for _, body, _, _ in bodies:

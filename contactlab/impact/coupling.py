@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -77,7 +77,7 @@ def coupling_shift(scene: Scene) -> Real:
     return np.where(np.asarray(scene.friction_coefficient) == 0.0, 0.0, shift)
 
 
-def measures_coupling(scene: Scene) -> Any:
+def measures_coupling(scene: Scene) -> Mask:
     """Return where the table of ``coupling_shift`` has an impact; theory goes beyond its psi1.
 
     Parameters

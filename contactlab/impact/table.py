@@ -25,7 +25,7 @@ def read_rows(file: Path) -> tuple[list[str], Array]:
     return lines[0], np.array([[float(word) for word in line] for line in lines[1:]])
 
 
-def between_nodes(entries: Sequence[Real], axes: Sequence[Array], values: Array) -> Any:
+def between_nodes(entries: Sequence[Real], axes: Sequence[Array], values: Array) -> Real:
     """Return ``values``, shape (nodes of each axis), at ``entries``, linear between nodes.
 
     Parameters

@@ -60,7 +60,7 @@ def touches_of_spheres(
                 yield name, wall, into, gap
 
 
-def _gap(pair: str, gap: Real, size: Real) -> Any:
+def _gap(pair: str, gap: Real, size: Real) -> Real:
     """Return gaps in m, 0 for overlaps that are rounding; refuse others."""
     least = np.min(gap / size)
     if not least > -ROUNDING:

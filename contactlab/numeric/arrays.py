@@ -219,7 +219,7 @@ def shape_as(values: AnyArray, shape: tuple[int, ...]) -> Any:
     return values.reshape(shape) if shape else values.item()
 
 
-def part_of(value: Real, part: Index) -> Any:
+def part_of(value: Real, part: Index) -> Real:
     """Return the numbers of some impacts; a plain number is that of each."""
     return value[part] if isinstance(value, np.ndarray) else value
 

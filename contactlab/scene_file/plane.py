@@ -120,6 +120,6 @@ def directions(table: Table) -> tuple[Array, Array]:
     return n, t / np.linalg.norm(t)
 
 
-def _number(table: Table, key: str) -> Any:
+def _number(table: Table, key: str) -> Real:
     """Return the number of a key, 0 if it is not there."""
     return table.number(key, remedy=f"give it in {UNITS[key]}") if table.has(key) else 0.0

@@ -74,7 +74,7 @@ def approach_duration(normal: NormalMotion) -> Real:
     return np.where(ended, normal.duration, np.minimum(normal.duration, as_deep))
 
 
-def _count_duration(scene: Scene, normal: NormalMotion) -> Any:
+def _count_duration(scene: Scene, normal: NormalMotion) -> Real:
     """Return the duration in s that is divided in steps: of a gathering that of the shortest."""
     duration = approach_duration(normal)
     return duration if scene.links is None else np.min(duration, axis=-1, keepdims=True)

@@ -101,7 +101,7 @@ def of_spheres(
     return Errors(error * np.minimum(slip / LITTLE_SLIP, 1.0))
 
 
-def _left(error: Real, chi: Real, restitution: Real) -> Any:
+def _left(error: Real, chi: Real, restitution: Real) -> Real:
     """Return what a loss leaves of an error: less of a small one, of long oscillations."""
     return np.minimum(1.0 / np.maximum((1.0 - restitution) * chi, 1.0) + error, 1.0)
 
