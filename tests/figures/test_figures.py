@@ -271,6 +271,7 @@ def test_in_a_narrow_column_panels_stand_below_each_other(tmp_path):
     assert tops == sorted(tops, reverse=True)
 
 
+@pytest.mark.slow
 def test_a_name_without_room_chooses_first_in_the_next_try():
     """In the order of their crowd alone one of these six names finds no place."""
     axes = Figure(figsize=(3.2, 2.4)).subplots()

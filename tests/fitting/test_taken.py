@@ -139,7 +139,7 @@ def test_without_friction_a_fit_is_that_of_the_normal_numbers(tmp_path, text, co
     np.testing.assert_array_equal(unknown.normal_restitution, known.normal_restitution)
 
 
-@pytest.mark.parametrize("given", ["column", "scene", "fitted"])
+@pytest.mark.parametrize("given", ["column", "scene", *longer("fitted")])
 def test_the_remedies_of_a_missing_friction_work(tmp_path, given):
     text, columns, parameters = BALL + FLOOR, LOSSY, ["restitution"]
     if given == "column":

@@ -281,6 +281,7 @@ def test_random_impacts_gain_no_energy_and_keep_their_signs(seed):
     assert (result.motion.normal_spin_change * scene.normal_spin < 0.0).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("psi1", [0.5, -2.0])
 def test_fast_spin_slows_slip_less_and_less_and_never_speeds_it_up(psi1):
     """The error of rings falls by the square there: 64 rings leave psi2 to 4e-4 at w = 50."""

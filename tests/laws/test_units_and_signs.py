@@ -19,7 +19,9 @@ METHODS = [method for method in methods() if method.integrator != "adaptive"]
 def longer(method):
     """Return whether a method is left to the longer tests."""
     under_springs = method.tangential == "springs"
-    return method.tangential == "annulus" or (method.integrator == "paper" and not under_springs)
+    return method.tangential in ("annulus", "mindlin_deresiewicz") or (
+        method.integrator == "paper" and not under_springs
+    )
 
 
 SHORTER = [

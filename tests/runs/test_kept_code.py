@@ -11,6 +11,7 @@ import pytest
 
 import contactlab
 from contactlab import PluginError, Scene, Simulation
+from tests.longer import longer
 from tests.runs.test_sweep import blocks_of
 
 #: A friction law of a share of the friction, which is written elsewhere.
@@ -195,7 +196,7 @@ class Ends(WholeImpactTangentialLaw):
 
 
 @pytest.mark.parametrize("argument", ["keep", "into"])
-@pytest.mark.parametrize("end", ["psi1 < -5.9", "psi1 > 5.9", "chi < 0.52", "chi > 1.98"])
+@pytest.mark.parametrize("end", ["psi1 < -5.9", "chi > 1.98", *longer("psi1 > 5.9", "chi < 0.52")])
 def test_a_change_at_one_end_is_seen(folder, monkeypatch, argument, end):
     blocks_of(monkeypatch, 10)
     rng = np.random.default_rng(3)

@@ -73,6 +73,7 @@ def test_each_impact_of_bodies_has_its_own():
         assert whole.velocity_in_space[k] == pytest.approx(hit.velocity, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_blocks_and_threads_change_no_bit():
     scene, laws = balls(), Simulation(restitution=E)
     whole = laws.run(scene)
