@@ -31,6 +31,7 @@ def small(monkeypatch):
         monkeypatch.setattr(animation, name, value)
 
 
+@pytest.mark.slow
 def test_a_picture_moves_at_its_pace_for_ever(tmp_path, small, recwarn):
     seen = []
     path = tmp_path / "a.gif"
