@@ -268,7 +268,7 @@ def test_the_rows_of_the_bench_are_those_of_the_guide():
         numbers = set(re.findall(r"=(\d+)", parts[0][0])) if "exact" not in resolution else set()
         assert numbers <= set(re.findall(r"\d+", resolution))
         assert close(error, float(parts[0][1]))
-        assert parts[0][3].replace("240 µs", "0.24 ms") == took
+        assert parts[0][3] == took
 
 
 def test_the_plan_is_what_the_command_prints(capsys):
