@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from importlib.util import find_spec
 from types import SimpleNamespace
 
 import numpy as np
@@ -21,6 +22,7 @@ from contactlab.study.benchmark import Benchmark, Row
 from contactlab.study.questions import questions
 from contactlab.study.work_precision import bench
 from tests.longer import longer
+from tests.present import extra
 
 
 def row(method="a", error=1.0, time=1.0, failed=0, options="steps=10", **entries):
@@ -230,6 +232,7 @@ def test_doors_of_a_question_agree_with_its_truth(name, door, error):
             assert np.abs(answer - truth).max() < 1e-3
 
 
+@extra("contactlab_halfspace")
 def test_spin_about_the_normal_is_no_question_of_a_door_without_it():
     posed, answers = numbers("spin about the normal")
     assert abs(answers["collide(), without"] - posed.truths[0])[0] > 0.1
@@ -237,7 +240,9 @@ def test_spin_about_the_normal_is_no_question_of_a_door_without_it():
 
 def test_every_question_has_its_name_once_and_one_is_found_by_it():
     names = [each.name for each in questions()]
-    assert len(set(names)) == len(names) == 10
+    spins = find_spec("contactlab_halfspace") is not None
+    assert len(set(names)) == len(names) == 9 + spins
+    assert ("spin about the normal" in names) is spins
     with pytest.raises(
         ValueError, match=r"question = 'plain': must be one of 'sphere', .*'course'"
     ):
