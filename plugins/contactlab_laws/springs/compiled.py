@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeGuard
+from typing import Any, NamedTuple, Protocol, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,9 +31,6 @@ from contactlab_laws.march.contacts import tell_still_closing
 from contactlab_laws.march.coupled_steps import DEEPEST, TOO_DEEP, Division, tell_too_long
 from contactlab_laws.springs import viscous
 
-if TYPE_CHECKING:
-    from contactlab_laws.springs.law import Springs
-
 #: Numbers of a contact, of an end, of a step of a known motion, and of an impact along it.
 CONTACT, END, SAMPLE, IMPACT = 17, 22, 7, 7
 #: Names of the classes that are compiled: to compare names loads none that nobody uses.
@@ -51,7 +48,16 @@ AT_A_TIME = 1e6
 ROUNDING = 4e-13
 
 
-def knows(law: Law, normal: Law | None, integrator: Law | None = None) -> TypeGuard[Springs]:
+class _Springs(Protocol):
+    """What the march asks of springs, whose own module imports this one."""
+
+    @property
+    def shear_loss(self) -> float: ...
+
+    def even_springs(self) -> int: ...
+
+
+def knows(law: Law, normal: Law | None, integrator: Law | None = None) -> TypeGuard[_Springs]:
     """Return whether a march of these laws is compiled; None stands for any normal law.
 
     Laws that are derived from them may answer otherwise.
@@ -72,15 +78,16 @@ def march(
     refused: tuple[Status, str | NDArray[np.object_]],
 ) -> TangentialMotion | None:
     """Return the motion of ``march_coupled``; None where Python has to follow an impact."""
-    if (found := library()) is None or not knows(law, normal.law):
+    bundle: Law = law
+    if (found := library()) is None or not knows(bundle, normal.law):
         return None
     batch, links = kinetics.batch_of(scene), scene.links
-    axes, springs = 1 if scene.planar else 2, law.even_springs()
+    axes, springs = 1 if scene.planar else 2, bundle.even_springs()
     items, loss = math.prod(batch), shares_loss(law, normal.law)
     if not loss and "elastic_hertz" not in normal.claims:
         return None
     contacts = 1 if links is None else scene.shape[-1]
-    c = _contacts(scene, normal, law.shear_loss if loss else None)
+    c = _contacts(scene, normal, bundle.shear_loss if loss else None)
     row, column, block = _blocks(scene, contacts)
     deepest = np.empty(scene.shape)
     deepest[...] = DEEPEST**0.4 * np.asarray(normal.maximum_approach)
