@@ -61,7 +61,7 @@ class Laws:
     """Three laws that fit together, the kinds of those that the user ``named``, what they can do.
 
     Resolutions of the kinds ``by_scene`` were chosen for impacts, for a ``reason``, as nobody named
-    them; ``asked`` is the tangential law without, which answers impacts as a whole.
+    them; ``asked`` are the laws without.
 
     Iterating yields the laws in the order of their kinds.
     """
@@ -72,7 +72,7 @@ class Laws:
     named: frozenset[str] = frozenset(KINDS)
     by_scene: frozenset[str] = frozenset()
     reason: str = ""
-    asked: TangentialLaw | None = None
+    asked: Laws | None = None
     capability: Capability = attrs.field(init=False, eq=False, repr=False)
 
     @capability.default

@@ -140,7 +140,7 @@ class Simulation:
     def plan(self, scene: Scene | Gathering, *, history: bool | str = False) -> Plan:
         """Return what ``run`` would compute for ``scene``, what it would leave out and why.
 
-        Of a ``Gathering`` it is what ``collide(gathering, simulation)`` would.
+        The plan of a ``Gathering`` is that of ``collide(gathering, simulation)``.
 
         Parameters
         ----------

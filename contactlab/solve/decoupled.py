@@ -68,7 +68,7 @@ class Decoupled(Way):
             size, accuracy = psi_magnitude(scene), laws.capability.accuracy
             most = math.inf if accuracy is None else accuracy * (1.0 + ROUNDING) * size
             always = laws.capability.whole is not None
-            law = laws.asked or laws.tangential
+            law = (laws.asked or laws).tangential  # which answers impacts as a whole
             answered = answers(normal, law, always=always, history=history, largest_error=most)
             bound = judges.books_bound_of(laws.tangential, scene)
             return Prepared(normal, answered, self._columns(normal, answered, size), bound)

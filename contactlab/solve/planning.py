@@ -109,9 +109,9 @@ def _words(
         return (), (), ()
     used, resolution = way.laws, []
     if used.by_scene:
-        from contactlab.solve.resolution import as_named, tell_resolution  # most laws have none
+        from contactlab.solve.resolution import tell_resolution  # most laws have none
 
-        used, resolution = as_named(used), tell_resolution(used, masks.marched)
+        used, resolution = used.asked or used, tell_resolution(used, masks.marched)
     law = f"{in_words(used.normal)}, {way.how()}"
     computed = [Clause(f"normal motion: {law}", masks.known)]
     elongation = elongation_of(way.scene.pair)

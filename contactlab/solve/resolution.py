@@ -79,21 +79,10 @@ def _made(laws: Laws, resolutions: tuple[tuple[str, float], ...], reason: str) -
     for kind, value in resolutions:
         law: Any = getattr(laws, kind)
         changed[kind] = attrs.evolve(law, **{law.resolution: type(resolution_of(law))(value)})
-    return laws.changed(
-        **changed, by_scene=frozenset(changed), reason=reason, asked=laws.tangential
-    )
+    return laws.changed(**changed, by_scene=frozenset(changed), reason=reason, asked=laws)
 
 
 _kept = lru_cache(maxsize=256)(_made)
-
-
-def as_named(laws: Laws) -> Laws:
-    """Return the laws as the user named them."""
-    changed: dict[str, Any] = {}
-    for kind, law in laws.by_kind().items():
-        if kind in laws.by_scene:
-            changed[kind] = attrs.evolve(law, **{law.resolution: None})
-    return laws.changed(**changed, by_scene=frozenset(), reason="", asked=None) if changed else laws
 
 
 def tell_resolution(laws: Laws, marched: Mask) -> list[Clause]:
