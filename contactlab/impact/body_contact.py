@@ -21,7 +21,7 @@ from contactlab.impact.bodies import (
 from contactlab.impact.of_speed import OfSlip
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import chosen, every, some
+from contactlab.numeric.arrays import chosen, every, magnitude, some
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import AnyArray, Array, Mask, Real, Vector
 from contactlab.numeric.vectors import (
@@ -214,16 +214,16 @@ def add_coupling(
 
 def relative_velocity(encounter: _Meeting, bodies: Sequence[Side]) -> Vector:
     """Return the velocity in m/s of the first body over the target at the contact."""
-    velocity = difference(encounter.velocity, encounter.target_velocity)
+    velocity: Vector = difference(encounter.velocity, encounter.target_velocity)
     for name, _, arm, sense in bodies:
         spin = getattr(encounter, f"{name}spin")
         if moving(spin):
             rim = cross(components(spin), arm)
-            velocity = tuple(v + sense * each for v, each in zip(velocity, rim, strict=True))
+            velocity = [v + sense * each for v, each in zip(velocity, rim, strict=True)]
     return velocity
 
 
-def spin_about(encounter: _Meeting, normal: Sequence[Real]) -> Any:
+def spin_about(encounter: _Meeting, normal: Sequence[Real]) -> Real:
     """Return the spin about the normal of the first body over the target, in rad/s."""
     if encounter.shape and not (moving(encounter.spin) or moving(encounter.target_spin)):
         return 0.0  # of one encounter three products take less
@@ -233,8 +233,8 @@ def spin_about(encounter: _Meeting, normal: Sequence[Real]) -> Any:
         omega = omega + (one - other) * n
     if not some(omega != 0.0):
         return 0.0
-    whole = sum(abs(one) for spin in spins for one in spin)
-    omega = chosen(abs(omega) > TURNING * whole, omega, 0.0)
+    whole = sum(magnitude(one) for spin in spins for one in spin)
+    omega = chosen(magnitude(omega) > TURNING * whole, omega, 0.0)
     return np.broadcast_to(omega, encounter.shape) if encounter.shape else omega
 
 
@@ -243,12 +243,12 @@ def _spin_alone(encounter: _Meeting, bodies: Sequence[Side], n: Vector, round_: 
 
     It is 0 where a body is off centre, or the normal is no principal axis of its inertia.
     """
-    spin: Any = chosen(round_, spin_about(encounter, n), 0.0)
+    spin = chosen(round_, spin_about(encounter, n), 0.0)
     for _, body, arm, _ in bodies:
         if isinstance(body, RigidBody) and some(spin != 0.0):
             for vector in (arm, *turn_body(body, n)):
                 least = inverse_mass.ROUNDING * square_root(dot(vector, vector))
-                x, y, z = (abs(each) > least for each in cross(vector, n))
+                x, y, z = (magnitude(each) > least for each in cross(vector, n))
                 spin = chosen(x | y | z, 0.0, spin)
     return spin if some(spin != 0.0) else 0.0
 
@@ -276,10 +276,7 @@ def meeting_of_bodies(encounter: _Meeting, normal: Vector) -> Contact:
 
 def _tangents(normal: Vector) -> tuple[Vector, Vector]:
     """Return unit vectors of the tangent plane at right angles: along an axis, and n times that."""
-    x: Any  # checkers know no type of abs of a number or an array
-    y: Any
-    z: Any
-    x, y, z = map(abs, normal)
+    x, y, z = map(magnitude, normal)
     first, second = (x <= y) & (x <= z), (y < x) & (y <= z)
     axis = (chosen(first, 1.0, 0.0), chosen(second, 1.0, 0.0), chosen(first | second, 0.0, 1.0))
     part = dot(axis, normal)

@@ -135,7 +135,8 @@ class Encounter:
 
     def __attrs_post_init__(self) -> None:
         paths, numbers = _numbers(*map(type, (self.body, self.target)))
-        values, shape = numbers(self), ()
+        values = numbers(self)
+        shape: tuple[int, ...] = ()
         many = getattr(self.body, "shape", ()) or getattr(self.target, "shape", ())
         more = {} if _plain(self.body, self.target) else _properties(self)
         if many or more or np.ndarray in map(type, values) or max(_DIMENSIONS(self)) > 1:
@@ -282,13 +283,13 @@ class Encounter:
         along = (u1 * inverse, u2 * inverse, u3 * inverse)
         return Contact(normal, along, approach, slip)
 
-    def unit_normal(self) -> tuple[Any, Any, Any]:
+    def unit_normal(self) -> tuple[Real, Real, Real]:
         """Return the unit normal."""
         n1, n2, n3 = components(self.normal)
         length = square_root(n1 * n1 + n2 * n2 + n3 * n3)
         return n1 / length, n2 / length, n3 / length
 
-    def _rim(self) -> tuple[Any, Any, Any]:
+    def _rim(self) -> tuple[Real, Real, Real]:
         """Return R1 omega1 + R2 omega2 in m/s, whose cross product with the normal is slip."""
         body: Any = self.body
         rim = [body.radius * component for component in components(self.spin)]
@@ -327,7 +328,7 @@ class Encounter:
             along = np.broadcast_to(along, self.shape)
         bodies: tuple[Any, Any] = self.body, self.target
         numbers = contact.approach, along, (contact.slip - along) / bodies[0].radius
-        about = {"normal_spin": spin_about(self, contact.normal), "encounter": self}
+        about: dict[str, Any] = {"normal_spin": spin_about(self, contact.normal), "encounter": self}
         about["of_slip"] = self.of_slip
         return Scene(*bodies, self.friction_coefficient, *numbers, **about)
 

@@ -10,7 +10,7 @@ import numpy as np
 from contactlab.impact.bodies import Pair
 from contactlab.impact.bodies import size_ratio as size_ratio  # a closed form too
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import greater
+from contactlab.numeric.arrays import greater, magnitude
 from contactlab.numeric.types import Mask, Real
 
 #: 2.9432751843: duration of an elastic Hertz impact times v1/(C²R), eq. (7) unrounded.
@@ -84,8 +84,7 @@ def slips_throughout(psi1: Real, chi: Real, restitution: Real = 1.0) -> Mask:
     contact sticks from the start (44).
     """
     end = 2.0 * chi * (1.0 + restitution) - restitution
-    slips: Mask = abs(psi1) >= greater(end, 1.0)
-    return slips
+    return magnitude(psi1) >= greater(end, 1.0)
 
 
 def rigid_body_rebound(psi1: Real, chi: Real, restitution: Real = 1.0) -> Real:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar
 import numpy as np
 
 from contactlab.impact import inverse_mass
-from contactlab.impact.bodies import Pair, size_ratio
+from contactlab.impact.bodies import Pair, Sphere, size_ratio
 from contactlab.numeric import arrays as batch
-from contactlab.numeric.arrays import chosen, quotient
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.arrays import chosen, magnitude, quotient
+from contactlab.numeric.types import Array, Index, Places, Real
 from contactlab.numeric.vectors import components, dot, entry, hypotenuse, join_components, rows
 
 if TYPE_CHECKING:
@@ -38,22 +38,24 @@ class Motions:
         links: Links | None
         friction_coefficient: Real
         normal_speed: Real
-        tangential_velocity: Any
+        tangential_velocity: Real
         normal_spin: Real
-        index: Any
-        sphere: Any
+        sphere: Sphere[Any] | None
         spin: Real
-        take: Any
+
+        def take(self, part: Index) -> Self: ...  # noqa: D102
+        @property
+        def index(self) -> int | Places: ...  # noqa: D102
 
     @property
-    def slip_velocity(self) -> Any:
+    def slip_velocity(self) -> Real:
         """v_x = v + omega R, the slip velocity (20), in m/s; along t1 and t2 in space."""
         if self.sphere is None:
             return self.tangential_velocity
         return self.tangential_velocity + self.spin * self.sphere.radius
 
     @property
-    def psi_scale(self) -> Any:
+    def psi_scale(self) -> Real:
         """kappa/(mu v1) of eq. (29), psi per m/s of slip velocity; infinite without friction."""
         if not self.shape:  # plain numbers are ten times as fast
             unit = float(self.friction_coefficient * self.normal_speed)
@@ -64,7 +66,7 @@ class Motions:
             )
         return batch.plain(scale)
 
-    def psi(self, velocity: Real) -> Any:
+    def psi(self, velocity: Real) -> Real:
         """Return psi of a slip velocity, eq. (29), without unit: (...), or (..., 2) in space.
 
         Parameters
@@ -82,12 +84,12 @@ class Motions:
         return batch.plain(value)
 
     @property
-    def psi1(self) -> Any:
+    def psi1(self) -> Real:
         """Dimensionless angle of incidence, psi of the slip velocity, eqs (20) and (29)."""
         return self.psi(self.slip_velocity)
 
     @property
-    def w1(self) -> Any:
+    def w1(self) -> Real:
         """W of the spin about the normal before the impact, theory §17."""
         return rim(self, self.normal_spin)
 
@@ -104,7 +106,7 @@ class Motions:
         return size_ratio(pair.normal_mass, pair.effective_modulus, pair.radius, self.normal_speed)
 
     @property
-    def chi(self) -> Any:
+    def chi(self) -> Real:
         """Inertia ratio, eq. (38); in space (kappa/2) W_tt/W_nn, shape (..., 2, 2).
 
         On an ellipse each row has kappa of its direction, and the tensor is not symmetric.
@@ -118,12 +120,12 @@ class Motions:
         return sides[..., None] * W[..., 1:, 1:] / W[..., :1, :1]
 
     @property
-    def lam(self) -> Any:
+    def lam(self) -> Real:
         """Lam = mu W_nt/W_nn, what friction adds to the approach; (..., 2) in space."""
         return coupling(self, self.friction_coefficient)
 
     @property
-    def eta(self) -> Any:
+    def eta(self) -> Real:
         """Eta = kappa W_nt/(mu W_nn), what pressure adds to the slip; infinite without friction."""
         eta = coupling(self, quotient(self.pair.stiffness_ratio, self.friction_coefficient))
         return eta if self.planar else eta * self._sides
@@ -152,7 +154,7 @@ class Motions:
             return self
         pair = self.pair
         if not self.planar:
-            along = components(inverse_mass.unit_slip(self.slip_velocity))
+            along = components(inverse_mass.unit_slip(np.asarray(self.slip_velocity)))
             mass = 1.0 / inverse_mass.along(rows(self.inverse_mass), *along)
             pair = batch.change_entries(pair, tangential_mass=batch.lock_arrays(mass))
         slip = batch.spread(slip_speed(self) if not self.planar else self.slip_velocity, self.shape)
@@ -181,7 +183,7 @@ class Motions:
         pair = batch.change_entries(
             self.pair, tangential_mass=batch.lock_arrays(1.0 / entry(W, 1, 1))
         )
-        slip = batch.spread(self.slip_velocity[..., 0], self.shape)
+        slip = batch.spread(np.asarray(self.slip_velocity)[..., 0], self.shape)
         return self._with(tangential_velocity=slip, pair=pair, planar=True)
 
     @property
@@ -189,20 +191,22 @@ class Motions:
         """Approach and slip at first touch along n, t1 and t2, shape (..., 3), in m/s."""
         return join_components(self._components(self.normal_speed, self.slip_velocity), self.shape)
 
-    def _components(self, approach: Real, slip: Any) -> tuple[Any, Any, Any]:
+    def _components(self, approach: Real, slip: Real) -> tuple[Real, Real, Real]:
         """Return rates along n and slip velocities as components along n, t1 and t2."""
-        along, across = (slip, 0.0) if self.planar else components(slip)
+        if self.planar or isinstance(slip, float):
+            return approach, slip, 0.0
+        along, across = components(slip)
         return approach, along, across
 
 
-def slip_speed(scene: Motions) -> Any:
+def slip_speed(scene: Motions) -> Real:
     """Return magnitude of the slip velocity, in m/s, of the batch shape."""
     return size_of(scene, scene.slip_velocity)
 
 
 def rubs(scene: Motions) -> bool:
     """Return whether any impact has friction and slip at first touch."""
-    slip: Any = slip_speed(scene)
+    slip = slip_speed(scene)
     friction = scene.friction_coefficient
     return bool(np.any((slip != 0.0) & (friction != 0.0)))
 
@@ -213,7 +217,7 @@ def turns(scene: Motions) -> bool:
     return spin != 0.0 if isinstance(spin, float) else bool(spin.any())
 
 
-def rim(scene: Motions, spin: Real) -> Any:
+def rim(scene: Motions, spin: Real) -> Real:
     """Return w = kappa omega_n a/(mu v1) of spins about the normal, theory §17, without unit.
 
     It is the speed of the rim of the largest elastic Hertz contact in the unit of psi.
@@ -226,14 +230,14 @@ def rim(scene: Motions, spin: Real) -> Any:
     return scene.central.psi(spin * scene._size() * scene.pair.radius)
 
 
-def normal_inertia(scene: Motions) -> Any:
+def normal_inertia(scene: Motions) -> Real:
     """Return J about the normal in kg m², 1/J the sum of both bodies'; 0 without spin about it."""
     inverse = scene.pair.inverse_spin_mass
     size = scene.pair.radius
     return chosen(inverse > 0.0, quotient(size * size, inverse), 0.0)
 
 
-def spin_energies(scene: Motions, change: Real) -> tuple[Any, Any]:
+def spin_energies(scene: Motions, change: Real) -> tuple[Real, Real]:
     """Return the energy ½ J omega_n² at the start, and what it loses, in J.
 
     Parameters
@@ -245,7 +249,7 @@ def spin_energies(scene: Motions, change: Real) -> tuple[Any, Any]:
     return 0.5 * momentum * spin, -normal_inertia(scene) * change * (spin + 0.5 * change)
 
 
-def size_of(scene: Motions, slip: Any) -> Any:
+def size_of(scene: Motions, slip: Real) -> Real:
     """Return the magnitude of slip velocities, of the batch shape.
 
     Parameters
@@ -253,10 +257,12 @@ def size_of(scene: Motions, slip: Any) -> Any:
     slip : float or array
         As ``slip_velocity``.
     """
-    return abs(slip) if scene.planar else hypotenuse(*components(slip))
+    if scene.planar or isinstance(slip, float):
+        return magnitude(slip)
+    return hypotenuse(*components(slip))
 
 
-def along_slip(scene: Motions, velocity: Real) -> Any:
+def along_slip(scene: Motions, velocity: Real) -> Real:
     """Return the part of slip velocities along the slip at first touch, of the batch shape.
 
     Parameters
@@ -266,7 +272,9 @@ def along_slip(scene: Motions, velocity: Real) -> Any:
     """
     if scene.planar:
         return velocity
-    part = np.einsum("...i,...i->...", velocity, inverse_mass.unit_slip(scene.slip_velocity))
+    part = np.einsum(
+        "...i,...i->...", velocity, inverse_mass.unit_slip(np.asarray(scene.slip_velocity))
+    )
     return batch.plain(part)
 
 
@@ -280,24 +288,26 @@ def slip_axes(scene: Motions) -> tuple[int, ...]:
     return () if scene.planar else (2,)
 
 
-def largest_chi(scene: Motions) -> Any:
+def largest_chi(scene: Motions) -> Real:
     """Return the largest eigenvalue of chi, of the batch shape."""
     if scene.planar:
         return scene.chi
     root = np.sqrt(scene._sides)  # the symmetric tensor with the same eigenvalues
-    return np.linalg.eigvalsh(scene.chi * (root[..., None, :] / root[..., None]))[..., -1]
+    symmetric = scene.chi * (root[..., None, :] / root[..., None])
+    return np.asarray(np.linalg.eigvalsh(symmetric), dtype=np.float64)[..., -1]
 
 
-def free_share(scene: Motions) -> Any:
+def free_share(scene: Motions) -> Real:
     """Return the share of W_nn that an unchanged slip leaves, 1 - W_nt²/(W_nn W_tt) in a plane."""
     if scene.inverse_mass is None:
         return 1.0
     W, size = scene.inverse_mass, 2 if scene.planar else 3
     minor = np.linalg.det(W[..., 1:size, 1:size])
-    return np.linalg.det(W[..., :size, :size]) / (W[..., 0, 0] * minor)
+    share: Real = np.linalg.det(W[..., :size, :size]) / (W[..., 0, 0] * minor)
+    return share
 
 
-def coupling(scene: Motions, factor: Real) -> Any:
+def coupling(scene: Motions, factor: Real) -> Real:
     """Return ``factor`` times W_nt/W_nn, as this scene has its slip; 0 for spheres.
 
     Parameters
@@ -336,7 +346,7 @@ def groups(scene: Motions) -> dict[str, Any]:
     return {name: getattr(scene, name) for name in names}
 
 
-def most_slip_change(scene: Motions) -> Any:
+def most_slip_change(scene: Motions) -> Real:
     """Return the largest change of slip velocity in m/s, of an elastic impact of gross slip.
 
     It is infinite where friction changes the approach: no such bound is known there.
@@ -390,7 +400,7 @@ def impulse(scene: Motions, rate: Real, change: Real) -> Array:
     return join_components(inverse_mass.impulse(scene.inverse_mass, moved), scene.shape)
 
 
-def energies(scene: Motions, rate: Real, change: Real) -> tuple[Any, Any, Any]:
+def energies(scene: Motions, rate: Real, change: Real) -> tuple[Real, Real, Real]:
     """Return the energy at the start, and what approach and slip lose of it, in J.
 
     Parameters

@@ -298,7 +298,7 @@ class RigidBody:
             Index of an array of ``shape``.
         """
         inertia = np.broadcast_to(self.inertia, (*shape, 3, 3))[part]
-        entries = {
+        entries: dict[str, Any] = {
             name: known(taken(getattr(self, name), shape, part))
             for name in ("mass", "material", "curvature_radius", "cross_radius", "bending_period")
         }

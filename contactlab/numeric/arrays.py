@@ -12,17 +12,22 @@ import math
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from functools import cache, lru_cache
 from operator import attrgetter
-from typing import Any
+from typing import TYPE_CHECKING, Any, overload
 
 import attrs
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from contactlab.numeric.named import Named
-from contactlab.numeric.types import AnyArray, Array, Index, Mask, Real, Tree
+from contactlab.numeric.types import AnyArray, Array, Index, Kind, Mask, Real, Tree
 
 #: Numbers in the array that ``keep_freed_memory`` releases: 8 MB, the tables of most batches.
 RELEASED = 1_000_000
+if TYPE_CHECKING:  # checkers take ``abs`` of a number or an array for an object
+
+    def magnitude(value: Kind) -> Kind: ...  # noqa: D103
+else:
+    magnitude = abs
 
 
 @lru_cache(maxsize=1)
@@ -40,7 +45,9 @@ def lock_arrays(value: Tree) -> Tree:
     return value
 
 
-def common_shape(shapes: Mapping[str, tuple[int, ...]], *, what: str, remedy: str) -> Any:
+def common_shape(
+    shapes: Mapping[str, tuple[int, ...]], *, what: str, remedy: str
+) -> tuple[int, ...]:
     """Return the common broadcast shape, or raise ValueError with ``what``, names and remedy."""
     shapes = {name: shape for name, shape in shapes.items() if shape}
     if not shapes:
@@ -82,7 +89,11 @@ def stack_trees(items: Sequence[Any]) -> Any:
     return np.array(items, dtype=np.float64)
 
 
-def taken(tree: Any, shape: tuple[int, ...], part: Index) -> Any:
+@overload
+def taken(tree: Real, shape: tuple[int, ...], part: Index) -> Real: ...
+@overload
+def taken(tree: Tree, shape: tuple[int, ...], part: Index) -> Tree: ...
+def taken(tree: Any, shape: tuple[int, ...], part: Index) -> object:
     """Return the tree of the impacts that ``part`` indexes; plain numbers stay plain.
 
     An array with more axes than ``shape`` begins with those of the batch.
@@ -129,7 +140,7 @@ def _entries(kind: Hashable) -> tuple[tuple[str, ...], Callable[[object], Any]]:
     return names, lambda tree: tuple(getattr(tree, name) for name in names)
 
 
-def known(value: object) -> Any:
+def known(value: Tree) -> Tree | None:
     """Return a value; None for NaN, which stands for None in arrays."""
     return None if isinstance(value, float) and value != value else value
 
@@ -151,12 +162,26 @@ def equal(one: Any, other: Any) -> bool:
     return bool(one == other or (one != one and other != other))
 
 
+@overload
+def merge_parts(
+    parts: Sequence[tuple[slice | Mask, ArrayLike]],
+    shape: tuple[int, ...],
+    kind: type[float] = float,
+    ends: tuple[int, ...] = (),
+) -> Array: ...
+@overload
+def merge_parts(
+    parts: Sequence[tuple[slice | Mask, ArrayLike]],
+    shape: tuple[int, ...],
+    kind: type | np.dtype[np.generic],
+    ends: tuple[int, ...] = (),
+) -> AnyArray: ...
 def merge_parts(
     parts: Sequence[tuple[slice | Mask, ArrayLike]],
     shape: tuple[int, ...],
     kind: type | np.dtype[np.generic] = float,
     ends: tuple[int, ...] = (),
-) -> Any:
+) -> AnyArray:
     """Return an array of ``shape`` from pairs of a place and its values; later pairs overwrite.
 
     A place is a mask of ``shape``, or a slice of the batch in C order. Each value has the axes
@@ -176,7 +201,7 @@ def consecutive(sizes: Iterable[int]) -> list[slice]:
     return [slice(*pair) for pair in itertools.pairwise(ends)]
 
 
-def spread(value: Real, shape: tuple[int, ...]) -> Any:
+def spread(value: Real, shape: tuple[int, ...]) -> Real:
     """Return ``value`` as a float for one impact, or as an array of ``shape`` for a batch."""
     if not shape:
         return float(value)
@@ -185,12 +210,12 @@ def spread(value: Real, shape: tuple[int, ...]) -> Any:
     return np.array(np.broadcast_to(value, shape))
 
 
-def of_each(value: Real, shape: tuple[int, ...]) -> Any:
+def of_each(value: Real, shape: tuple[int, ...]) -> Real:
     """Return a number that all impacts of a batch share as one of each, an array as it is."""
     return value if not shape or np.ndim(value) >= len(shape) else spread(value, shape)
 
 
-def zeros(shape: tuple[int, ...]) -> Any:
+def zeros(shape: tuple[int, ...]) -> Real:
     """Return 0 for one impact, or read-only zeros of a batch that take no memory and no time."""
     return np.broadcast_to(0.0, shape) if shape else 0.0
 
@@ -209,12 +234,16 @@ def flat(value: Real, shape: tuple[int, ...]) -> Array:
     return (array if same else np.broadcast_to(array, shape)).reshape(-1)
 
 
-def plain(value: Real) -> Any:
+def plain(value: Real) -> Real:
     """Return a number without axes as a float, and an array as it is."""
     return value if getattr(value, "ndim", 0) else float(value)
 
 
-def shape_as(values: AnyArray, shape: tuple[int, ...]) -> Any:
+@overload
+def shape_as(values: Array, shape: tuple[int, ...]) -> Real: ...
+@overload
+def shape_as(values: AnyArray, shape: tuple[int, ...]) -> Any: ...
+def shape_as(values: AnyArray, shape: tuple[int, ...]) -> object:
     """Return numbers of shape (items,) in the shape of the batch, or that of one impact."""
     return values.reshape(shape) if shape else values.item()
 
@@ -224,7 +253,7 @@ def part_of(value: Real, part: Index) -> Real:
     return value[part] if isinstance(value, np.ndarray) else value
 
 
-def greater(one: Real, other: float) -> Any:
+def greater(one: Real, other: float) -> Real:
     """Return the greater of two numbers, NaN if the first is NaN; ``max`` is faster for floats."""
     return max(one, other) if isinstance(one, float) else np.maximum(one, other)
 
@@ -244,7 +273,15 @@ def every(mask: Mask) -> bool:
     return mask if isinstance(mask, bool) else bool(mask.all() if mask.ndim else mask)
 
 
-def chosen(condition: Mask, if_true: Real | complex, if_false: Real | complex) -> Any:
+@overload
+def chosen(condition: Mask, if_true: Real, if_false: Real) -> Real: ...
+@overload
+def chosen(
+    condition: Mask, if_true: Real | complex, if_false: Real | complex
+) -> Real | complex | NDArray[np.complex128]: ...
+def chosen(
+    condition: Mask, if_true: Real | complex, if_false: Real | complex
+) -> Real | complex | NDArray[np.complex128]:
     """Return ``np.where`` for arrays; a plain condition is decided by ``if``, ten times as fast."""
     if isinstance(condition, np.ndarray):
         return np.where(condition, if_true, if_false)

@@ -88,7 +88,7 @@ def _many(value: Any, field: attrs.Attribute[object]) -> Array:
     raise refuse(f"{field.name}.shape", vectors.shape, "must end with 3", remedy)
 
 
-def components(vectors: Array) -> tuple[Any, ...]:
+def components(vectors: Array) -> tuple[Real, ...]:
     """Return x, y and z, or x and y: contiguous arrays, or floats for a single vector."""
     if vectors.ndim == 1:
         return tuple(vectors.tolist())
@@ -112,24 +112,25 @@ def join_components(components: Vector | Rows, shape: tuple[int, ...]) -> Array:
     return joined
 
 
-def entry(tensors: Array, row: int, column: int) -> Any:
+def entry(tensors: Array, row: int, column: int) -> Real:
     """Return an entry of tensors, shape (..., n, n): an array, or a float of a single one."""
     return tensors.item(row, column) if tensors.ndim == 2 else tensors[..., row, column]
 
 
-def rows(tensors: Array) -> Any:
+def rows(tensors: Array) -> Rows:
     """Return the rows of tensors, shape (..., 3, 3): nested arrays, or floats for a single one."""
     if tensors.ndim == 2:
-        return tensors.tolist()
-    return np.ascontiguousarray(np.moveaxis(tensors, (-2, -1), (0, 1)))
+        single: list[list[float]] = tensors.tolist()
+        return single
+    return [list(row) for row in np.ascontiguousarray(np.moveaxis(tensors, (-2, -1), (0, 1)))]
 
 
-def dot(one: Vector, other: Vector) -> Any:
+def dot(one: Vector, other: Vector) -> Real:
     """Return the scalar product of vectors."""
     return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
 
 
-def solve_tensor(tensor: Rows, vector: Vector) -> tuple[Any, Any, Any]:
+def solve_tensor(tensor: Rows, vector: Vector) -> tuple[Real, Real, Real]:
     """Return A⁻¹ b, A symmetric (the mean with Aᵀ) and positive definite: L D Lᵀ needs no pivot."""
     (a, p, q), (b, c, r), (d, e, f) = tensor
     b, d, e = 0.5 * (b + p), 0.5 * (d + q), 0.5 * (e + r)
@@ -164,13 +165,13 @@ def hypotenuse(one: Real, other: Real) -> Real:
     return math.hypot(one, other) if floats else np.hypot(one, other)
 
 
-def cross(one: Vector, other: Vector) -> tuple[Any, Any, Any]:
+def cross(one: Vector, other: Vector) -> tuple[Real, Real, Real]:
     """Return the vector product of vectors."""
     (a, b, c), (x, y, z) = one, other
     return b * z - c * y, c * x - a * z, a * y - b * x
 
 
-def difference(minuend: Array, subtrahend: Array) -> tuple[Any, Any, Any]:
+def difference(minuend: Array, subtrahend: Array) -> tuple[Real, Real, Real]:
     """Return the components of ``minuend - subtrahend``."""
     x, y, z = components(minuend)
     if not moving(subtrahend):

@@ -106,11 +106,14 @@ class Motion(TangentialMotion):
         entries["friction_work"] = tangential.friction_work
         entries["shear_loss"] = tangential.shear_loss
         change, turned = tangential.slip_velocity_change, tangential.normal_spin_change
+        given: dict[str, Any] = {
+            name: lock_arrays(spread(value, shape)) for name, value in entries.items()
+        }
         return cls(
             normal_spin_change=zeros(shape)
             if are_zeros(turned)
             else lock_arrays(spread(turned, shape)),
-            **{name: lock_arrays(spread(value, shape)) for name, value in entries.items()},
+            **given,
             slip_velocity_change=lock_arrays(spread(change, (*shape, *axes))),
             status=lock_arrays(tangential.status),
             detail=lock_arrays(tangential.detail),
@@ -195,7 +198,7 @@ def sound(motion: Motion, *, coupled: bool = False) -> Motion:
 def without_failures(motion: Motion) -> Motion:
     """Return ``motion`` with NaN for every number of the impacts that failed."""
     good, shape = np.asarray(motion.status == Status.SUCCESS), np.shape(motion.status)
-    numbers = {}
+    numbers: dict[str, Any] = {}
     for name in Motion.numbers():
         value = np.asarray(getattr(motion, name))
         trailing = value.shape[len(shape) :]

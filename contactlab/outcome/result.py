@@ -83,7 +83,7 @@ class ImpactResult(Answer, Generic[Each]):
         if scene.shape:
             finite, what = psi2, "psi2"
             if psi2.ndim > len(scene.shape):
-                finite, what = kinetics.size_of(scene, psi2), "abs(psi2)"
+                finite, what = np.asarray(kinetics.size_of(scene, psi2)), "abs(psi2)"
             finite = finite[np.isfinite(finite)]
             span = f" from {finite.min():.6g} to {finite.max():.6g}" if finite.size else " unknown"
             return f"{np.size(self.motion.status)} impacts, {what}{span}"
@@ -112,7 +112,8 @@ class ImpactResult(Answer, Generic[Each]):
     @property
     def psi1(self) -> Each:
         """Local angle of incidence of the paper's eq. (29), without unit."""
-        return of_each(self.scene.psi1, self.scene.shape)
+        psi1: Any = of_each(self.scene.psi1, self.scene.shape)
+        return psi1
 
     @property
     def psi_change(self) -> Each:
@@ -138,7 +139,8 @@ class ImpactResult(Answer, Generic[Each]):
     @property
     def couple(self) -> Each:
         """Angular impulse on the target about the normal, of the batch shape, in N m s."""
-        return -kinetics.normal_inertia(self.scene) * self.motion.normal_spin_change
+        couple: Any = -kinetics.normal_inertia(self.scene) * self.motion.normal_spin_change
+        return couple
 
     @property
     def normal_velocity(self) -> Each:
@@ -228,13 +230,14 @@ class ImpactResult(Answer, Generic[Each]):
             before: Any = self.scene.normal_spin
             return before + self.motion.normal_spin_change
         relative = self._in_space("spin") - self._in_space("target_spin")
-        spin = np.einsum("...i,...i->...", relative, axes[..., 0, :])
-        return plain(spin)
+        spin: Any = plain(np.einsum("...i,...i->...", relative, axes[..., 0, :]))
+        return spin
 
     @property
     def w2(self) -> Each:
         """W = kappa omega_n a/(mu v1) of the spin about the normal after the impact, theory §17."""
-        return kinetics.rim(self.scene, self.rebound_normal_spin)
+        w2: Any = kinetics.rim(self.scene, self.rebound_normal_spin)
+        return w2
 
     @property
     def target_rebound_normal_velocity(self) -> Each | Any:
@@ -298,8 +301,9 @@ class ImpactResult(Answer, Generic[Each]):
         if scene.along is not None:
             normal, along = _seen(scene, scene.encounter.velocity)
             return _angle(along, normal)
-        angle = _angle(kinetics.along_slip(scene, scene.tangential_velocity), scene.normal_speed)
-        return of_each(angle, scene.shape)
+        speed = kinetics.along_slip(scene, scene.tangential_velocity)
+        angle: Any = of_each(_angle(speed, scene.normal_speed), scene.shape)
+        return angle
 
     @property
     def rebound_angle(self) -> Each | Any:

@@ -185,16 +185,15 @@ def _solve_in_c(scene: Scene, where: Mask) -> tuple[WholeImpact, ...]:
     energy: Any = 1.25 * mu * unit * pair.normal_mass * speed  # 2.5 rho v1²/(2 W_nn), theory §14
     error = COMPILED * np.maximum(1.0, np.abs(np.where(known, psi1, 0.0)))
     error = error * np.maximum(1.0, chi / HEAVY)
-    change, work, error = (
-        spread(each.reshape(scene.shape), scene.shape) for each in (change, work, error)
-    )
+    shaped = (spread(each.reshape(scene.shape), scene.shape) for each in (change, work, error))
+    moved, worked, declared = shaped
     return (
         WholeImpact(
             where=known.reshape(scene.shape) > 0.0 if scene.shape else bool(known[0]),
-            slip_velocity_change=change * unit,
-            friction_work=work * energy,
+            slip_velocity_change=moved * unit,
+            friction_work=worked * energy,
             reason=SOLVED,
-            psi2_error=error,
+            psi2_error=declared,
             counter="solved",
         ),
     )

@@ -150,8 +150,8 @@ def advance(
     acts, work, loss, memory = move_springs(
         state.memory, contact, motion, direction, grows=state.grows, splits=state.splits
     )
-    work, loss = (shape_as(each * scales.metres, shape) for each in (work, loss))
-    response = TangentialResponse(direction.restore_shape(acts, shape), work, True, loss)
+    worked, lost = (shape_as(each * scales.metres, shape) for each in (work, loss))
+    response = TangentialResponse(direction.restore_shape(acts, shape), worked, True, lost)
     return response, state._replace(memory=memory)
 
 
