@@ -336,6 +336,12 @@ def add_restitution(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_one_restitution(parser: argparse.ArgumentParser) -> None:
+    """Add ``--restitution``, one number."""
+    words = "coefficient of restitution, in place of a normal law"
+    parser.add_argument("--restitution", type=finite, metavar="E", help=words)
+
+
 def _number_or_words(text: str) -> Any:
     """Return a number; or the text as it is, if v or a colon shows a formula or a table."""
     return text if re.search("[v:]", text) else finite(text)

@@ -4,6 +4,7 @@ Examples
 --------
   contactlab bench --quick
   contactlab bench --question "plane with e"
+  contactlab bench --quick --restitution 0.6
   contactlab bench --figure bench.png --out bench.csv
   contactlab bench --tangential springs,annulus --normal tsuji
   contactlab bench --markdown --figure bench.png > bench.md
@@ -30,6 +31,7 @@ from contactlab.study.work_precision import bench
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the laws, the question, the size, and the outputs."""
     shared.add_report(parser)
+    shared.add_one_restitution(parser)
     parser.add_argument(
         "--question", metavar="NAME", help="one question, by the name that the report prints"
     )
@@ -44,7 +46,9 @@ def execute(arguments: argparse.Namespace) -> int:
     for name in ("json", "csv"):
         if getattr(arguments, name) and arguments.markdown:
             raise ValueError(f"--{name}, --markdown: cannot be combined; leave out one")
-    asked = questions(shared.chosen_laws(arguments), arguments.question)
+    asked = questions(
+        shared.chosen_laws(arguments), arguments.question, restitution=arguments.restitution
+    )
     with shared.progress(arguments.progress, "bench") as progress:
         benchmark = bench(
             asked,
@@ -95,7 +99,12 @@ def _draw(path: Path, benchmark: Benchmark, **look: Unpack[shared.Drawing]) -> b
 
 def _content(benchmark: Benchmark) -> dict[str, object]:
     rows, orders = json_value(benchmark.rows), json_value(benchmark.orders)
-    return {"rows": rows, "orders": orders, "complete": benchmark.complete}
+    return {
+        "rows": rows,
+        "orders": orders,
+        "complete": benchmark.complete,
+        "left_out": list(benchmark.left_out),
+    }
 
 
 def markdown(benchmark: Benchmark) -> str:
@@ -124,6 +133,8 @@ def _report(benchmark: Benchmark) -> str:
         fronts = {word: benchmark.front(question, word) for word in TIMES}
         lines = []
         for row in rows:
+            if row.peer:
+                continue
             on = [word for word, front in fronts.items() if row in front]
             note = f"front {', '.join(on)}" if on else ""
             if not row.ok:
@@ -131,10 +142,30 @@ def _report(benchmark: Benchmark) -> str:
             errors = [row.error_rms, row.error_worst, row.books_worst]
             lines.append([row.method, row.options, *errors, *_times(row), note])
         parts.append(f"{question}\n{table(headings, lines, digits=2)}")
+    parts += _peers(benchmark)
     orders = [[name, order] for name, order in benchmark.orders.items()]
     if orders:
         parts.append(table(["method", "order observed"], orders, digits=3))
     return _ended("\n\n".join(parts), benchmark)
+
+
+def _peers(benchmark: Benchmark) -> list[str]:
+    """Return a table of other engines, whose difference from the exact answer is their model's."""
+    lines = [
+        [row.question, row.method, row.options, row.error_rms, row.error_worst, _times(row)[0],
+         "" if row.ok else f"{row.failed} x {row.status}"]
+        for row in benchmark.rows if row.peer
+    ]  # fmt: skip
+    parts = []
+    if lines:
+        headings = ["question", "engine", "model", "rms", "worst", "one", "note"]
+        parts.append(
+            "other engines: difference of their models from the exact answer, no numerical error\n"
+            + table(headings, lines, digits=2)
+        )
+    if benchmark.left_out:
+        parts.append(f"other engines left out, not there: {', '.join(benchmark.left_out)}")
+    return parts
 
 
 def _ended(text: str, benchmark: Benchmark) -> str:

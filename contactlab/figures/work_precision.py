@@ -53,7 +53,10 @@ def work_precision(panels: Axes | Panels, benchmark: Benchmark) -> Axes | Panels
     benchmark : Benchmark
     """
     every: list[Axes] = list(np.ravel(np.asarray(panels, dtype=object)))
-    by_question = benchmark.by_question()
+    by_question = {
+        question: [row for row in rows if not row.peer]  # another model's difference is no error
+        for question, rows in benchmark.by_question().items()
+    }
     wide = every[0].get_subplotspec()
     columns = wide.get_gridspec().ncols if wide is not None else 1
     for place, (axes, (question, rows)) in enumerate(zip(every, by_question.items(), strict=False)):
@@ -70,7 +73,11 @@ def work_precision(panels: Axes | Panels, benchmark: Benchmark) -> Axes | Panels
     spare = every[len(by_question) :]
     for axes in spare:
         axes.set_axis_off()
-    _legend(spare[0] if spare else every[0], benchmark.rows, outside=bool(spare))
+    _legend(
+        spare[0] if spare else every[0],
+        [each for rows in by_question.values() for each in rows],
+        outside=bool(spare),
+    )
     return panels
 
 

@@ -32,6 +32,9 @@ class Row:
         ``ALIKE`` over its resolutions; if not, no finer step helps.
     limit : bool
         True for what no door can beat, a copy of the numbers or one line of NumPy.
+    peer : bool
+        True for another engine. What stands as its error is the difference of its model from the
+        exact answer, which is no numerical error.
     failed : int
         Number of impacts without an answer.
     status : str
@@ -50,6 +53,7 @@ class Row:
     status: str = "SUCCESS"
     converges: bool = True
     limit: bool = False
+    peer: bool = False
 
     @property
     def ok(self) -> bool:
@@ -66,13 +70,14 @@ class Benchmark:
     """Rows, and for each method the order of convergence observed in its rms error.
 
     ``complete`` is False if the time limit or Ctrl-C left rows out; ``interrupted`` is True on
-    Ctrl-C.
+    Ctrl-C. ``left_out`` names the engines that are not installed.
     """
 
     rows: tuple[Row, ...]
     orders: dict[str, float]
     complete: bool
     interrupted: bool = False
+    left_out: tuple[str, ...] = ()
 
     def by_question(self) -> dict[str, list[Row]]:
         """Return the rows of each question."""
@@ -84,10 +89,11 @@ class Benchmark:
     def front(self, question: str, time: str = "alone") -> list[Row]:
         """Return the Pareto front of a question: rows that no row beats in both error and time.
 
-        ``time`` is a key of ``TIMES``; limits are left out.
+        ``time`` is a key of ``TIMES``; limits and other engines are left out.
         """
         column = TIMES[time]
-        rows = [row for row in self.rows if row.question == question and row.ok and not row.limit]
+        rows = [row for row in self.rows if row.question == question and row.ok]
+        rows = [row for row in rows if not (row.limit or row.peer)]
         rows = [row for row in rows if getattr(row, column) == getattr(row, column)]
         best: list[Row] = []
         least = np.inf
@@ -111,7 +117,7 @@ def _shortened(of_question: list[Row]) -> list[Row]:
     """Return one or two rows of each law of a question."""
     by_law: dict[str, list[Row]] = {}
     for row in of_question:
-        if row.ok and not row.limit:
+        if row.ok and not (row.limit or row.peer):
             by_law.setdefault(row.method.partition(" / ")[0], []).append(row)
     chosen = []
     for rows in by_law.values():

@@ -103,6 +103,8 @@ class Door:
         Whether its error is numerical; that of another model falls with no step.
     together : bool
         Whether it takes batches.
+    peer : bool
+        Whether it is of another engine, and its error the difference of another model.
     """
 
     name: str
@@ -113,6 +115,7 @@ class Door:
     limit: bool = False
     converges: bool = True
     together: bool = True
+    peer: bool = False
 
 
 def of_scene(impact: Encounter | Scene) -> Scene:

@@ -25,7 +25,7 @@ from contactlab.outcome.result import ImpactResult
 from contactlab.registry import composition
 from contactlab.registry.registry import REGISTRY
 from contactlab.runs.simulation import Simulation
-from contactlab.study import doors
+from contactlab.study import doors, peers
 from contactlab.study.bench_methods import Method, Options, methods, scenes
 from contactlab.study.doors import Answer, Door
 from contactlab.study.posed import need_units
@@ -40,6 +40,8 @@ TRUE_OF_TWO, TRUE_OF_TWO_QUICK = 400, 200
 TRUE_RINGS, INSTANTS = 24, 60
 #: The restitution of impacts with loss, and the normal law that stands for any.
 LOSS, ANY = 0.8, "tsuji"
+#: Least restitution that springs follow; below it their answer is that of ``rebound``.
+LEAST_FOLLOWED = 0.01
 #: The law of spin about the normal.
 SPINNING: Final = "tangential.halfspace"
 #: Integrators, the usual one first.
@@ -81,16 +83,20 @@ class Posed:
 class Question:
     """A question: its name, what its error is of, and what poses it, ``quick`` or not.
 
-    The law that it ``needs`` for its true answers may not be installed.
+    The law that it ``needs`` for its true answers may not be installed. ``peers`` tells whether
+    other engines are asked.
     """
 
     name: str
     about: str
     pose: Callable[[bool], Posed]
     needs: str | None = None
+    peers: bool = False
 
 
-def questions(laws: list[str] | None = None, only: str | None = None) -> list[Question]:
+def questions(
+    laws: list[str] | None = None, only: str | None = None, *, restitution: float | None = None
+) -> list[Question]:
     """Return the questions; of the laws named, those that any law answers.
 
     Parameters
@@ -99,15 +105,21 @@ def questions(laws: list[str] | None = None, only: str | None = None) -> list[Qu
         As of ``bench_methods.methods``.
     only : str, optional
         The name of one question.
+    restitution : float, optional
+        Coefficient of restitution, in place of a normal law. Where no law is named, the questions
+        are those of impacts with a restitution; springs can follow it from 0.01 on.
     """
-    chosen = methods(laws)
-    if laws is None:
+    chosen = methods(laws, restitution=restitution)
+    if laws is None and restitution is not None:
+        found = _with_loss(restitution)
+    elif laws is None:
         damped, usual = _usual(methods([f"normal.{ANY}"])), _usual(chosen)
         found = [
             Question(
                 "sphere",
                 "psi2",
                 lambda quick: _sphere(usual if quick else chosen, quick, alone=False),
+                peers=True,
             ),
             *(each for each in _QUESTIONS if each.needs in (None, *REGISTRY.names())),
             Question("any normal law", "psi2", lambda quick: _by_methods(damped, quick)),
@@ -124,6 +136,39 @@ def questions(laws: list[str] | None = None, only: str | None = None) -> list[Qu
         return named
     rule = "must be one of " + ", ".join(repr(each.name) for each in found)
     raise refuse("question", only, rule)
+
+
+def _with_loss(restitution: float) -> list[Question]:
+    """Return the questions of impacts with a restitution."""
+    if restitution < LEAST_FOLLOWED:
+        rule = f"must be at least {LEAST_FOLLOWED:g}: below it no springs give a true answer"
+        raise refuse("restitution", restitution, rule)
+    rod, egg = _rod(0.5), _egg()
+    return [
+        _of_spheres(restitution),
+        _in_a_plane("plane with e", restitution),
+        Question(
+            "turning slip with e", "psi2",
+            lambda quick: _bodies(rod, restitution, quick, across=0.3),
+        ),
+        Question(
+            "ellipse with e", "psi2", lambda quick: _bodies(egg, restitution, quick, across=0.3)
+        ),
+    ]  # fmt: skip
+
+
+def _of_spheres(restitution: float) -> Question:
+    """Return the question of spheres with a restitution."""
+    return Question(
+        "sphere with e", "psi2", lambda quick: _sphere_with_loss(restitution, quick), peers=True
+    )
+
+
+def _in_a_plane(name: str, restitution: float) -> Question:
+    """Return the question of a rod in a plane."""
+    return Question(
+        name, "psi2", lambda quick: _bodies(_rod(0.5), restitution, quick, across=0.0), peers=True
+    )
 
 
 def _usual(chosen: Sequence[Method]) -> list[Method]:
@@ -175,6 +220,7 @@ def _sphere(chosen: Sequence[Method], quick: bool, *, alone: bool) -> Posed:
     exact = Simulation(**composition.exact(EXACT_TOLERANCE))
     others = [] if alone else [
         doors.by_rebound(), *doors.in_c(spheres=True), *doors.limits(formula=True),
+        *peers.of_spheres(),
     ]  # fmt: skip
     return Posed(
         impacts=impacts,
@@ -184,27 +230,22 @@ def _sphere(chosen: Sequence[Method], quick: bool, *, alone: bool) -> Posed:
     )
 
 
-def _sphere_with_loss(quick: bool) -> Posed:
+def _sphere_with_loss(restitution: float, quick: bool) -> Posed:
     """Return spheres of one restitution."""
     impacts = scenes(quick=quick)[: 3 if quick else None]
     return Posed(
         impacts=impacts,
         batch=swept_scenes,
-        truths=_by_fine_springs(impacts, LOSS, quick),
+        truths=_by_fine_springs(impacts, restitution, quick),
         doors=[
-            doors.by_rebound(LOSS),
-            *doors.in_c(LOSS, spheres=True),
-            doors.by_run("run()", "", _restituted(LOSS)),
-            *doors.by_springs(12, 25, 50, 100, restitution=LOSS),
+            doors.by_rebound(restitution),
+            *doors.in_c(restitution, spheres=True),
+            doors.by_run("run()", "", Simulation(restitution=restitution)),
+            *doors.by_springs(12, 25, 50, 100, restitution=restitution),
             *doors.limits(formula=False),
+            *peers.of_spheres(restitution),
         ],
     )
-
-
-def _restituted(restitution: float) -> Simulation:
-    """Return the default laws under the normal law of a restitution."""
-    name = composition.RESTITUTION["normal"]
-    return Simulation(normal=composition.law("normal", name, restitution=restitution))
 
 
 def _rod(angle: float, *, radius: float = 0.005) -> tuple[RigidBody, Array]:
@@ -243,7 +284,6 @@ def _bodies(
         truths = [np.ravel(exact.run(each.scene).check().psi2) for each in impacts]
     else:
         truths = _by_fine_springs([each.scene for each in impacts], restitution, quick)
-    default = _restituted(restitution) if lossy else Simulation()
     kernel = doors.in_c(spheres=False) if plane and not lossy else []
     return Posed(
         impacts=impacts,
@@ -252,9 +292,10 @@ def _bodies(
         truths=truths,
         doors=[
             doors.by_collide(restitution),
-            doors.by_run("run()", "", default),
+            doors.by_run("run()", "", Simulation(restitution=restitution)),
             *kernel,
             *doors.by_springs(12, 25, 50, 100, restitution=restitution),
+            *(peers.of_rods(restitution) if plane else ()),
         ],
     )
 
@@ -431,9 +472,9 @@ def _forces(result: ImpactResult) -> Array:
 
 
 _QUESTIONS = (
-    Question("sphere with e", "psi2", _sphere_with_loss),
-    Question("plane", "psi2", lambda quick: _bodies(_rod(0.5), 1.0, quick, across=0.0)),
-    Question("plane with e", "psi2", lambda quick: _bodies(_rod(0.5), LOSS, quick, across=0.0)),
+    _of_spheres(LOSS),
+    _in_a_plane("plane", 1.0),
+    _in_a_plane("plane with e", LOSS),
     Question("turning slip", "psi2", lambda quick: _bodies(_rod(0.5), 1.0, quick, across=0.3)),
     Question("ellipse", "psi2", lambda quick: _bodies(_egg(), 1.0, quick, across=0.3)),
     Question("spin about the normal", "psi2", _normal_spin, needs=SPINNING),

@@ -17,6 +17,7 @@ import numpy as np
 from contactlab.numeric.types import Array
 from contactlab.study.benchmark import ALIKE, ROUNDING, Benchmark, Row
 from contactlab.study.doors import Answer, Call, Door
+from contactlab.study.peers import missing
 from contactlab.study.questions import Posed, Question
 from contactlab.study.time_limit import TimeLimitError, end_of, in_time
 
@@ -74,6 +75,7 @@ def bench(
         orders=_orders(rows),
         complete=complete,
         interrupted=interrupted,
+        left_out=missing() if any(question.peers for question in questions) else (),
     )
 
 
@@ -83,7 +85,7 @@ def _ask(question: Question, posed: Posed, rows: list[Row], until: float, *, qui
     known: dict[str, list[Array]] = {}
     for door in posed.doors:
         row = Row(question=question.name, method=door.name, options=door.options)
-        row = attrs.evolve(row, limit=door.limit, converges=door.converges)
+        row = attrs.evolve(row, limit=door.limit, converges=door.converges, peer=door.peer)
         if door.name in slow:
             rows.append(attrs.evolve(row, failed=1, status="NOT_RUN"))
             continue

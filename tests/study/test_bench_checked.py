@@ -128,7 +128,7 @@ def rod(angle, *, length=0.1, radius=0.005, friction=0.3, kappa=1.4 / 1.7):
     def over(weigh):
         return quad(lambda z: weigh(z) * section(z), 0.0, 0.5 * length, points=[straight])[0]
 
-    turning = over(lambda z: z * z + 0.25 * section(z)) / over(lambda z: 1.0)  # radius of gyration²
+    turning = over(lambda z: z * z + 0.25 * section(z)) / over(np.ones_like)  # radius of gyration²
     # From the centre to the point of contact: along the axis, then down.
     along, down = -straight * np.sin(angle), straight * np.cos(angle) + radius
     normal = 1.0 + along * along / turning

@@ -10,7 +10,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from contactlab import Simulation
+from contactlab import Simulation, rebound
 from contactlab.cli import bench as cli_bench
 from contactlab.cli.bench import markdown
 from contactlab.cli.main import main
@@ -247,6 +247,26 @@ def test_every_question_has_its_name_once_and_one_is_found_by_it():
         ValueError, match=r"question = 'plain': must be one of 'sphere', .*'course'"
     ):
         questions(only="plain")
+
+
+def test_a_restitution_stands_in_place_of_a_normal_law(capsys):
+    """Without laws the questions of impacts with loss, each at that restitution."""
+    asked = questions(restitution=0.5)
+    assert [each.name.partition(" with e")[1] for each in asked] == [" with e"] * 4
+    posed = asked[0].pose(True)
+    truth = np.concatenate(posed.truths)
+    assert truth == pytest.approx(
+        [rebound(float(each.psi1), float(each.chi), restitution=0.5) for each in posed.impacts],
+        abs=5e-5,
+    )
+    words = ["bench", "--quick", "--tangential", "coulomb", "--restitution"]
+    assert main([*words, "0.6"]) == 0
+    assert "coulomb, viscoelastic e=0.6" in capsys.readouterr().out
+    for value, rule in (("1.6", "from 0 to 1"), ("0.001", "at least 0.01")):
+        assert main(["bench", "--restitution", value]) == 2
+        assert rule in capsys.readouterr().err
+    assert main([*words, "0.6", "--normal", "hertz"]) == 2
+    assert "stands in place of a normal law, and hertz is named" in capsys.readouterr().err
 
 
 def test_kernels_in_c_answer_where_a_compiler_is():
