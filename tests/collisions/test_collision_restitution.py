@@ -8,6 +8,8 @@ import contactlab
 from contactlab import Encounter, RigidBody, Simulation, Sphere, collide
 from contactlab_laws.tables.restituted_regions import RESTITUTED_ERROR
 from tests.collisions.test_collision import BALL, meeting
+from tests.collisions.test_collision_of_bodies import each_met
+from tests.solve.any_scene import OFF_CENTRE
 from tests.solve.test_eccentric import FLOOR, STEEL, rod
 
 
@@ -204,3 +206,16 @@ def test_bodies_that_hardly_rebound_are_refused_where_friction_changes_the_appro
     met = attrs.evolve(rod(-35.0, slip=0.3), friction_coefficient=0.3 * np.ones(np.shape(e)))
     with pytest.raises(ValueError, match=r"restitution = 0.0.*must be from 0.01 for this body"):
         collide(met, restitution=e)
+
+
+@pytest.mark.slow
+@each_met
+@pytest.mark.parametrize("restitution", [0.3, 0.9])
+def test_cautions_of_a_restitution(met, restitution):
+    """A given restitution is not called taken by default."""
+    made = collide(met, restitution=restitution)
+    slides = met is OFF_CENTRE and restitution == 0.3  # from touch to separation: mu decides
+    told = any("equal damping" in text for text in made.cautions)
+    assert told is not slides
+    assert not any("using" in text for text in made.cautions)
+    assert not any("default" in str(clause) for clause in made.result.plan.computed)

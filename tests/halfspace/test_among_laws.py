@@ -15,7 +15,7 @@ from tests.solve.any_scene import coupled_way
 from tests.solve.test_clay import SPHERE, clay
 from tests.solve.test_declared import assert_declared_alike
 from tests.solve.test_registration import assert_waived
-from tests.solve.test_ways_standing_in import follow_all
+from tests.solve.test_ways import follow_all
 
 CHI = 49.0 / 34.0
 

@@ -3,6 +3,7 @@
 import math
 import pickle
 
+import attrs
 import numpy as np
 import pytest
 
@@ -10,6 +11,7 @@ import contactlab
 from contactlab import HalfSpace, Material, Scene, Sphere
 from contactlab.impact.bodies import Pair
 from contactlab.testing.load_paths import Bench, drive, straight
+from tests.solve.any_scene import BODIES, meeting
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 
@@ -159,3 +161,57 @@ def test_batch_bodies_are_values_too():
 def test_quantities_of_a_class_of_keywords_are_keywords():
     with pytest.raises(TypeError, match="positional argument"):
         Pair(*[1.0] * 5)
+
+
+by_principal = pytest.mark.parametrize("name", ["principal", "axes", "batch", "box", "ellipsoid"])
+NEW = np.diag((1.0, 1.5, 2.0))
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_evolve_keeps_what_was_given(name):
+    given = BODIES[name]
+    assert attrs.evolve(given) == given
+    heavier = attrs.evolve(given, mass=2.0 * given.mass)
+    assert heavier != given
+    assert np.array_equal(heavier.inertia, given.inertia)
+    assert heavier.principal is given.principal or np.array_equal(
+        heavier.principal, given.principal
+    )
+    assert pickle.loads(pickle.dumps(heavier)) == heavier
+    assert np.array_equal(attrs.evolve(given, inertia=NEW, principal=None, axes=None).inertia, NEW)
+
+
+@by_principal
+def test_other_moments_of_a_body_by_principal_moments(name):
+    given = BODIES[name]
+    turned = attrs.evolve(given, principal=(1.0, 1.5, 2.0))
+    axes = np.eye(3) if given.axes is None else given.axes
+    assert turned.inertia == pytest.approx(axes @ NEW @ axes.T, rel=1e-12, abs=1e-15)
+
+
+@by_principal
+def test_an_inertia_beside_principal_moments_is_refused(name):
+    with pytest.raises(ValueError, match=r"give one of the two.*None for the other"):
+        attrs.evolve(BODIES[name], inertia=NEW)
+
+
+@pytest.mark.parametrize("name", ["inertia", "rod"])
+def test_principal_moments_beside_an_inertia_are_refused(name):
+    with pytest.raises(ValueError, match=r"give one of the two.*None for the other"):
+        attrs.evolve(BODIES[name], principal=(1.0, 1.5, 2.0))
+    moments = attrs.evolve(BODIES[name], inertia=None, principal=(1.0, 1.5, 2.0))
+    assert np.array_equal(moments.inertia, NEW)
+
+
+def test_a_body_tells_what_it_was_given():
+    assert "principal=" in repr(BODIES["axes"])
+    assert "inertia=" not in repr(BODIES["axes"])
+    assert "inertia=" in repr(BODIES["inertia"])
+    assert "principal=" not in repr(BODIES["inertia"])
+
+
+def test_scenes_of_bodies_given_by_inertia_or_by_principal_moments_stack():
+    for names in (("inertia", "turned"), ("turned", "principal"), ("principal", "turned")):
+        bodies = [BODIES[name] for name in names]
+        stacked = Scene.stack([meeting(body).scene for body in bodies]).encounter.body
+        assert np.array_equal(stacked.inertia, [body.inertia for body in bodies])

@@ -12,6 +12,7 @@ from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.outcome.columns import COLUMNS
 from contactlab.outcome.export import write_csv, write_npz
 from tests.present import extra
+from tests.solve.any_scene import EXACT
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 CHI, PSI1 = [1.0, 1.2, 1.4412], [0.0, 2.0, 6.0, 8.0]
@@ -208,3 +209,26 @@ def test_speeds_and_angles_make_a_grid_too():
         Scene.grid(ball, plate, friction_coefficient=0.1, speed=speeds)
     with pytest.raises(ValueError, match=r"speed \(2,\), angle_deg \(3,\).*Scene.grid"):
         Scene.at_angle(ball, plate, 0.1, speed=speeds, angle_deg=angles)
+
+
+GRIDS = [
+    {"psi1": [1.0, 2.0], "chi": [1.0, 2.0, 3.0]},
+    {"psi1": [1.0, 2.0], "chi": 1.4, "lam": [0.1, 0.2, 0.3], "eta": 0.5},
+    {"psi1": 1.0, "chi": 1.4, "lam": [0.1, 0.2], "eta": [0.2, 0.4, 0.5]},
+    {"psi1": [1.0, 2.0], "chi": 1.4, "lam": [0.0, 0.2, 0.3], "rho": [0.3, 0.5]},
+    {"lam": [0.0, 0.2, 0.3], "psi1": 1.0, "chi": 1.4, "rho": 0.5},
+]
+
+
+@extra("xarray")
+@pytest.mark.parametrize("entries", GRIDS, ids=lambda entries: "-".join(entries))
+def test_a_grid_of_any_group(entries):
+    lists = {name: values for name, values in entries.items() if isinstance(values, list)}
+    grid = Scene.grid(**entries)
+    assert grid.dimensions == tuple(map(len, lists.values()))
+    assert list(grid.axes) == list(lists)
+    result = EXACT.sweep(grid).check()
+    sizes = {name: len(values) for name, values in lists.items()}
+    assert dict(result.to_xarray().sizes) == sizes
+    last = {name: values[-1] if name in lists else values for name, values in entries.items()}
+    assert result[-1].psi2 == pytest.approx(EXACT.run(Scene.nondimensional(**last)).psi2, abs=1e-11)

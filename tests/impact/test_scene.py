@@ -1,6 +1,7 @@
 """Scenes: incidence, the paper's own parameters, batches."""
 
 import math
+import pickle
 
 import attrs
 import numpy as np
@@ -10,6 +11,7 @@ from contactlab import HalfSpace, Material, Scene, Sphere
 from contactlab.impact import hertz as closed_forms
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import entry_unit
+from tests.solve.any_scene import BATCHES, ONES, one
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 BALL = Sphere(0.01, STEEL)
@@ -209,3 +211,36 @@ def test_the_units_of_entries():
         "sphere.material.young_modulus": "Pa", "friction_coefficient": "1",
     }  # fmt: skip
     assert {name: entry_unit(name) for name in units} == units
+
+
+OTHERS = [
+    ("central", {"psi1": 1.6}),
+    ("central", {"chi": 1.5}),
+    ("planar", {"psi1": 1.6}),
+    ("planar", {"lam": 0.4, "eta": 1.0}),
+    ("planar", {"eta": 0.6}),
+    ("space", {"psi1": (0.8, 1.7)}),
+    ("space", {"lam": (-0.2, 0.2)}),
+    ("space", {"chi": [[0.6, 0.1], [0.1, 0.9]]}),
+    ("space", {"rho": 0.2}),
+]
+
+
+@pytest.mark.parametrize(("kind", "changes"), OTHERS)
+def test_scenes_are_equal_if_their_numbers_are(kind, changes):
+    scene = one(kind)
+    assert scene == one(kind) == attrs.evolve(scene) == pickle.loads(pickle.dumps(scene))
+    assert hash(scene) == hash(one(kind))
+    assert {scene: 1}[one(kind)] == 1
+    other = one(kind, **changes)
+    assert scene != other
+    assert len({scene, other}) == 2
+
+
+def test_scenes_of_other_kinds_are_not_equal():
+    assert len(set(ONES.values())) == 3
+    assert len(set(BATCHES.values())) == 4
+    batch = BATCHES["mixed"]
+    assert batch == attrs.evolve(batch) == Scene.stack(list(ONES.values()))
+    assert batch != Scene.stack(list(reversed(ONES.values())))
+    assert batch != BATCHES["space"]

@@ -8,10 +8,11 @@ import zipfile
 import numpy as np
 import pytest
 
-from contactlab import Scene, Simulation
+from contactlab import Scene, Simulation, collide, read_scene
 from contactlab.outcome.columns import Column
 from contactlab.outcome.export import write_csv, write_history_csv, write_json, write_npz
-from tests.present import column
+from tests.present import column, extra
+from tests.scene_file.test_bodies_of_files import ROD
 
 SIM = Simulation(tangential="coulomb", integrator="symplectic")
 SINGLE = Scene.nondimensional(psi1=2.0, chi=1.4411764706)
@@ -106,3 +107,64 @@ def test_npz_round_trip(tmp_path):
         assert content["psi2"] == result.psi2
         assert content["status"] == "SUCCESS"
         assert content["history_time"].tolist() == result.history.time.tolist()
+
+
+#: A rod in space, over its tilt.
+SWEPT = ROD.replace("[0.2, 0, -1.0]", "[0.2, 0.1, -1.0]") + "[sweep]\ntilt_deg = [0, 10, 30, 60]\n"
+
+
+@pytest.fixture
+def swept(tmp_path):
+    """Return a sweep over the tilt of a rod, the encounters and a folder."""
+    (tmp_path / "rod.toml").write_text(SWEPT, encoding="utf-8")
+    file = read_scene(tmp_path / "rod.toml")
+    return file.laws.simulation().sweep(file.scene).check(), file.encounter, tmp_path
+
+
+#: Columns of a vector, and the vector of the collision that it is.
+VECTORS = {
+    "velocity_in_space": "velocity",
+    "rebound_spin": "spin",
+    "target_velocity_in_space": "target_velocity",
+    "target_rebound_spin": "target_spin",
+}
+
+
+@pytest.mark.parametrize("suffix", ["csv", "npz", "json"])
+def test_files_hold_what_was_swept_and_what_came_out(swept, suffix):
+    result, encounter, folder = swept
+    path = folder / f"out.{suffix}"
+    {"csv": write_csv, "npz": write_npz, "json": write_json}[suffix](result, path)
+    if suffix == "csv":
+        with path.open(encoding="utf-8", newline="") as stream:
+            rows = list(csv.DictReader(stream))
+        read = {name.split(" ")[0]: [row[name] for row in rows] for name in rows[0]}
+        assert "tilt_deg (deg)" in rows[0]
+        assert "velocity_in_space_1 (m/s)" in rows[0]
+        assert "rebound_spin_1 (rad/s)" in rows[0]
+    elif suffix == "npz":
+        with np.load(path) as file:
+            read = {name: file[name] for name in file.files}
+    else:
+        read = json.loads(path.read_text(encoding="utf-8"))
+    assert np.asarray(read["tilt_deg"], dtype=float).tolist() == [0.0, 10.0, 30.0, 60.0]
+    made = collide(encounter)
+    for name, vector in VECTORS.items():
+        columns = [np.asarray(read[f"{name}_{place}"], dtype=float) for place in (1, 2, 3)]
+        assert np.stack(columns, axis=-1) == pytest.approx(getattr(made, vector), rel=1e-9)
+    for name, values in (("psi2", result.psi2), ("psi1", result.psi1), ("lam", result.scene.lam)):
+        columns = [np.asarray(read[f"{name}_{place}"], dtype=float) for place in (1, 2)]
+        assert np.array_equal(np.stack(columns, axis=-1), values)
+    found = np.asarray(read["normal_restitution"], dtype=float)
+    assert np.array_equal(found, result.normal_restitution)
+    assert list(read["status"]) == 4 * ["SUCCESS"]
+
+
+@extra("pandas")
+def test_frames_hold_what_was_swept(swept):
+    result, encounter, _ = swept
+    frame = result.to_dataframe()
+    assert frame["tilt_deg"].tolist() == [0.0, 10.0, 30.0, 60.0]
+    velocity = frame[[f"velocity_in_space_{place}" for place in (1, 2, 3)]].to_numpy()
+    assert velocity == pytest.approx(collide(encounter).velocity, rel=1e-9)
+    assert frame.attrs["units"]["velocity_in_space_1"] == "m/s"

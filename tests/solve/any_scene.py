@@ -14,6 +14,7 @@ from contactlab import (
     Simulation,
     Sphere,
     create,
+    shapes,
 )
 
 STEEL = Material.named("steel")
@@ -97,3 +98,28 @@ def one(kind, **changes):
 WITH_BODIES = Scene(BALL, FLOOR, 0.3, 1.0, 0.5)
 BY_SPRINGS = {"tangential": "springs", "integrator": "symplectic"}
 SPHERES = Encounter(BALL, FLOOR, 0.3, normal=DOWN, velocity=(0.5, 0.3, -1.0))
+
+
+AXES = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
+BODIES = {
+    "inertia": body(),
+    "principal": RigidBody(
+        mass=1.0, principal=(0.01, 0.014, 0.005), material=STEEL, curvature_radius=0.01
+    ),
+    "axes": RigidBody(
+        mass=1.0, principal=(0.01, 0.014, 0.005), axes=AXES, material=STEEL, curvature_radius=0.01
+    ),
+    "turned": RigidBody(
+        mass=1.0, principal=(0.01, 0.014, 0.005), axes=np.eye(3)[[1, 0, 2]], material=STEEL,
+        curvature_radius=0.01,
+    ),
+    "batch": RigidBody(
+        mass=1.0, principal=np.array([(0.01, 0.014, 0.005), (0.02, 0.02, 0.02)]), axes=AXES,
+        material=STEEL, curvature_radius=0.01,
+    ),
+    "rod": shapes.rod(length=1.0, radius=0.02, material=STEEL, normal=DOWN, axis=(0.5, 0, 0.8))[0],
+    "box": shapes.box(
+        sides=(0.1, 0.2, 0.3), corner_radius=0.01, material=STEEL, normal=DOWN, axes=AXES
+    )[0],
+    "ellipsoid": shapes.ellipsoid(semi_axes=(0.02, 0.03, 0.04), material=STEEL, normal=DOWN)[0],
+}  # fmt: skip

@@ -724,3 +724,20 @@ def test_a_plan_tells_space_from_a_plane():
     assert "numerical error of the normal restitution: the laws state no bound" in space
     assert "out-of-plane motion (planar)" in plane
     assert "out-of-plane motion (planar)" not in space
+
+
+@pytest.mark.parametrize("friction", [1e5, 1e6])
+@pytest.mark.parametrize("slip", [0.0, 0.5])
+def test_books_beyond_what_is_declared_raise_the_declared_error(friction, slip):
+    """For mu from 10 on e is linear in 1/mu: 1e3 and 1e4 give the limit to 1e-8."""
+    scene = rod(45.0, slip=slip, friction=friction).scene
+    result = Simulation().run(scene).check()
+    e = [
+        Simulation().run(rod(45.0, slip=slip, friction=mu).scene).normal_restitution
+        for mu in (1e3, 1e4)
+    ]
+    limit = e[1] + (e[1] - e[0]) * (1e-4 - 1.0 / friction) / (1e-3 - 1e-4)
+    assert abs(result.normal_restitution - limit) <= result.plan.restitution_error
+    assert result.plan.restitution_error > abs(result.energy.relative_imbalance)
+    told = f"the normal restitution: below {result.plan.restitution_error:.2g}"
+    assert told in str(result.plan)

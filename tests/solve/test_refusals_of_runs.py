@@ -13,6 +13,7 @@ from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 from contactlab.registry.composition import law
 from tests.collisions.test_collision import meeting
 from tests.laws.normal_laws import LinearSpring
+from tests.solve.any_scene import BATCHES, EXACT, WITH_BODIES, one_scene
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 BALL = Scene(Sphere(0.01, STEEL), HalfSpace(STEEL), 0.2, 1.0)
@@ -297,3 +298,26 @@ def test_a_law_without_one_of_its_options_says_how_to_give_it(registry, install,
 def test_a_law_that_is_not_installed_has_a_hint(registry, name, hint):
     with pytest.raises(ValueError, match=re.escape(hint)):
         registry.create(name)
+
+
+WITH_FRICTION = Scene.nondimensional(
+    psi1=1.5, chi=1.4, lam=0.2, friction_coefficient=0.3, poisson_ratio=0.3
+)
+
+
+@one_scene
+@pytest.mark.parametrize(
+    ("other", "words"),
+    [
+        (3, "scenes.1. = 3: must be a Scene"),
+        (None, "must be a Scene"),
+        (BATCHES["planar"], "must be a single impact"),
+        (BATCHES["mixed"], "must be a single impact"),
+        (WITH_BODIES, "must have a sphere if, and only if"),
+        (WITH_FRICTION, "must have a friction coefficient if"),
+    ],
+    ids=["3", "None", "batch", "mixed", "bodies", "friction"],
+)
+def test_sweeps_that_are_refused(scene, other, words):
+    with pytest.raises(ValueError, match=words):
+        EXACT.sweep([scene, other])
