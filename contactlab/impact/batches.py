@@ -118,6 +118,10 @@ class Batches(Motions):
             scenes = [scene._of_any_shape(planar) for scene in scenes]
         stacked = batch.stack_trees(scenes)
         assert isinstance(stacked, cls)
+        encounter = stacked.encounter
+        if encounter is not None and not encounter.shape:  # each impact has one, also if all agree
+            velocity = np.tile(encounter.velocity, (len(scenes), 1))
+            stacked = stacked._with(encounter=attrs.evolve(encounter, velocity=velocity))
         if stacked.shape:
             return stacked
         return stacked._evolve(normal_speed=np.full(len(scenes), stacked.normal_speed))

@@ -62,7 +62,7 @@ def common_shape(
 def stack_trees(items: Sequence[Any]) -> Any:
     """Return one tree; leaves that differ become arrays of shape (items,)."""
     first = items[0]
-    if all(item is first for item in items):
+    if all(item is first for item in items) and not isinstance(first, np.ndarray):
         return first
     if all(item is None or isinstance(item, float | np.ndarray) for item in items):
         items = [math.nan if item is None else item for item in items]  # not known of some

@@ -190,7 +190,8 @@ class ImpactResult(Answer, Generic[Each]):
     def velocity_in_space(self) -> Array | Any:
         """Velocity in space of the first body of an encounter, shape (..., 3), in m/s; else None.
 
-        Bodies that are no spheres have it; of spheres see ``Collision.velocity``.
+        Bodies that are no spheres have it, unless they are of several kinds in a batch, or their
+        scene was given another speed; of spheres see ``Collision.velocity``.
         """
         return self._in_space("velocity")
 
@@ -202,7 +203,12 @@ class ImpactResult(Answer, Generic[Each]):
     def _in_space(self, name: str) -> Any:
         """Return a vector after the impact of bodies that are no spheres; None without them."""
         encounter, axes = self.scene.encounter, self.scene.frame
-        if axes is None:
+        if axes is None or encounter is None:
+            return None
+        before = encounter.meeting()
+        slip = kinetics.size_of(self.scene, np.asarray(self.scene.slip_velocity))
+        speeds = self.scene.normal_speed, slip
+        if not all(map(np.allclose, (before.approach, before.slip), speeds)):
             return None
         from contactlab.impact.body_contact import push_bodies  # spheres need none of this
 

@@ -2,12 +2,14 @@
 
 import math
 
+import attrs
 import numpy as np
 import pytest
 
-from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, collide
 from contactlab.outcome.tables import sections
 from tests.laws.normal_laws import Damped, LinearSpring
+from tests.solve.any_scene import EXACT, OFF_CENTRE
 
 STEEL = Material(young_modulus=208e9, poisson_ratio=0.3, density=7850.0)
 RADIUS, FRICTION, SPEED, TANGENTIAL, SPIN = 0.01, 0.1, 2.0, 3.0, 40.0
@@ -183,3 +185,12 @@ def test_the_table_of_a_ball_on_a_ball_has_the_target_at_rest_before():
         assert still == 0.0
         assert target.mass * abs(moved) == pytest.approx(ball.mass * abs(before - after), rel=1e-9)
     assert rows["target: spin"][0] == 0.0
+
+
+@pytest.mark.parametrize("speed", [2.0, np.array([1.0, 2.0, 3.0])])
+def test_a_scene_given_another_speed_has_no_velocity_of_its_encounter(speed):
+    """Friction alone may be another."""
+    assert EXACT.run(attrs.evolve(OFF_CENTRE.scene, normal_speed=speed)).velocity_in_space is None
+    rougher = EXACT.run(attrs.evolve(OFF_CENTRE.scene, friction_coefficient=0.1))
+    made = collide(attrs.evolve(OFF_CENTRE, friction_coefficient=0.1))
+    assert rougher.velocity_in_space == pytest.approx(made.velocity, rel=1e-12)
