@@ -13,6 +13,7 @@ from contactlab.contracts.motion import (
     NormalMotion,
     NormalSample,
     ScaledContact,
+    Units,
 )
 from contactlab.contracts.normal import (
     ClosedFormNormalLaw,
@@ -111,6 +112,7 @@ __all__ = [
     "TangentialMotion",
     "TangentialResponse",
     "UnfollowedNormalLaw",
+    "Units",
     "WholeImpact",
     "WholeImpactTangentialLaw",
     "accuracy_of",

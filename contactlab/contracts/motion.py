@@ -46,6 +46,22 @@ class NormalSample(NamedTuple):
     load_impulse: Any
 
 
+class Units(NamedTuple):
+    """Units of impacts over those of the one impact that their motion has in other units.
+
+    Attributes
+    ----------
+    time, approach, rate, force, radius : float or array
+        Without unit, of the batch shape.
+    """
+
+    time: Real = 1.0
+    approach: Real = 1.0
+    rate: Real = 1.0
+    force: Real = 1.0
+    radius: Real = 1.0
+
+
 class NormalMotion(ABC):
     """A normal motion from first touch to separation, of one impact or of a batch.
 
@@ -101,6 +117,11 @@ class NormalMotion(ABC):
     @property
     def shared(self) -> dict[Any, Any] | None:
         """A dict that equal motions share, for ``once``; None, the default, if there is none."""
+        return None
+
+    @property
+    def pattern(self) -> tuple[NormalMotion, Units] | None:
+        """One impact, whose motion that of each impact is in these units; None if none is known."""
         return None
 
     @property

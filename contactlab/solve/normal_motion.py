@@ -64,15 +64,15 @@ def _open(law: NormalLaw, scene: Scene) -> NormalMotion:
     """Return the motion of a law that returns forces."""
     if (rate := unfollowed_rate(law, scene)) is not None and every(np.isfinite(rate)):
         return UnfollowedMotion(law, scene, rate)
-    from contactlab.solve.solved_motion import SolvedMotion, Units  # not for closed forms
+    from contactlab.solve.solved_motion import SolvedMotion  # not for closed forms
 
     if "similar" in claims(law):
         one = _unit_impact()
         alone = _kept_table(law, one)
         if alone is not None and alone.status[0] is Status.SUCCESS:
-            return SolvedMotion(law, scene, alone, Units.of(scene, one))
+            return SolvedMotion(law, scene, alone, one)
     if (found := _of_restitutions(law, scene)) is not None:
-        return SolvedMotion(law, scene, found, Units.of(scene, _unit_impact()))
+        return SolvedMotion(law, scene, found, _unit_impact())
     table = _common(law, scene)
     if table is not None:
         return SolvedMotion(law, scene, table)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 import attrs
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
-from contactlab.contracts.motion import NormalMotion, NormalSample
+from contactlab.contracts.motion import NormalMotion, NormalSample, Units
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
@@ -162,42 +162,39 @@ def _largest(values: Array) -> Array:
     return np.asarray(np.maximum(values.max(axis=(1, 2)), peak.max(axis=(0, 2))))
 
 
-class Units(NamedTuple):
-    """Hertz's units of impacts over those of the impact of a table; floats or the batch shape."""
-
-    time: Real = 1.0
-    approach: Real = 1.0
-    rate: Real = 1.0
-    force: Real = 1.0
-    radius: Real = 1.0
-
-    @classmethod
-    def of(cls, scene: Scene, first: Scene) -> Units:
-        """Return the units of a batch over those of one impact."""
-        ours, theirs = hertz_scales(scene), hertz_scales(first)
-        return cls(
-            time=ours.duration / theirs.duration,
-            approach=ours.approach / theirs.approach,
-            rate=scene.normal_speed / first.normal_speed,
-            force=ours.force / theirs.force,
-            radius=ours.radius / theirs.radius,
-        )
+def units_over(first: Scene, scene: Scene) -> Units:
+    """Return Hertz's units of a batch over those of one impact."""
+    ours, theirs = hertz_scales(scene), hertz_scales(first)
+    return Units(
+        time=ours.duration / theirs.duration,
+        approach=ours.approach / theirs.approach,
+        rate=scene.normal_speed / first.normal_speed,
+        force=ours.force / theirs.force,
+        radius=ours.radius / theirs.radius,
+    )
 
 
 class SolvedMotion(NormalMotion):
     """A normal motion interpolated in a table; its phase is proportional to time.
 
-    A table of one motion may serve a batch in ``units`` of each impact.
+    The table may be that of other impacts, in Hertz's units of a ``first``.
     """
 
     accuracy = ACCURACY
 
     def __init__(
-        self, law: Law, scene: Scene, table: MotionTable, units: Units | None = None
+        self,
+        law: Law,
+        scene: Scene,
+        table: MotionTable,
+        first: Scene | None = None,
+        units: Units | None = None,
     ) -> None:
-        self.law, self.scene, self.table, self.units = law, scene, table, units
+        self.law, self.scene, self.table, self.first = law, scene, table, first
         self.alike = not table.shape
-        unit = Units() if units is None else units
+        if units is None:
+            units = Units() if first is None else units_over(first, scene)
+        unit = self.units = units
         self.duration = table.restore_shape(table.ends * table.unit) * unit.time
         self.final_rate = table.restore_shape(table.last[:, RATE]) * unit.rate
         self.total_load_impulse = table.restore_shape(table.last[:, LOAD_IMPULSE]) * (
@@ -213,10 +210,17 @@ class SolvedMotion(NormalMotion):
     @property
     def shared(self) -> dict[Any, Any] | None:
         """What batches of one table share that have as many axes."""
-        if not self.alike or self.units is not None:
+        if not self.alike or self.first is not None:
             return None
         kept: dict[Any, Any] = self.table.shared.setdefault(len(self.scene.shape), {})
         return kept
+
+    @property
+    def pattern(self) -> tuple[NormalMotion, Units] | None:
+        """The motion of the table."""
+        if not self.alike or self.first is None:
+            return None
+        return SolvedMotion(self.law, self.first, self.table), self.units
 
     @np.errstate(under="ignore")  # on a node the weights of the other nodes are about 1e-290
     def at(self, phase: Real) -> NormalSample:
@@ -229,7 +233,8 @@ class SolvedMotion(NormalMotion):
         columns = np.moveaxis(self.table.at(share * self.table.ends), -1, 0).reshape(6, *outer)
         approach, rate, force, radius_squared, load, load_impulse = columns
         radius, load = _radius(radius_squared), np.maximum(load, 0.0)
-        if (unit := self.units) is not None:
+        if self.first is not None:
+            unit = self.units
             approach, rate, force = approach * unit.approach, rate * unit.rate, force * unit.force
             radius, load = radius * unit.radius, load * unit.force
             load_impulse = load_impulse * (unit.force * unit.time)
@@ -245,10 +250,8 @@ class SolvedMotion(NormalMotion):
         scene, table = self.scene.take(part), self.table
         if table.shape:
             table = table.take(np.arange(math.prod(table.shape)).reshape(table.shape)[part])
-        units = self.units
-        if units is not None:
-            units = Units._make(batch.taken(each, self.scene.shape, part) for each in units)
-        return SolvedMotion(self.law, scene, table, units)
+        units = Units._make(batch.taken(each, self.scene.shape, part) for each in self.units)
+        return SolvedMotion(self.law, scene, table, self.first, units)
 
 
 def _radius(squared: Array) -> Array:

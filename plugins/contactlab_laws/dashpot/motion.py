@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 import attrs
@@ -13,8 +13,10 @@ from contactlab.contracts import (
     ClosedFormMotion,
     NormalContact,
     NormalLaw,
+    NormalMotion,
     NormalSample,
     ScaledContact,
+    Units,
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.lobatto import lobatto, rows
@@ -172,6 +174,18 @@ def _phases(motion: ScaledMotion, fractions: bytes) -> Array:
     return phases
 
 
+@lru_cache(maxsize=16)
+def _share(*_: object) -> dict[Any, Any]:
+    """Return the dict that motions share of the same scaled motion and the same numbers."""
+    return {}
+
+
+@cache
+def _first() -> Scene:
+    """Return the impact of which motions in other units are made."""
+    return Scene.nondimensional(psi1=0.0, chi=1.0)
+
+
 @attrs.frozen(kw_only=True, eq=False, repr=False)
 class DashpotMotion(ClosedFormMotion):
     """Motion under spring and dashpot: a scaled motion in units of the undamped impact."""
@@ -208,6 +222,26 @@ class DashpotMotion(ClosedFormMotion):
             final_rate=-e * speed,
             total_load_impulse=(1.0 + e) * momentum,
         )
+
+    @property
+    def shared(self) -> dict[Any, Any] | None:
+        """What the pattern shares with itself in other runs."""
+        return _share(self.motion) if self.scene is _first() else None
+
+    @property
+    def pattern(self) -> tuple[NormalMotion, Units] | None:
+        """An undamped approach of 1 m in the first impact of all."""
+        one, first, pair = self.scene, _first(), self.scene.pair
+        time = self.undamped_approach / one.normal_speed * first.normal_speed
+        rate = one.normal_speed / first.normal_speed
+        units = Units(
+            time=time,
+            approach=self.undamped_approach,
+            rate=rate,
+            force=pair.normal_mass / first.pair.normal_mass * rate / time,
+            radius=(pair.radius * self.undamped_approach / first.pair.radius) ** 0.5,
+        )
+        return DashpotMotion.of(self.law, first, self.motion, 1.0), units
 
     def take(self, part: Index) -> DashpotMotion:
         """Return the motion of some impacts."""

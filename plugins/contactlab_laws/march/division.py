@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Hashable, Iterator
 
 import numpy as np
 
@@ -13,8 +13,10 @@ from contactlab.contracts import (
     NormalSample,
     Steps,
     TangentialLaw,
+    Units,
     claims,
 )
+from contactlab.numeric.arrays import lock_arrays
 from contactlab.numeric.types import Array, Real
 
 #: Largest omega dt of the fastest tangential oscillation. From 2 on the leapfrog is unstable
@@ -56,17 +58,45 @@ def midpoints(normal: NormalMotion, count: int, *, graded: bool = False) -> Step
     Steps that are ``graded`` are short at first touch and at separation, where the force of a
     viscous contact goes as the root of time: they are even in the integral of dt/b.
     """
-    if count > LONGEST_KEPT:
-        return _midpoints(normal, count, graded)
     key = "midpoints", count, graded
-    return normal.once(key, lambda: _midpoints(normal, count, graded))
+    return _once(normal, count, key, lambda motion: _midpoints(motion, count, graded))
 
 
 def endpoints(normal: NormalMotion, count: int) -> Steps:
     """Return ``count`` steps of the contact's duration, each sampled at its end."""
+    key = "endpoints", count
+    return _once(normal, count, key, lambda motion: _endpoints(motion, count))
+
+
+def _once(
+    normal: NormalMotion, count: int, key: Hashable, make: Callable[[NormalMotion], Steps]
+) -> Steps:
+    """Return steps that equal motions share, and those that are equal in other units."""
     if count > LONGEST_KEPT:
-        return _endpoints(normal, count)
-    return normal.once(("endpoints", count), lambda: _endpoints(normal, count))
+        return make(normal)
+    if (pattern := normal.pattern) is None:
+        return normal.once(key, lambda: make(normal))
+    one, units = pattern
+    return _in_units(one.once(key, lambda: make(one)), units, len(normal.scene.shape))
+
+
+def _in_units(steps: Steps, units: Units, axes: int) -> Steps:
+    """Return the steps of one impact as those of impacts in other units, a batch of ``axes``."""
+    time, approach, rate, force, radius = units
+    shape = (-1,) + (1,) * axes
+
+    def scaled(column: Array, unit: Real) -> Array:
+        return lock_arrays(column.reshape(shape) * unit)
+
+    return Steps(
+        contact=NormalContact(*map(scaled, steps.contact, (force, radius, approach, force))),
+        drift=scaled(steps.drift, time),
+        kick=scaled(steps.kick, time),
+        friction_load=scaled(steps.friction_load, force),
+        time=scaled(steps.time, time),
+        approach=scaled(steps.approach, approach),
+        rate=scaled(steps.rate, rate),
+    )
 
 
 def _midpoints(normal: NormalMotion, count: int, graded: bool) -> Steps:
