@@ -217,7 +217,7 @@ class Collision(Answer, Generic[Each]):
         """
         if self.known is not None:
             return self.known
-        return run_by_restitution(self._met.scene, self._restitutions)
+        return run_by_restitution(self._hits.scene, self._restitutions)
 
     @cached_property
     def plan(self) -> Plan:
@@ -225,7 +225,7 @@ class Collision(Answer, Generic[Each]):
         passed = ~np.asarray(self.collided)
         if passed.all():
             return collision_plan(Plan(PlanColumns.nothing(passed.shape)), None, passed)
-        met = self._met
+        met = self._hits
         known, e = self.known, self._restitutions
         plan = plan_rebounds(met.scene, e) if known is None else known.plan
         return collision_plan(plan, met, passed)
@@ -254,7 +254,7 @@ class Collision(Answer, Generic[Each]):
         after = self.normal_velocity, self.slip_velocity_change
         with np.errstate(over="ignore", under="ignore", invalid="ignore"):
             start, lost, slip = self.encounter.pair.energies(contact.approach, contact.slip, *after)
-            if np.any(self.collided) and kinetics.turns(scene := self._met.scene):
+            if np.any(self.collided) and kinetics.turns(scene := self._hits.scene):
                 change = 0.0 if known is None else known.motion.normal_spin_change
                 whole, rubbed = self._spread(*kinetics.spin_energies(scene, change))
                 start, slip = start + whole, slip + rubbed
@@ -315,7 +315,7 @@ class Collision(Answer, Generic[Each]):
         return join_components(cross(components(spin), arm), encounter.shape)
 
     @property
-    def _met(self) -> Encounter:
+    def _hits(self) -> Encounter:
         """The encounters that collided."""
         if np.all(self.collided):
             return self.encounter

@@ -105,7 +105,7 @@ class GatheringResult(Answer):
         lost = lost.reshape(*lost.shape, *(1 for _ in trailing))
         return np.asarray(self._shape(whole + lost, self._scene.shape[-1], *trailing))
 
-    def _told(self, name: str, *trailing: int) -> Array:
+    def _read_contacts(self, name: str, *trailing: int) -> Array:
         """Return an entry of the contacts that the march tells."""
         told = self._motion.contacts
         value = np.nan if told is None else getattr(told, name)
@@ -146,7 +146,9 @@ class GatheringResult(Answer):
     @property
     def impulse(self) -> Array:
         """Impulse on the first body of each contact, shape (..., C, 3), in N s."""
-        impulse: Array = -np.einsum("...ia,...i->...a", self.frame, self._told("impulse", 3))
+        impulse: Array = -np.einsum(
+            "...ia,...i->...a", self.frame, self._read_contacts("impulse", 3)
+        )
         return impulse
 
     @property
@@ -184,17 +186,17 @@ class GatheringResult(Answer):
     @property
     def first_touch(self) -> Array:
         """Time of the first touch, shape (..., C), in s; NaN of a contact that never closed."""
-        return self._told("first")
+        return self._read_contacts("first")
 
     @property
     def last_touch(self) -> Array:
         """Time at which a contact was last closed, shape (..., C), in s."""
-        return self._told("last")
+        return self._read_contacts("last")
 
     @property
     def touches(self) -> Array:
         """How often the surfaces met, shape (..., C); 0 of a contact that never closed."""
-        return self._told("touches")
+        return self._read_contacts("touches")
 
     @property
     def duration(self) -> Array:
@@ -224,7 +226,7 @@ class GatheringResult(Answer):
     @property
     def normal_loss(self) -> Array:
         """Energy that the normal law of each contact took, shape (..., C), in J."""
-        return self._told("dissipation")
+        return self._read_contacts("dissipation")
 
     @property
     def energy(self) -> EnergyLedger:

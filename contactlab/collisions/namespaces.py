@@ -36,7 +36,7 @@ class TracingLibrary(Protocol):
     def constants(self, numbers: Mapping[str, AnyArray], like: Any) -> dict[str, Any]:
         """Return arrays of NumPy as arrays of the type and place of ``like``, or integers."""
 
-    def compiled(self, function: Callable[..., Any]) -> Callable[..., Any]:
+    def compile_late(self, function: Callable[..., Any]) -> Callable[..., Any]:
         """Return a function that may be compiled when it is called."""
 
 
@@ -46,7 +46,7 @@ class _Jax:
     def __init__(self) -> None:
         self.jax: Any = importlib.import_module("jax")
         self.xp: Any = importlib.import_module("jax.numpy")
-        self.compiled: Any = self.jax.jit
+        self.compile_late: Any = self.jax.jit
 
     def arrays(self, values: Iterable[object]) -> list[Any]:
         """Return numbers and arrays as arrays of one type, that of the arrays among them."""
@@ -113,7 +113,7 @@ class _Torch:
                 for name, each in numbers.items()
             }
 
-    def compiled(self, function: Callable[..., Any]) -> Callable[..., Any]:
+    def compile_late(self, function: Callable[..., Any]) -> Callable[..., Any]:
         """Return the function as it is: who compiles calls torch.compile."""
         return function
 
@@ -138,7 +138,7 @@ def find_library(name: str) -> TracingLibrary:
     return _Torch() if name == "torch" else _Jax()
 
 
-def known(library: str, name: str, value: Any, rule: Rule, remedy: str = "") -> Any:
+def read_numbers(library: str, name: str, value: Any, rule: Rule, remedy: str = "") -> Any:
     """Return the checked numbers of an argument; None if they are not known, but traced.
 
     Raises

@@ -246,7 +246,7 @@ def rebound(
     three = derivatives and restitution is not None
     velocity, ratio = pair_up("psi1", "chi", (incidence, inertia))
     if type(psi1) in (float, int) and type(chi) in (float, int):  # typed, not out of an array
-        _warn_if_exchanged(float(incidence), float(inertia))
+        _warn_of_exchange(float(incidence), float(inertia))
     one = isinstance(e, float)  # one restitution for all
     if not one:
         velocity, each = pair_up("psi1", "restitution", (velocity, e))
@@ -269,7 +269,7 @@ def rebound(
     return answers if derivatives else answers[0]
 
 
-def _warn_if_exchanged(psi1: float, chi: float) -> None:
+def _warn_of_exchange(psi1: float, chi: float) -> None:
     """Warn of two numbers that look exchanged."""
     if LIKE_CHI[0] <= psi1 <= LIKE_CHI[1] and LIKE_PSI1[0] <= chi <= LIKE_PSI1[1]:
         told = f"psi1 = {psi1:g} and chi = {chi:g} look exchanged: no solid sphere has such a chi"

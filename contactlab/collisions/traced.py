@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
 
-from contactlab.collisions.namespaces import find_library, known
+from contactlab.collisions.namespaces import find_library, read_numbers
 from contactlab.contracts.whole_impact import Tabulated
 from contactlab.numeric.checks import Rule, refuse
 
@@ -44,7 +44,7 @@ def by_standard(
         If a number that is known is out of range, or shapes do not fit.
     """
     for name, value in arguments.items():
-        known(library, name, value, rules[name], ENDS)
+        read_numbers(library, name, value, rules[name], ENDS)
     arrays = find_library(library).arrays(arguments.values())
     xp = find_library(library).xp
     try:
@@ -73,4 +73,4 @@ def _function(library: str, law: Tabulated, joined: bool) -> Callable[..., Any]:
     def psi2(tables: Any, *impact: Any) -> Any:
         return law.rebound_of_arrays(xp, tables, *impact, joined=joined)
 
-    return find_library(library).compiled(psi2)
+    return find_library(library).compile_late(psi2)

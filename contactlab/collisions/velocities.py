@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlab.collisions.namespaces import find_library, known
+from contactlab.collisions.namespaces import find_library, read_numbers
 from contactlab.collisions.rebound import rebound, traceable
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
@@ -43,7 +43,7 @@ def velocities(
     of_kind("target", target, Sphere, HalfSpace, remedy=remedy)
     _check(library, target, friction, vectors)
     if not callable(restitution):
-        known(library, "restitution", restitution, RESTITUTIONS)
+        read_numbers(library, "restitution", restitution, RESTITUTIONS)
     pair, e = Pair.of(body, target), 1.0 if callable(restitution) else restitution
     masses = pair.normal_mass, pair.tangential_mass
     spheres = [each for each in (body, target) if isinstance(each, Sphere)]
@@ -84,9 +84,9 @@ def _check(
     library: str, target: Sphere | HalfSpace, friction: object, vectors: dict[str, Any]
 ) -> None:
     """Refuse bad numbers that are known, and spin of a half-space."""
-    known(library, "friction_coefficient", friction, NON_NEGATIVE)
+    read_numbers(library, "friction_coefficient", friction, NON_NEGATIVE)
     for name, value in vectors.items():
-        numbers = known(library, name, value, RANGE)
+        numbers = read_numbers(library, name, value, RANGE)
         if np.shape(value)[-1:] != (3,):
             raise refuse(f"{name}.shape", (*np.shape(value),), "must end with 3")
         if name == "normal" and numbers is not None and not (numbers != 0.0).any(axis=-1).all():
