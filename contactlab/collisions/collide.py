@@ -155,7 +155,7 @@ def collide(
         scene = encounter.scene
     else:  # the index of an impact is its place in the whole batch
         places = np.arange(np.size(met)).reshape(np.shape(met))[met]
-        scene = encounter.take(met).scene.numbered(places)
+        scene = encounter.take(met).scene.with_index(places)
         e = taken(e, encounter.shape, met)
     if simulation is not None:
         result = run_in_blocks(simulation, scene)

@@ -38,8 +38,8 @@ def run_by_restitution(scene: Scene, restitution: Real) -> ImpactResult:
     parts = [(mask, _run(scene.take(mask), e)) for mask, e in groups]
     return ImpactResult(
         scene=scene,
-        plan=Plan.merged([(mask, part.plan) for mask, part in parts], scene.shape),
-        motion=Motion.merged([(mask, part.motion) for mask, part in parts], scene.shape),
+        plan=Plan.merge([(mask, part.plan) for mask, part in parts], scene.shape),
+        motion=Motion.merge([(mask, part.motion) for mask, part in parts], scene.shape),
         laws=parts[0][1].laws,
         run_time=sum(part.run_time for _, part in parts),
     )
@@ -67,7 +67,7 @@ def _of_groups(scene: Scene, restitution: Real) -> Plan:
     plans = [
         (mask, _plan_of_each(scene.take(mask), value, restitution[mask])) for mask, value in groups
     ]
-    return Plan.merged(plans, scene.shape)
+    return Plan.merge(plans, scene.shape)
 
 
 def _plan_of_each(scene: Scene, restitution: float, each: Real) -> Plan:

@@ -59,7 +59,7 @@ class BatchMotion:
         return frozenset(field.name for field in fields if word in field.metadata)
 
     @classmethod
-    def joined(cls, motions: Sequence[Self], shape: tuple[int, ...]) -> Self:
+    def join(cls, motions: Sequence[Self], shape: tuple[int, ...]) -> Self:
         """Return one motion of ``shape`` from the motions of consecutive parts of the batch.
 
         Parameters
@@ -72,10 +72,10 @@ class BatchMotion:
         if len(motions) == 1 and shape and np.shape(motions[0].status) == shape:
             return motions[0]
         places = consecutive(np.size(motion.status) for motion in motions)
-        return cls.merged(list(zip(places, motions, strict=True)), shape)
+        return cls.merge(list(zip(places, motions, strict=True)), shape)
 
     @classmethod
-    def merged(cls, parts: Sequence[tuple[slice | Mask, Self]], shape: tuple[int, ...]) -> Self:
+    def merge(cls, parts: Sequence[tuple[slice | Mask, Self]], shape: tuple[int, ...]) -> Self:
         """Return one motion of ``shape`` from pairs of a place and the motion of its impacts.
 
         An impact in several parts has the motion of the last of these parts.

@@ -44,7 +44,7 @@ class Contacts:
     dissipation: Array
 
     @classmethod
-    def merged(
+    def merge(
         cls, parts: Sequence[tuple[slice | Mask, Contacts | None]], shape: tuple[int, ...]
     ) -> Self:
         """Return those of a batch of ``shape`` from places and parts; NaN where there are none.

@@ -86,12 +86,12 @@ def wrong_response(
 
 def stiffness_of(law: SteppedTangentialLaw, scene: Scene, normal: NormalMotion) -> Real:
     """Return the stiffness in N/m that bounds a stable step; infinite if none is stable."""
-    return _known(law, "stiffness", law.stiffness(scene, normal), scene.shape)
+    return _read_declaration(law, "stiffness", law.stiffness(scene, normal), scene.shape)
 
 
 def books_bound_of(law: TangentialLaw, scene: Scene) -> Real:
     """Return the bound of the energy books that a law declares; infinite if it declares none."""
-    return _known(law, "books_bound", law.books_bound(scene), scene.shape)
+    return _read_declaration(law, "books_bound", law.books_bound(scene), scene.shape)
 
 
 def judge_errors(law: Law, errors: object, shape: tuple[int, ...]) -> Errors:
@@ -106,7 +106,7 @@ def judge_errors(law: Law, errors: object, shape: tuple[int, ...]) -> Errors:
     return errors
 
 
-def _known(law: Law, name: str, value: Any, shape: tuple[int, ...]) -> Real:
+def _read_declaration(law: Law, name: str, value: Any, shape: tuple[int, ...]) -> Real:
     """Return a number from 0 that a law declares for each impact, or refuse the declaration."""
     if isinstance(value, float) and value >= 0.0:
         return value

@@ -152,7 +152,7 @@ class Ends(NamedTuple):
         return cls._make((*ends, law.dissipation(normal), 1.0))
 
     @classmethod
-    def merged(
+    def merge(
         cls,
         parts: Sequence[tuple[slice | Mask, NormalMotion | Ends | None]],
         shape: tuple[int, ...],

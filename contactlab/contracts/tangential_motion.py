@@ -91,7 +91,7 @@ class TangentialMotion(BatchMotion):
     contacts: Contacts | None = None
 
     @classmethod
-    def merged(cls, parts: Sequence[tuple[slice | Mask, Self]], shape: tuple[int, ...]) -> Self:
+    def merge(cls, parts: Sequence[tuple[slice | Mask, Self]], shape: tuple[int, ...]) -> Self:
         """Return one motion of ``shape``, with the ends of the normal motions of the parts.
 
         Parameters
@@ -99,11 +99,11 @@ class TangentialMotion(BatchMotion):
         parts, shape
             As of ``BatchMotion.merged``.
         """
-        motion = super().merged(parts, shape)
+        motion = super().merge(parts, shape)
         contacts = [(where, part.contacts) for where, part in parts]
         if any(each is not None for _, each in contacts):
-            motion = attrs.evolve(motion, contacts=Contacts.merged(contacts, shape))
+            motion = attrs.evolve(motion, contacts=Contacts.merge(contacts, shape))
         normals = [(where, part.normal) for where, part in parts]
         if all(normal is None for _, normal in normals):
             return motion
-        return attrs.evolve(motion, normal=Ends.merged(normals, shape))
+        return attrs.evolve(motion, normal=Ends.merge(normals, shape))

@@ -172,7 +172,7 @@ class Batches(Motions):
             return taken
         count = np.shape(taken.index)
         spread = taken._evolve(normal_speed=np.full(count, taken.normal_speed))
-        return spread.numbered(taken.index)
+        return spread.with_index(taken.index)
 
     def _gatherings(self, part: Index) -> Self:
         """Return the scene of some gatherings, whole: no contact is cut from its neighbours."""
@@ -210,7 +210,7 @@ class Batches(Motions):
             raise NoIndexError("the scene stands for many impacts")
         return self._index
 
-    def numbered(self, index: int | np.integer | Sequence[int] | NDArray[np.integer]) -> Self:
+    def with_index(self, index: int | np.integer | Sequence[int] | NDArray[np.integer]) -> Self:
         """Return this scene with another ``index`` of its impacts in the whole batch.
 
         Parameters

@@ -74,15 +74,15 @@ class PlanColumns(NamedTuple):
         return cls(code, unknown, (), unknown)
 
     @classmethod
-    def joined(cls, parts: Sequence[PlanColumns], shape: tuple[int, ...]) -> PlanColumns:
+    def join(cls, parts: Sequence[PlanColumns], shape: tuple[int, ...]) -> PlanColumns:
         """Return the columns of a batch of ``shape`` from those of its parts, in order."""
         if len(parts) == 1 and np.shape(parts[0].code) == shape == np.shape(parts[0].psi2_error):
             return parts[0]
         places = consecutive(np.size(part.code) for part in parts)
-        return cls.merged(list(zip(places, parts, strict=True)), shape)
+        return cls.merge(list(zip(places, parts, strict=True)), shape)
 
     @classmethod
-    def merged(cls, parts: Parts[PlanColumns], shape: tuple[int, ...]) -> PlanColumns:
+    def merge(cls, parts: Parts[PlanColumns], shape: tuple[int, ...]) -> PlanColumns:
         """Return the columns of a batch of ``shape`` from places and the columns of parts."""
         reasons = tuple(dict.fromkeys(reason for _, part in parts for reason in part.reasons))
         codes = []
@@ -296,9 +296,9 @@ class Plan:
         return Plan(self.columns.take(index), words)
 
     @classmethod
-    def merged(cls, parts: Parts[Plan], shape: tuple[int, ...]) -> Plan:
+    def merge(cls, parts: Parts[Plan], shape: tuple[int, ...]) -> Plan:
         """Return the plan of a batch of ``shape`` from places and the plans of parts."""
-        columns = PlanColumns.merged([(where, plan.columns) for where, plan in parts], shape)
+        columns = PlanColumns.merge([(where, plan.columns) for where, plan in parts], shape)
         said = ([(where, getattr(plan, kind)) for where, plan in parts] for kind in KINDS)
         words: Any = tuple(_merge_clauses(clauses, shape) for clauses in said)
         return cls(columns, words)

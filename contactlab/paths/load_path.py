@@ -27,7 +27,7 @@ from contactlab.outcome.sheet import Sheet, batch_axes, names_of
 from contactlab.paths.path_steps import Followed, Points, follow_path
 from contactlab.registry import composition
 from contactlab.registry.acceptance import accept
-from contactlab.registry.bound import bound_laws
+from contactlab.registry.bound import bind_laws
 from contactlab.registry.law_words import name_of, of_taken
 from contactlab.solve.solve import refuse_gathering
 from contactlab.solve.unfollowed import refusal
@@ -246,7 +246,7 @@ def _laws(scene: Scene, normal: object, tangential: object) -> tuple[Any, Any, S
     of_kind("tangential", second, SteppedTangentialLaw, rule=rule, remedy="use springs or annulus")
     if (complaint := composition.misfit(first, second)) is not None:
         raise ValueError(complaint)
-    (first, second), scene = bound_laws((first, second), scene)
+    (first, second), scene = bind_laws((first, second), scene)
     for law in (first, second):
         accept(law, scene)
     if (rate := unfollowed_rate(first, scene)) is not None:

@@ -31,7 +31,7 @@ class Body(Protocol):
         """The material."""
 
 
-def bound(laws: Laws, scene: Scene) -> tuple[Laws, Scene]:
+def bind(laws: Laws, scene: Scene) -> tuple[Laws, Scene]:
     """Return laws with the options that materials give, and the scene with those of each impact.
 
     Raises
@@ -41,18 +41,18 @@ def bound(laws: Laws, scene: Scene) -> tuple[Laws, Scene]:
     """
     if not laws.capability.reads:
         return laws, scene
-    used, scene = bound_laws(laws, scene)
+    used, scene = bind_laws(laws, scene)
     pairs = zip(laws.by_kind().items(), used, strict=True)
     changed = {kind: own for (kind, law), own in pairs if own is not law}
     return laws.changed(**changed) if changed else laws, scene
 
 
-def bound_laws(laws: Iterable[Law], scene: Scene) -> tuple[list[Any], Scene]:
+def bind_laws(laws: Iterable[Law], scene: Scene) -> tuple[list[Any], Scene]:
     """Return some laws and the scene as ``bound`` does."""
     used: list[Any] = []
     numbers = dict(scene._options)
     for law in laws:
-        one, own = bound_law(law, scene)
+        one, own = bind_law(law, scene)
         used.append(one)
         numbers |= own
     if numbers:
@@ -60,7 +60,7 @@ def bound_laws(laws: Iterable[Law], scene: Scene) -> tuple[list[Any], Scene]:
     return used, scene
 
 
-def bound_law(law: Law, scene: Scene) -> tuple[Law, dict[str, Any]]:
+def bind_law(law: Law, scene: Scene) -> tuple[Law, dict[str, Any]]:
     """Return a law with the options that materials give, and its numbers of each impact."""
     numbers: dict[str, Any] = {}
     for option in options_read(type(law)):

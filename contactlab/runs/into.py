@@ -18,7 +18,7 @@ from contactlab.numeric.checks import of_kind, refuse, whole
 from contactlab.outcome.chunk_forms import Chunk, form_of
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.sweep_folder import KIND, STATUSES, SweepFolder
-from contactlab.registry.bound import bound
+from contactlab.registry.bound import bind
 from contactlab.registry.composition import Laws
 from contactlab.runs.fingerprints import fingerprint
 from contactlab.runs.into_folder import NAMES, ChunkFolder
@@ -59,7 +59,7 @@ def swept_into(
     if (begin := next(later, None)) is None:
         remedy = "make the generator anew: it gives its scenes once"
         raise refuse("scenes", scenes, "must hold at least one Scene", remedy)
-    given, (laws, _) = laws, bound(laws, begin)
+    given, (laws, _) = laws, bind(laws, begin)
     accept_scene(laws, begin)  # of scenes that are refused there is no folder
     form = form_of(check_folder("into", folder))
     more = {"form": KIND, STATUSES: " ".join(NAMES)}
@@ -88,7 +88,7 @@ def swept_into(
                 where = Chunk(before + place.first, before + place.stop)
                 taken = scene.take(slice(*place))
                 if not isinstance(scenes, Scene):  # the index in the whole sweep
-                    taken = taken.numbered(np.arange(*where))
+                    taken = taken.with_index(np.arange(*where))
                 part, mark = Part(where, batches.drop_varying(taken), block), fingerprint(taken)
                 if target.holds(part._replace(scene=taken), mark):
                     done += where.size
@@ -123,7 +123,7 @@ def swept_into(
 
 def _bound_alike(given: Laws, laws: Laws, scene: Scene) -> None:
     """Refuse a batch for which materials give other options than for the first."""
-    if bound(given, scene)[0] != laws:
+    if bind(given, scene)[0] != laws:
         rule = "has materials whose properties give its laws other options than the first batch's"
         raise refuse("scenes", scene, rule, "sweep each into a folder of its own")
 

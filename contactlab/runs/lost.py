@@ -83,7 +83,7 @@ class Rescue:
         self._replace(self.calls.executor, 1)
         if part.chunk.size == 1 or self.ends >= MOST_ENDS:
             return self._given_up(part, answer)
-        return Piece.joined([self._alone(half) for half in halves(part)])
+        return Piece.join([self._alone(half) for half in halves(part)])
 
     def _replace(self, pool: Executor, workers: int) -> bool:
         """Take another pool with the settings of a pool of processes; False if none starts."""

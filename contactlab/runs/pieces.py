@@ -45,13 +45,13 @@ class Piece(NamedTuple):
     solved: bool = True
 
     @classmethod
-    def joined(cls, pieces: Sequence[Piece]) -> Piece:
+    def join(cls, pieces: Sequence[Piece]) -> Piece:
         """Return the piece of consecutive chunks, in order."""
         chunk = Chunk(pieces[0].chunk.first, pieces[-1].chunk.stop)
         return cls(
             chunk,
-            PlanColumns.joined([piece.columns for piece in pieces], (chunk.size,)),
-            Motion.joined([piece.motion for piece in pieces], (chunk.size,)),
+            PlanColumns.join([piece.columns for piece in pieces], (chunk.size,)),
+            Motion.join([piece.motion for piece in pieces], (chunk.size,)),
             next((piece.computer for piece in pieces if piece.computer), ""),
         )
 
@@ -62,7 +62,7 @@ def solve_chunk(laws: Laws, scene: Scene, chunk: Chunk, block: int) -> Piece:
     pieces = (outcome(ways(laws, each), each, False, None) for each in scenes)
     columns, motions = zip(*pieces, strict=True)
     shape = (chunk.size,)
-    joined = PlanColumns.joined(columns, shape), Motion.joined(motions, shape)
+    joined = PlanColumns.join(columns, shape), Motion.join(motions, shape)
     return Piece(chunk, *joined, computer())
 
 

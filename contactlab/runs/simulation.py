@@ -26,10 +26,10 @@ from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult
 from contactlab.registry import composition
 from contactlab.registry.acceptance import accept
-from contactlab.registry.bound import bound
+from contactlab.registry.bound import bind
 from contactlab.registry.composition import Laws
 from contactlab.solve import solve
-from contactlab.solve.normal_motion import normal_or_failed
+from contactlab.solve.normal_motion import try_normal
 from contactlab.solve.planning import plan_of
 from contactlab.solve.way import Way
 
@@ -156,7 +156,7 @@ class Simulation:
                 from contactlab.solve.gathering import plan_of_gathering
 
                 return plan_of_gathering(scene, self.laws, history=history)
-        laws, scene = bound(self.laws, _scene(scene))
+        laws, scene = bind(self.laws, _scene(scene))
         ways = solve.accept_scene(laws, scene, as_one=bool(_history(history)))
         columns = solve.plan_columns(ways, scene, history)
         return plan_of(laws, scene, columns, history=history)
@@ -195,7 +195,7 @@ class Simulation:
         started, recorder = time.perf_counter(), None
         laws, scene = self.laws, _scene(scene)
         if laws.capability.reads:
-            laws, scene = bound(laws, scene)
+            laws, scene = bind(laws, scene)
         if _history(history):
             recorder = Recorder(scene.shape, with_fields=history == "fields")
         ways, flat = solve.accept_scene(laws, scene, as_one=bool(history)), scene
@@ -344,7 +344,7 @@ class Simulation:
             raise refuse("scenes", scenes, rule, "give into=folder, or Scene.grid")
         batch = scenes if isinstance(scenes, Scene) else Scene.stack(scenes)
         one_axis(batch)
-        laws, batch = bound(self.laws, batch)
+        laws, batch = bind(self.laws, batch)
         ways = solve.accept_scene(laws, batch)
         with follow(progress, "impacts") as count:
             columns, motion = swept(laws, batch, keep=keep, progress=count, **options)
@@ -365,10 +365,10 @@ class Simulation:
             raise refuse("keep, into", (str(keep), str(into)), "write the same impacts", remedy)
         laws = self.laws
         if isinstance(scenes, Scene):
-            laws, scenes = bound(laws, scenes)
+            laws, scenes = bind(laws, scenes)
 
         def result_of(scene: Scene, piece: Piece) -> ImpactResult:
-            own, _ = bound(laws, scene)
+            own, _ = bind(laws, scene)
             plan = plan_of(own, scene, piece.columns, piece.motion)
             return _result(solve.ways(own, scene), scene, plan, piece.motion, time.perf_counter())
 
@@ -387,9 +387,9 @@ class Simulation:
         ValueError
             If ``scene`` is not a Scene, or the law cannot run it.
         """
-        laws, scene = bound(self.laws, _scene(scene))
+        laws, scene = bind(self.laws, _scene(scene))
         accept(laws.normal, scene.central)
-        return normal_or_failed(laws, scene.central)
+        return try_normal(laws, scene.central)
 
 
 def _result(

@@ -101,8 +101,8 @@ def swept(
         finally:
             pieces.close()
     finished.sort(key=lambda piece: piece.chunk)
-    columns = PlanColumns.joined([piece.columns for piece in finished], (size,))
-    return columns, Motion.joined([piece.motion for piece in finished], (size,))
+    columns = PlanColumns.join([piece.columns for piece in finished], (size,))
+    return columns, Motion.join([piece.motion for piece in finished], (size,))
 
 
 def _kept(

@@ -27,7 +27,7 @@ from contactlab.registry import stand_ins
 from contactlab.registry.composition import Laws
 from contactlab.solve.answers import Mask, check_motion, separates
 from contactlab.solve.failed_motion import FailedMotion
-from contactlab.solve.normal_motion import normal_or_failed
+from contactlab.solve.normal_motion import try_normal
 from contactlab.solve.way import ONE_BY_ONE, WHOLE, Masks, Prepared, Way, ask, halves
 
 #: Imbalance of the energy books that is no failure: where W is nearly singular the energy is the
@@ -70,7 +70,7 @@ class Coupled(Way):
         scene, laws = self.scene, self.laws
         if history and laws.capability.coupled is not None:
             self.refuse_history(history)
-        normal = normal_or_failed(laws, scene.central)
+        normal = try_normal(laws, scene.central)
         with faults.blaming(laws.tangential):
             bound = judges.books_bound_of(laws.tangential, normal.scene)
             return Prepared(normal, [], self._columns(normal), bound)
@@ -155,7 +155,7 @@ class Coupled(Way):
             _, repeated = part.solve_parts(halves(size, most=ONE_BY_ONE))
         else:
             _, repeated = part.outcome(False, None)
-        return Motion.merged([(np.ones(shape, dtype=bool), motion), (again, repeated)], shape)
+        return Motion.merge([(np.ones(shape, dtype=bool), motion), (again, repeated)], shape)
 
     def line(self, scene: Scene) -> Array:
         """Return the first tangent, along which slip has either sign."""
@@ -190,7 +190,7 @@ class Coupled(Way):
         """Return the central impacts at a slip speed."""
         scene = self.scene
         slip = spread(slip, scene.shape)
-        return attrs.evolve(scene.central, tangential_velocity=slip).numbered(scene.index)
+        return attrs.evolve(scene.central, tangential_velocity=slip).with_index(scene.index)
 
     def most_at_a_time(self) -> float:
         """Return how many impacts, or gatherings, have springs that stay in the cache."""

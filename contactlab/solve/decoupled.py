@@ -24,7 +24,7 @@ from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import ENDLESS, MARCHED, PlanColumns, Reason
 from contactlab.solve.answers import Answered, answers, check_motion, separates, show
 from contactlab.solve.failed_motion import UnfollowedMotion
-from contactlab.solve.normal_motion import normal_or_failed
+from contactlab.solve.normal_motion import try_normal
 from contactlab.solve.way import ONE_BY_ONE, Prepared, Way, halves
 
 #: Error of what is known in closed form, over max(1, |psi1|).
@@ -63,7 +63,7 @@ class Decoupled(Way):
     def prepare(self, history: bool | str) -> Prepared:
         """Return normal motion, answers and columns of the plan, or raise LawFaultError."""
         scene, laws = self.scene, self.laws
-        normal = normal_or_failed(laws, scene)
+        normal = try_normal(laws, scene)
         try:
             size, accuracy = psi_magnitude(scene), laws.capability.accuracy
             most = math.inf if accuracy is None else accuracy * (1.0 + ROUNDING) * size
@@ -158,7 +158,7 @@ class Decoupled(Way):
         if not some(marched):
             return motion
         parts = [(np.ones(shape, dtype=bool), motion), (marched, self._march(normal.take(marched)))]
-        return TangentialMotion.merged(parts, shape)
+        return TangentialMotion.merge(parts, shape)
 
     def _march(self, normal: NormalMotion, observer: Observer | None = None) -> TangentialMotion:
         """Return the tangential motion; in a batch only the impacts that fail have no answer."""
@@ -169,7 +169,7 @@ class Decoupled(Way):
 
         laws, shape = self.laws, normal.scene.shape
         if shape == (1,) and observer is None:  # one impact is faster as plain numbers
-            return TangentialMotion.joined([part(0)], shape)
+            return TangentialMotion.join([part(0)], shape)
         try:
             with np.errstate(under="ignore"):  # harmless, even where a user has numpy raise
                 given = laws.integrator.integrate(normal.scene, normal, laws.tangential, observer)
@@ -186,9 +186,9 @@ class Decoupled(Way):
             return motion
         if not given_up.all():
             again = [(np.ones(shape, dtype=bool), motion), (given_up, part(given_up))]
-            return TangentialMotion.merged(again, shape)
+            return TangentialMotion.merge(again, shape)
         parts = halves(*shape, most=ONE_BY_ONE)
-        return TangentialMotion.joined([part(each) for each in parts], shape)
+        return TangentialMotion.join([part(each) for each in parts], shape)
 
 
 def _join_answers(normal: NormalMotion, answered: list[Answered]) -> TangentialMotion:
@@ -222,7 +222,7 @@ def _join_answers(normal: NormalMotion, answered: list[Answered]) -> TangentialM
     own = None
     if any(answer.normal is not None for _, answer in answered):
         parts = [(where, each.normal and each.normal.take(where)) for where, each in answered]
-        own = Ends.merged([(np.ones(shape, dtype=bool), None), *parts], shape)
+        own = Ends.merge([(np.ones(shape, dtype=bool), None), *parts], shape)
     return TangentialMotion(
         slip_velocity_change=change,
         friction_work=work,

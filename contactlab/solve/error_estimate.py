@@ -20,7 +20,7 @@ from contactlab.outcome.result import ImpactResult
 from contactlab.registry.composition import Laws
 from contactlab.solve import solve
 from contactlab.solve.decoupled import CLOSED_FORM
-from contactlab.solve.normal_motion import normal_or_failed
+from contactlab.solve.normal_motion import try_normal
 
 #: A single count is multiplied by the first factor and by its square, several counts together, or
 #: one that a law accepts no further, by the second: the finest run costs about sixteen times the
@@ -87,7 +87,7 @@ def _fill(
 
 def _resolution(laws: Laws, scene: Scene) -> Any:
     """Return the resolution of the integrator for each impact; 0 if it has none."""
-    normal = normal_or_failed(laws, scene.central)
+    normal = try_normal(laws, scene.central)
     resolution = laws.integrator.resolution_for(scene, normal, laws.tangential)
     return np.broadcast_to(resolution, scene.shape)
 

@@ -15,7 +15,7 @@ from contactlab.outcome.motion import Motion
 from contactlab.registration.names import KINDS
 from contactlab.registry import composition
 from contactlab.registry.acceptance import accept
-from contactlab.registry.bound import bound
+from contactlab.registry.bound import bind
 from contactlab.registry.composition import Laws
 from contactlab.registry.read_options import options_read
 from contactlab.solve.coupled import Coupled
@@ -27,7 +27,7 @@ def way_of(gathering: Gathering, laws: Laws | None) -> Coupled:
 
     ``laws`` are those of a simulation; None stands for the usual ones.
     """
-    used, scene = _bound(gathering, _laws_of(gathering, laws))
+    used, scene = _bind(gathering, _laws_of(gathering, laws))
     way = Coupled.of(..., scene, used)
     for law in way.laws.capability.refusing:
         accept(law, way.scene.central)
@@ -56,11 +56,11 @@ def plan_of_gathering(
 ) -> GatheringPlan:
     """Return the plan of a gathering; of a run its ``way`` and its ``motion`` are known."""
 
-    def widened() -> Array:
+    def widen() -> Array:
         return _per_micron(gathering, laws)
 
     way = way_of(gathering, laws) if way is None else way
-    return gathering_plan(gathering, way, motion, history_of(history), widened)
+    return gathering_plan(gathering, way, motion, history_of(history), widen)
 
 
 def history_of(history: bool | str) -> bool:
@@ -117,7 +117,7 @@ def _laws_of(gathering: Gathering, laws: Laws | None) -> Laws:
     return composition.compose(*(named.get(kind) for kind in KINDS))
 
 
-def _bound(gathering: Gathering, laws: Laws) -> tuple[Laws, Scene]:
+def _bind(gathering: Gathering, laws: Laws) -> tuple[Laws, Scene]:
     """Return laws, and the scene with the options of each contact; refuse those of materials."""
     reads = any(each.material for law in laws for each in options_read(type(law)))
     for k, met in enumerate(gathering.assembly.met if reads else ()):
@@ -125,4 +125,4 @@ def _bound(gathering: Gathering, laws: Laws) -> tuple[Laws, Scene]:
             rule = "are read for one contact, and laws of a gathering read none"
             remedy = "give the options to the laws"
             raise refuse(f"touches[{k}]: properties of materials", told, rule, remedy)
-    return bound(laws, gathering.scene)
+    return bind(laws, gathering.scene)

@@ -71,7 +71,7 @@ class Solver:
         most = max(int((~rejected).sum(axis=1).max()), 1)
         order = np.argsort(rejected, axis=1, kind="stable")[:, :most]
         widths = np.take_along_axis(widths, order, axis=1)
-        table = MotionTable.made(
+        table = MotionTable.make(
             shape=law.shape,
             edges=np.concatenate((np.zeros((self.items, 1)), np.cumsum(widths, axis=1)), axis=1),
             unit=law.unit,

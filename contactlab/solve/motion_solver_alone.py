@@ -66,7 +66,7 @@ class Alone:
                 values.append(columns)
         if not values:  # of a contact that is abandoned in its first step
             edges, values = [0.0, 0.0], [self._columns([self.seen] * NODES)[0]]
-        table = MotionTable.made(
+        table = MotionTable.make(
             shape=law.shape,
             edges=np.array([edges]),
             unit=law.unit,

@@ -35,7 +35,7 @@ def normal_motion(law: NormalLaw, scene: Scene) -> NormalMotion:
     return _solve_closed_form(closed, scene) if closed is not None else _open(law, scene)
 
 
-def normal_or_failed(laws: Laws, scene: Scene) -> NormalMotion:
+def try_normal(laws: Laws, scene: Scene) -> NormalMotion:
     """Return the normal motion of ``scene``; all its values are NaN if the law fails."""
     closed = laws.capability.closed
     try:
@@ -68,7 +68,7 @@ def _open(law: NormalLaw, scene: Scene) -> NormalMotion:
 
     if "similar" in claims(law):
         one = _unit_impact()
-        alone = _kept_table(law, one)
+        alone = _find_table(law, one)
         if alone is not None and alone.status[0] is Status.SUCCESS:
             return SolvedMotion(law, scene, alone, one)
     if (found := _of_restitutions(law, scene)) is not None:
@@ -97,7 +97,7 @@ def _common(law: NormalLaw, scene: Scene) -> MotionTable | None:
     if not all(isinstance(number, float) for number in numbers):
         return None
     single = attrs.evolve(scene, friction_coefficient=0.0, tangential_velocity=0.0, spin=0.0)
-    return None if single.shape else _kept_table(law, single)
+    return None if single.shape else _find_table(law, single)
 
 
 @cache
@@ -119,14 +119,14 @@ def _of_restitutions(law: NormalLaw, scene: Scene) -> MotionTable | None:
     tables = []
     for e in few.tolist():
         alone: Any = attrs.evolve(law, restitution=e)  # type: ignore[misc]  # attrs classes
-        table = _kept_table(alone, _unit_impact()) if "similar" in claims(alone) else None
+        table = _find_table(alone, _unit_impact()) if "similar" in claims(alone) else None
         if table is None or table.status[0] is not Status.SUCCESS:
             return None
         tables.append(table)
-    return MotionTable.joined(tables).take(which.reshape(scene.shape))
+    return MotionTable.join(tables).take(which.reshape(scene.shape))
 
 
-def _kept_table(law: NormalLaw, single: Scene) -> MotionTable | None:
+def _find_table(law: NormalLaw, single: Scene) -> MotionTable | None:
     """Return the table of one impact without friction, or None if the law takes a batch alone."""
     key = law, single
     try:

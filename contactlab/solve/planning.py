@@ -42,7 +42,7 @@ from contactlab.registration.bring import sound
 from contactlab.registry.composition import Laws
 from contactlab.registry.law_words import in_words, name_of, of_taken
 from contactlab.solve.answers import Mask
-from contactlab.solve.normal_motion import normal_motion, normal_or_failed
+from contactlab.solve.normal_motion import normal_motion, try_normal
 from contactlab.solve.solve import ways
 from contactlab.solve.way import WHOLE, Masks, Way, ask
 
@@ -90,7 +90,7 @@ def plan_of(
             moved = None if motion is None else taken(motion, scene.shape, way.where)
             kinds = _words(laws, way, scene.take(way.where), some_columns, moved, asked_for)
             said.append((way.where, Plan(some_columns, kinds)))
-        return Plan.merged(said, scene.shape).words
+        return Plan.merge(said, scene.shape).words
 
     return Plan(columns, words)
 
@@ -231,7 +231,7 @@ def _motion_of(laws: Laws, scene: Scene, motion: Motion | None, where: Mask) -> 
     """Return the normal motion of some impacts: by its ends after a run, else made now."""
     part = scene if every(where) else scene.take(where)
     if motion is None:
-        return normal_or_failed(laws, part)
+        return try_normal(laws, part)
     return _AfterRun(
         laws.normal, part, motion if every(where) else taken(motion, scene.shape, where)
     )

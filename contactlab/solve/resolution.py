@@ -32,16 +32,16 @@ def with_resolutions(way: Way, *, as_one: bool) -> list[Way]:
         return [way._replace(laws=_usual(laws))]
     parts, steps, _ = found
     if isinstance(parts, float) and isinstance(steps, float):
-        return [way._replace(laws=_chosen(laws, parts, steps, found.reason))]
+        return [way._replace(laws=_choose(laws, parts, steps, found.reason))]
     both = np.stack([spread(each, scene.shape) for each in (parts, steps)])
     most = both.reshape(2, -1).max(axis=1)
     same = (both == most.reshape(2, *(1,) * len(scene.shape))).all(axis=0)
     if as_one or same.all():
-        return [way._replace(laws=_chosen(laws, float(most[0]), float(most[1]), found.reason))]
+        return [way._replace(laws=_choose(laws, float(most[0]), float(most[1]), found.reason))]
     ways = []
     for pair in sorted(set(map(tuple, both.reshape(2, -1).T.tolist()))):
         where = (both == np.reshape(pair, (2, *(1,) * len(scene.shape)))).all(axis=0)
-        used = _chosen(laws, pair[0], pair[1], found.reason)
+        used = _choose(laws, pair[0], pair[1], found.reason)
         ways.append(way.taking(where)._replace(where=_within(way.where, where), laws=used))
     return ways
 
@@ -55,7 +55,7 @@ def _within(outer: object, where: Mask) -> Mask:
     return mask
 
 
-def _chosen(laws: Laws, parts: float, steps: float, reason: str) -> Laws:
+def _choose(laws: Laws, parts: float, steps: float, reason: str) -> Laws:
     """Return the laws with a number of parts and of steps."""
     return _with(laws, (("tangential", parts), ("integrator", steps)), reason)
 
@@ -71,10 +71,10 @@ def _with(laws: Laws, resolutions: tuple[tuple[str, float], ...], reason: str) -
     try:
         return _kept(laws, resolutions, reason)
     except TypeError:  # a law with a parameter that has no hash
-        return _made(laws, resolutions, reason)
+        return _make(laws, resolutions, reason)
 
 
-def _made(laws: Laws, resolutions: tuple[tuple[str, float], ...], reason: str) -> Laws:
+def _make(laws: Laws, resolutions: tuple[tuple[str, float], ...], reason: str) -> Laws:
     changed = {}
     for kind, value in resolutions:
         law: Any = getattr(laws, kind)
@@ -82,7 +82,7 @@ def _made(laws: Laws, resolutions: tuple[tuple[str, float], ...], reason: str) -
     return laws.changed(**changed, by_scene=frozenset(changed), reason=reason, asked=laws)
 
 
-_kept = lru_cache(maxsize=256)(_made)
+_kept = lru_cache(maxsize=256)(_make)
 
 
 def tell_resolution(laws: Laws, marched: Mask) -> list[Clause]:

@@ -90,8 +90,8 @@ def outcome(
         columns, motion = way.outcome(history, recorder)
         pieces.append((way.where, columns, way.in_axes(motion, scene.take(way.where))))
     return (
-        PlanColumns.merged([(where, columns) for where, columns, _ in pieces], scene.shape),
-        Motion.merged([(where, motion) for where, _, motion in pieces], scene.shape),
+        PlanColumns.merge([(where, columns) for where, columns, _ in pieces], scene.shape),
+        Motion.merge([(where, motion) for where, _, motion in pieces], scene.shape),
     )
 
 
@@ -99,4 +99,4 @@ def outcome(
 def plan_columns(found: Sequence[Way], scene: Scene, history: bool | str) -> PlanColumns:
     """Return the columns of the plan, without a march."""
     parts = [(way.where, way.prepare(history).columns) for way in found]
-    return parts[0][1] if len(parts) == 1 else PlanColumns.merged(parts, scene.shape)
+    return parts[0][1] if len(parts) == 1 else PlanColumns.merge(parts, scene.shape)

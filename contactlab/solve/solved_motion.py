@@ -66,13 +66,13 @@ class MotionTable:
     shared: dict[Any, Any] = attrs.field(factory=dict, init=False)
 
     @classmethod
-    def made(cls, **entries: Any) -> Self:
+    def make(cls, **entries: Any) -> Self:
         """Return the table; ``last`` and ``largest`` follow from the other entries."""
         table = cls(**entries, last=np.empty(0), largest=_largest(entries["values"]))
         return attrs.evolve(table, last=table.at(table.ends))
 
     @classmethod
-    def joined(cls, tables: Sequence[MotionTable]) -> Self:
+    def join(cls, tables: Sequence[MotionTable]) -> Self:
         """Return the tables of single motions as the items of one, ended by steps of no width."""
         most = max(table.values.shape[1] for table in tables)
         edges, values = [], []

@@ -184,7 +184,7 @@ class Way(Entries, ABC):
         parts = [self.taking(place).outcome(False, None) for place in places]
         columns, motions = zip(*parts, strict=True)
         shape = self.scene.shape
-        return PlanColumns.joined(columns, shape), Motion.joined(motions, shape)
+        return PlanColumns.join(columns, shape), Motion.join(motions, shape)
 
     def taking(self, place: Any) -> Way:
         """Return the way of some of the impacts."""

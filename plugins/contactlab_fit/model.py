@@ -13,7 +13,7 @@ from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array
 from contactlab.outcome.columns import QUANTITIES, Column
 from contactlab.outcome.result import ImpactResult
-from contactlab.registry.bound import bound
+from contactlab.registry.bound import bind
 from contactlab.registry.law_words import in_words
 from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import SceneFile, read_scene
@@ -210,7 +210,7 @@ def setup_of(
     batch = scene_of(scene, {k: v for k, v in given.items() if not is_option(k)}, count)
     if simulation is None:
         return Setup(batch, None)
-    laws_bound, batch = bound(simulation.laws, batch)
+    laws_bound, batch = bind(simulation.laws, batch)
     changed = laws_bound is not simulation.laws
     return Setup(batch, Simulation.of(laws_bound) if changed else simulation)
 

@@ -254,7 +254,7 @@ def test_a_body_of_one_contact_with_two_walls_is_not_answered_contact_by_contact
         lambda: Simulation().run(scene), lambda: Simulation().plan(scene),
         lambda: Simulation().sweep(scene), lambda: Simulation().sweep([scene]),
         lambda: laws().run(scene), lambda: laws().run(attrs.evolve(scene, encounter=None)),
-        lambda: laws().run(scene.numbered(scene.index)),
+        lambda: laws().run(scene.with_index(scene.index)),
         lambda: laws().run(scene.take(slice(0, 1))),
         lambda: scene.stack([scene, scene]), lambda: scene.take((0, 0)), lambda: scene.take(0),
         lambda: scene.take(np.array([[True, False]])),

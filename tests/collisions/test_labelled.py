@@ -242,7 +242,7 @@ DOORS = {
     "inertia": lambda x: RigidBody(material=STEEL, mass=1.0, inertia=x, curvature_radius=0.1),
     "flat radii": lambda x: RigidBody(material=STEEL, mass=1.0, inertia=np.eye(3),
                                       curvature_radius=x * np.inf),
-    "index": lambda x: Scene(BALL, PLATE, 0.2, [1.0, 2.0, 3.0]).numbered(x),
+    "index": lambda x: Scene(BALL, PLATE, 0.2, [1.0, 2.0, 3.0]).with_index(x),
     "e at each speed": lambda x: collide(Encounter(BALL, PLATE, 0.2, normal=(0, 0, -1),
                                                    velocity=3 * [[0, 0, -1]]),
                                          restitution=lambda _: x),

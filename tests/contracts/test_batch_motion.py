@@ -37,21 +37,21 @@ def test_parts_are_joined_in_order_and_their_counts_added():
         batch([2.0, 3.0], [Status.SUCCESS, LOST], "lost", counters={"steps": 4, "rejected": 1}),
         single(4.0, status=LATE, detail="late"),
     ]
-    whole = TangentialMotion.joined(parts, (2, 2))
+    whole = TangentialMotion.join(parts, (2, 2))
     assert whole.slip_velocity_change.tolist() == [[1.0, 2.0], [3.0, 4.0]]
     assert whole.friction_work.tolist() == [[10.0, 20.0], [30.0, 40.0]]
     assert whole.status.tolist() == [[Status.SUCCESS, Status.SUCCESS], [LOST, LATE]]
     assert whole.detail.tolist() == [["", ""], ["lost", "late"]]
     assert dict(whole.counters) == {"steps": 7, "rejected": 1}
-    assert TangentialMotion.joined([parts[1]], (2,)) is parts[1]
-    assert TangentialMotion.joined([parts[0]], (1,)).slip_velocity_change.tolist() == [1.0]
+    assert TangentialMotion.join([parts[1]], (2,)) is parts[1]
+    assert TangentialMotion.join([parts[0]], (1,)).slip_velocity_change.tolist() == [1.0]
 
 
 @pytest.mark.parametrize("place", [slice(1, 3), np.array([False, True, True])])
 def test_an_impact_in_several_parts_has_the_motion_of_the_last(place):
     first = batch([1.0, 2.0, 3.0], 3 * [Status.SUCCESS], normal_spin_change=np.ones(3))
     second = batch([5.0, 6.0], [LOST, Status.SUCCESS], "again")
-    whole = TangentialMotion.merged([(np.ones(3, dtype=bool), first), (place, second)], (3,))
+    whole = TangentialMotion.merge([(np.ones(3, dtype=bool), first), (place, second)], (3,))
     assert whole.slip_velocity_change.tolist() == [1.0, 5.0, 6.0]
     assert whole.normal_spin_change.tolist() == [1.0, 0.0, 0.0]
     assert whole.detail.tolist() == ["", "again", ""]
@@ -68,7 +68,7 @@ def test_beside_vectors_a_part_without_an_answer_is_a_vector_of_nan(vectors_firs
     assert none.detail.shape == (2,)
     places = slice(0, 1), slice(1, 3)
     parts = [(places[0], moved), (places[1], none)]
-    whole = TangentialMotion.merged(parts if vectors_first else parts[::-1], (3,))
+    whole = TangentialMotion.merge(parts if vectors_first else parts[::-1], (3,))
     assert whole.slip_velocity_change.shape == (3, 2)
     assert whole.slip_velocity_change[0].tolist() == [1.0, 2.0]
     assert np.isnan(whole.slip_velocity_change[1:]).all()

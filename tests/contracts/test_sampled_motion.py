@@ -119,12 +119,12 @@ def test_some_impacts_may_be_taken(part):
 def test_ends_are_merged_from_the_motions_of_parts():
     first = np.array([True, False, False])
     middle, last = np.array([False, True, False]), np.array([False, False, True])
-    inner = Ends.merged(
+    inner = Ends.merge(
         [(np.array([True, False]), None), (np.array([False, True]), sampled())], (2,)
     )
-    ends = Ends.merged([(first, sampled()), (middle | last, inner)], (3,))
+    ends = Ends.merge([(first, sampled()), (middle | last, inner)], (3,))
     assert ends.duration == pytest.approx([4.0, math.nan, 4.0], nan_ok=True)
-    some = Ends.merged([(first, None), (middle | last, both())], (3,))
+    some = Ends.merge([(first, None), (middle | last, both())], (3,))
     assert some.duration == pytest.approx([math.nan, 4.0, 8.0], nan_ok=True)
     assert np.isnan(Ends.of(None).final_rate)
 

@@ -182,7 +182,7 @@ OTHER_DOORS = {
     "inverse_mass = .*masked": lambda: of_inverse_mass(np.ma.array(np.eye(3), mask=np.eye(3))),
     "inverse_mass = .*real number": lambda: of_inverse_mass(np.eye(3) + 0j),
     "inverse_mass = .*regular array": lambda: of_inverse_mass([[1.0], [1.0, 2.0]]),
-    "index = .*whole numbers": lambda: SCENE.numbered([1, [2]]),
+    "index = .*whole numbers": lambda: SCENE.with_index([1, [2]]),
     "psi1 = .*regular array": lambda: Scene.grid(psi1=[[1.0], [1.0, 2.0]], chi=[1.0, 2.0]),
 }  # fmt: skip
 

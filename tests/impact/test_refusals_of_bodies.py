@@ -158,12 +158,12 @@ REFUSED = [
         "psi1 = [[1.0]]: must be a number or a plain list of numbers",
     ),
     (
-        lambda: Scene.nondimensional(psi1=[1.0, 2.0], chi=1.0).numbered([1, 2, 3]),
+        lambda: Scene.nondimensional(psi1=[1.0, 2.0], chi=1.0).with_index([1, 2, 3]),
         "index = [1, 2, 3]: must be whole numbers of the shape (2,); such as scene.index of the "
         "whole batch",
     ),
     (
-        lambda: BARE.numbered(0.5),
+        lambda: BARE.with_index(0.5),
         "index = 0.5: must be whole numbers of the shape (); such as scene.index of the whole "
         "batch",
     ),

@@ -177,7 +177,7 @@ def test_parts_of_a_batch_of_shared_numbers_keep_their_shape_and_places():
     assert batch.take((1, 2)).index == 5
     assert batch.take(slice(1, 2)).index.tolist() == [[3, 4, 5]]
     assert batch.take(np.eye(2, 3, dtype=bool)).tangential_velocity.tolist() == [0.5, 1.0]
-    renamed = batch.numbered(np.arange(6).reshape(2, 3) + 10)
+    renamed = batch.with_index(np.arange(6).reshape(2, 3) + 10)
     assert renamed.take((0, 1)).index == 11
     assert renamed == batch
     yielding = Scene(

@@ -63,9 +63,9 @@ def test_the_place_is_no_part_of_what_a_scene_is():
     with pytest.raises(ValueError, match="read-only"):
         batch.index[0] = 9
     with pytest.raises(ValueError, match=r"index = \[1, 2\]: must be whole numbers of the shape"):
-        batch.numbered([1, 2])
+        batch.with_index([1, 2])
     with pytest.raises(ValueError, match="whole numbers"):
-        alone.numbered(0.5)
+        alone.with_index(0.5)
 
 
 @pytest.fixture(scope="module")

@@ -20,7 +20,7 @@ from contactlab.contracts import (
     quantity,
 )
 from contactlab.outcome.columns import columns
-from contactlab.registry.bound import bound
+from contactlab.registry.bound import bind
 
 #: One impact and a batch are solved by steps of their own.
 SOLVED = 1e-8
@@ -277,7 +277,7 @@ def test_an_option_that_is_not_marked_is_one_number():
 
 def test_a_law_of_neither_is_bound_to_nothing():
     simulation, impacts = Simulation(), scene()
-    laws, same = bound(simulation.laws, impacts)
+    laws, same = bind(simulation.laws, impacts)
     assert laws is simulation.laws
     assert same is impacts
 

@@ -78,4 +78,4 @@ class Events(Integrator):
         if observer is not None:
             show(shape, solved, observer)
         motions = [each.motion for each in solved]
-        return TangentialMotion.joined(motions, shape) if shape else motions[0]
+        return TangentialMotion.join(motions, shape) if shape else motions[0]

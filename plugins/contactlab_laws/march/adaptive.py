@@ -137,7 +137,7 @@ class Adaptive(CoupledIntegrator):
             everywhere = np.ones(scene.shape, dtype=bool)
             parts = [(everywhere, motion), (failed, batch.taken(before, scene.shape, failed))]
             steps = motion.counters
-            motion = attrs.evolve(TangentialMotion.merged(parts, scene.shape), counters=steps)
+            motion = attrs.evolve(TangentialMotion.merge(parts, scene.shape), counters=steps)
         if observer is not None:
             coupled.march_coupled(scene, normal, tangential, count, observer)
         return motion
@@ -171,7 +171,7 @@ class Adaptive(CoupledIntegrator):
         finer[left] = most
         parts = [(np.ones(scene.shape, dtype=bool), last), (left, more)]
         steps = max(last.counters.get("steps", 0), more.counters.get("steps", 0))
-        merged = TangentialMotion.merged(parts, scene.shape)
+        merged = TangentialMotion.merge(parts, scene.shape)
         return attrs.evolve(merged, counters={"steps": steps}), finer
 
     def _double(
@@ -201,7 +201,7 @@ class Adaptive(CoupledIntegrator):
         middle, fine = (batch.taken(motion, shape, unresolved) for motion in (before[1], last))
         finer = self._double(normal.take(unresolved), law, 2 * count, (middle, fine), 0)
         parts = ((np.ones_like(unresolved), last), (unresolved, finer))
-        merged = TangentialMotion.merged(parts, shape)
+        merged = TangentialMotion.merge(parts, shape)
         # The most steps that any impact took, and all evaluations.
         evaluations = counters["evaluations"] + finer.counters["evaluations"]
         return attrs.evolve(

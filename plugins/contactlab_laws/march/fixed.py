@@ -114,7 +114,7 @@ def in_groups(
             detail = refusals(steps, needed[where])
             motion = TangentialMotion.nothing(detail.shape, Status.TOO_FEW_STEPS, detail)
         parts.append((where, motion))
-    return TangentialMotion.merged(parts, shape)
+    return TangentialMotion.merge(parts, shape)
 
 
 @attrs.frozen(kw_only=True)
