@@ -21,7 +21,7 @@ from contactlab.cli.statuses import FAILED as FAILED
 from contactlab.cli.statuses import INTERRUPTED as INTERRUPTED
 from contactlab.cli.statuses import OK as OK
 from contactlab.numeric.progress import progress as progress  # exported to the subcommands
-from contactlab.outcome.files import distinct, unwritable, written
+from contactlab.outcome.files import distinct, replace_file, unwritable
 from contactlab.registration.hooks import Execute
 from contactlab.registration.manager import MANAGER
 from contactlab.registration.names import KINDS, full_name
@@ -286,7 +286,7 @@ def items_csv(kind: type, items: Iterable[object], stream: TextIO) -> None:
 
 def write_report(path: Path, kind: type, items: Iterable[object], content: object) -> None:
     """Write the items as CSV, or the content as JSON if the path ends so."""
-    with written(path) as stream:
+    with replace_file(path) as stream:
         if path.suffix.lower() == ".json":
             print_json(content, stream)
         else:

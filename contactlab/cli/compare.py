@@ -39,7 +39,7 @@ from contactlab.cli.scene import (
 from contactlab.impact.scene import Scene
 from contactlab.numeric.names import nearest
 from contactlab.outcome.columns import find_quantity, json_value
-from contactlab.outcome.files import written
+from contactlab.outcome.files import replace_file
 from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.registration.names import KINDS, full_name, kind_of
 from contactlab.registry.composition import ON_A_PATH
@@ -191,7 +191,7 @@ def _file(arguments: argparse.Namespace, defaults: Mapping[str, float] | None) -
 
 def _write(path: Path, quantities: Sequence[str], comparison: Comparison, content: object) -> None:
     """Write a comparison as CSV, or its content as JSON if the path ends so."""
-    with written(path) as stream:
+    with replace_file(path) as stream:
         if path.suffix.lower() == ".json":
             shared.print_json(content, stream)
         else:

@@ -12,7 +12,7 @@ from importlib import resources
 from pathlib import Path
 
 from contactlab.cli import arguments as shared
-from contactlab.outcome.files import written
+from contactlab.outcome.files import replace_file
 from contactlab.registration.hooks import Execute, hookimpl
 
 #: Files of ``contactlab/kernels``: springs on a doubling grid (theory §13), bounces, exact impacts,
@@ -45,7 +45,7 @@ def execute(arguments: argparse.Namespace) -> int:
     shared.make_folder("--out", folder)
     source = resources.files("contactlab").joinpath("kernels")
     for name in FILES:
-        with written(folder / name) as stream:
+        with replace_file(folder / name) as stream:
             stream.write(source.joinpath(name).read_text("utf-8"))
         print(folder / name)
     return shared.OK

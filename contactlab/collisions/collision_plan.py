@@ -29,7 +29,7 @@ def collision_plan(plan: Plan, met: Encounter | None, passed: NDArray[np.bool_])
         cautions += [Clause(text, everywhere) for text in contact_vectors(met)]
     if passed.any():
         left_out.append(Clause(PARTED, passed))
-    return plan.changed(left_out=tuple(left_out), cautions=tuple(cautions))
+    return plan.change(left_out=tuple(left_out), cautions=tuple(cautions))
 
 
 def by_rebound(plan: Plan, chi: Real, restitution: Real) -> Plan:
@@ -55,4 +55,4 @@ def by_rebound(plan: Plan, chi: Real, restitution: Real) -> Plan:
             text, values = said[clause.code]
             clause = clause._replace(text=text, values=values)
         computed.append(clause)
-    return plan.changed(computed=tuple(computed), psi2_error=plain(error))
+    return plan.change(computed=tuple(computed), psi2_error=plain(error))

@@ -19,7 +19,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import attributes_told
 from contactlab.numeric.types import Array, Real
-from contactlab.outcome.answer import Answer, statuses_told
+from contactlab.outcome.answer import Answer, tell_statuses
 from contactlab.outcome.columns import components, json_value
 from contactlab.outcome.energy import EnergyLedger
 from contactlab.outcome.gathering_energy import gathering_ledger
@@ -267,7 +267,7 @@ class GatheringResult(Answer):
         told = f"{bodies} bodies, {contacts} contacts"
         if self.gathering.shape:
             told = f"{np.prod(self.gathering.shape)} gatherings of {told}"
-        return f"GatheringResult({told}; {statuses_told(self.status)})"
+        return f"GatheringResult({told}; {tell_statuses(self.status)})"
 
     def _first_lines(self) -> list[str]:
         """Return ``repr``, and how the bodies move, of a batch in its first gathering."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from contactlab.collisions.gathered import GatheringResult
 from contactlab.outcome.columns import csv_heading, json_value
-from contactlab.outcome.files import write_table, written
+from contactlab.outcome.files import replace_file, write_table
 
 #: Headings and rows.
 Rows = tuple[list[str], list[list[Any]]]
@@ -57,7 +57,7 @@ def to_dict(hit: GatheringResult) -> dict[str, Any]:
 def write_json(hit: GatheringResult, path: str | Path) -> None:
     """Write ``to_dict``."""
     text = json.dumps(to_dict(hit), indent=2, allow_nan=False) + "\n"
-    with written(path) as stream:
+    with replace_file(path) as stream:
         stream.write(text)
 
 

@@ -449,7 +449,7 @@ def laws_of(restitution: float) -> Simulation:
         ),
         composition.fixed_steps(4 * SPRINGS),
     )
-    return Simulation.of(laws.changed(named=frozenset({"normal"})))
+    return Simulation.of(laws.change(named=frozenset({"normal"})))
 
 
 def bound_restitution_error(chi: Real, restitution: Real) -> Real:

@@ -52,7 +52,7 @@ class Contacts:
         Parameters
         ----------
         parts, shape
-            As of ``BatchMotion.merged``.
+            As of ``BatchMotion.merge``.
         """
 
         def column(name: str) -> Any:

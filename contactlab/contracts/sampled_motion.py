@@ -162,7 +162,7 @@ class Ends(NamedTuple):
         Parameters
         ----------
         parts, shape
-            As of ``BatchMotion.merged``.
+            As of ``BatchMotion.merge``.
         """
         ends = [(where, cls.of(normal)) for where, normal in parts]
         columns = ([(where, getattr(each, name)) for where, each in ends] for name in cls._fields)

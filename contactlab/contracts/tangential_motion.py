@@ -97,7 +97,7 @@ class TangentialMotion(BatchMotion):
         Parameters
         ----------
         parts, shape
-            As of ``BatchMotion.merged``.
+            As of ``BatchMotion.merge``.
         """
         motion = super().merge(parts, shape)
         contacts = [(where, part.contacts) for where, part in parts]

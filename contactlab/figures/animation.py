@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from contactlab.figures.animation_panels import FLIGHT, Ball, Disc, Forces, Frame
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Real
-from contactlab.outcome.files import written
+from contactlab.outcome.files import replace_file
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.style import styled
 
@@ -106,7 +106,7 @@ def write_gif(
         if not pictures:
             raise
         interrupt = error
-    with written(path, binary=True) as stream:
+    with replace_file(path, binary=True) as stream:
         pictures[0].save(
             stream,
             format="GIF",

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from contactlab.figures.stick_slip import NO_CONTACT, STATES
 from contactlab.impact.hertz import semi_axes
-from contactlab.outcome.history import scaled_forces
+from contactlab.outcome.history import scale_forces
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.style import (
     LAW_DASHES,
@@ -167,7 +167,7 @@ class Forces:
     """The tangential force over time, up to the instant of the frame, with the friction limit."""
 
     def __init__(self, axes: Axes, result: ImpactResult) -> None:
-        self.time, self.tangential, normal = scaled_forces(result)
+        self.time, self.tangential, normal = scale_forces(result)
         zero_line(axes)
         friction_limit(axes, self.time, normal)
         (self.line,) = axes.plot([], [], color=curve_colour(0))

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from contactlab.numeric.checks import refuse
-from contactlab.outcome.files import written
+from contactlab.outcome.files import replace_file
 from contactlab.outcome.style import (
     NARROW,
     RESOLUTION,
@@ -197,5 +197,5 @@ def save_figure(figure: Figure, path: str | Path, *, look: Look = "print", **opt
     if look == "slides":
         darken(figure)
         dots = SLIDE_DOTS / figure.get_figwidth()
-    with written(path, binary=True) as stream, mpl.rc_context(WRITING):
+    with replace_file(path, binary=True) as stream, mpl.rc_context(WRITING):
         figure.savefig(stream, format=form, dpi=dots, metadata=METADATA[form], **options)

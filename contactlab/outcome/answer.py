@@ -127,7 +127,7 @@ class Answer(Checked):
         return status
 
 
-def statuses_told(statuses: object) -> str:
+def tell_statuses(statuses: object) -> str:
     """Return the names of statuses in words, in a batch with the count of each."""
     if isinstance(statuses, Status):
         return statuses.name

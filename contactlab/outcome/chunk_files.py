@@ -15,7 +15,7 @@ from typing import Any
 
 import attrs
 
-from contactlab.outcome.chunk_forms import NPZ, About, Chunk, Form, checksum, told_in
+from contactlab.outcome.chunk_forms import NPZ, About, Chunk, Form, checksum, read_notes
 
 #: What reading a damaged file raises.
 DAMAGED = (
@@ -54,7 +54,7 @@ def refuse_file(argument: str, path: Path, rule: str, remedy: str) -> ValueError
     return ValueError(f"{argument} = {str(path)!r}: {rule}; {remedy}")
 
 
-def refuse_damaged(argument: str, path: Path, error: Exception) -> ValueError:
+def refuse_damage(argument: str, path: Path, error: Exception) -> ValueError:
     """Return the refusal of a file that cannot be read; one that may be whole is not given up."""
     # Damage of an archive makes an OSError without a number, or of a seek that is out of range.
     if isinstance(error, OSError) and error.errno not in (None, errno.EINVAL):
@@ -85,7 +85,7 @@ def columns_of(
         with form.read(path, names) as content:
             yield _Compared(content, sums)
     except DAMAGED as error:
-        raise refuse_damaged(argument, path, error) from error
+        raise refuse_damage(argument, path, error) from error
 
 
 @attrs.frozen
@@ -105,7 +105,7 @@ class _Compared:
 def read_about(path: Path, form: Form, argument: str = "path") -> About:
     """Return what a chunk tells, or refuse a damaged file and one of another version."""
     with columns_of(path, form, argument=argument) as content:
-        told = told_in(str(content["about"]))
+        told = read_notes(str(content["about"]))
     if told.keys() != {*About._fields}:
         rule = (
             f"tells {', '.join(told)}; this version of contactlab reads {', '.join(About._fields)}"

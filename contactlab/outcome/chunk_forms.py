@@ -84,7 +84,7 @@ class About(NamedTuple):
         return json.dumps([words, zlib.crc32(words.encode())])
 
 
-def told_in(text: str) -> dict[str, Any]:
+def read_notes(text: str) -> dict[str, Any]:
     """Return what a chunk tells, by name; ``ValueError`` if it is not what was written."""
     words, checksum = json.loads(text)
     if zlib.crc32(words.encode()) != checksum:

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from contactlab.contracts.status import Status, succeeded
 from contactlab.numeric.types import AnyArray
 from contactlab.outcome.columns import columns, csv_heading, json_value
-from contactlab.outcome.files import write_table, written
+from contactlab.outcome.files import replace_file, write_table
 from contactlab.outcome.result import ImpactResult
 
 #: A column of texts or numbers, or one text that all rows have.
@@ -41,13 +41,13 @@ def write_json(result: ImpactResult, path: str | Path) -> None:
         course = result.history.columns() | result.history.fields
         content["history"] = {name: json_value(np.asarray(item)) for name, item in course.items()}
     text = json.dumps(content, indent=2, allow_nan=False) + "\n"
-    with written(path) as stream:
+    with replace_file(path) as stream:
         stream.write(text)
 
 
 def write_csv(result: ImpactResult, path: str | Path) -> None:
     """Write one row for each impact, with the unit in each heading."""
-    with written(path) as stream:
+    with replace_file(path) as stream:
         print_csv(result, stream)
 
 
@@ -71,14 +71,14 @@ def _cells(value: object, shape: tuple[int, ...]) -> Cells:
     words = array.dtype.kind == "U"
     bits = array.view(np.int64) if array.dtype == np.float64 else array  # -0.0 is not 0.0
     if not array.size or (bits[1:] == bits[0]).all():
-        return _quoted(array[0]) if words else repr(array[0].item())
+        return _quote(array[0]) if words else repr(array[0].item())
     if not words:
         return array
     different, places = np.unique(array, return_inverse=True)
-    return np.array([*map(_quoted, different)])[places]
+    return np.array([*map(_quote, different)])[places]
 
 
-def _quoted(word: str) -> str:
+def _quote(word: str) -> str:
     """Return a word as a cell of a CSV file."""
     return '"' + word.replace('"', '""') + '"' if set(word) & set(',"\r\n') else str(word)
 
@@ -123,7 +123,7 @@ def write_npz(result: ImpactResult, path: str | Path) -> None:
     if result.history:
         course = result.history.columns() | result.history.fields
         arrays |= {f"history_{name}": column for name, column in course.items()}
-    with written(path, binary=True) as stream:  # numpy adds .npz to any other path
+    with replace_file(path, binary=True) as stream:  # numpy adds .npz to any other path
         _write_arrays(stream, arrays)
 
 

@@ -52,7 +52,7 @@ def content(path: Path, *, kind: str, remedy: str) -> bytes:
 
 
 @contextlib.contextmanager
-def written(path: str | Path, *, binary: bool = False) -> Iterator[Any]:
+def replace_file(path: str | Path, *, binary: bool = False) -> Iterator[Any]:
     """Return a stream whose content replaces ``path`` when the block ends without an error.
 
     Text is UTF-8 without translation of line ends, as ``csv`` requires. The new file has the
@@ -85,7 +85,7 @@ def write_table(
     path: str | Path, headings: Sequence[str], rows: Iterable[Sequence[object]]
 ) -> None:
     """Write a CSV file: a line of headings, then the rows."""
-    with written(path) as stream:
+    with replace_file(path) as stream:
         writer = csv.writer(stream)
         writer.writerow(headings)
         writer.writerows(rows)

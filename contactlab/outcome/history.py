@@ -154,7 +154,7 @@ class WithHistory(Protocol):
         """The history."""
 
 
-def scaled_forces(result: WithHistory) -> tuple[Array, Array, Array]:
+def scale_forces(result: WithHistory) -> tuple[Array, Array, Array]:
     """Return t/duration, F/(mu P_max) and P/P_max of an impact with a history, from first touch.
 
     In space F is the length of the force.

@@ -58,7 +58,7 @@ class Motion(TangentialMotion):
     exchange: Either = 0.0
     compressions: Either = 1.0
 
-    def turned(self, along: Array) -> Self:
+    def turn(self, along: Array) -> Self:
         """Return the motion with its slip along unit vectors of the tangent plane, (..., 2)."""
         change = np.asarray(self.slip_velocity_change)[..., None] * along
         return attrs.evolve(self, slip_velocity_change=lock_arrays(change))

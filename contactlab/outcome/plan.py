@@ -239,7 +239,7 @@ class Plan:
         """Doubts about the model or its numbers; each says which of the two."""
         return self.words[2]
 
-    def changed(
+    def change(
         self,
         *,
         computed: Clauses | None = None,

@@ -14,7 +14,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import equal, of_each, plain, taken
 from contactlab.numeric.names import attributes_told
 from contactlab.numeric.types import Array, Each, Real
-from contactlab.outcome.answer import Answer, statuses_told
+from contactlab.outcome.answer import Answer, tell_statuses
 from contactlab.outcome.energy import EnergyLedger, ledger
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory
 from contactlab.outcome.motion import Motion
@@ -75,9 +75,9 @@ class ImpactResult(Answer, Generic[Each]):
             "+".join(name.partition(" ")[0] for name in names.split(" and "))
             for names in self.laws.values()
         )
-        return f"ImpactResult({self._told()}; {statuses_told(self.status)}; {laws})"
+        return f"ImpactResult({self._tell()}; {tell_statuses(self.status)}; {laws})"
 
-    def _told(self) -> str:
+    def _tell(self) -> str:
         """Return what ``repr`` says of the answer."""
         scene, psi2 = self.scene, np.asarray(self.psi2)
         if scene.shape:
@@ -92,7 +92,7 @@ class ImpactResult(Answer, Generic[Each]):
             del told["rho"]
             told["normal_restitution"] = self.normal_restitution
         words = (
-            f"{name}={_numbers_told(value)}" for name, value in (told | {"psi2": psi2}).items()
+            f"{name}={_tell_numbers(value)}" for name, value in (told | {"psi2": psi2}).items()
         )
         return ", ".join(words)
 
@@ -161,9 +161,7 @@ class ImpactResult(Answer, Generic[Each]):
         """
         speed, pair = self.scene.normal_speed, self.scene.pair
         if self.scene.frame is not None:
-            return (
-                None if self.scene.along is None else _seen(self.scene, self.velocity_in_space)[0]
-            )
+            return None if self.scene.along is None else _see(self.scene, self.velocity_in_space)[0]
         share = 1.0 if self.scene.sphere is None else pair.normal_mass / self.scene.sphere.mass
         return speed - share * (speed - self.motion.normal_velocity)
 
@@ -172,9 +170,7 @@ class ImpactResult(Answer, Generic[Each]):
         """Tangential velocity of the sphere's centre in m/s; None for a non-dimensional scene."""
         sphere = self.scene.sphere
         if sphere is None:
-            return (
-                None if self.scene.along is None else _seen(self.scene, self.velocity_in_space)[1]
-            )
+            return None if self.scene.along is None else _see(self.scene, self.velocity_in_space)[1]
         share = self.scene.pair.tangential_mass / sphere.mass
         return self.scene.tangential_velocity + share * self.motion.slip_velocity_change
 
@@ -289,7 +285,7 @@ class ImpactResult(Answer, Generic[Each]):
         """e_t = centre's tangential velocity after over before; NaN where zero before."""
         after, before = self.rebound_tangential_velocity, self.scene.tangential_velocity
         if self.scene.along is not None:
-            before = _seen(self.scene, self.scene.encounter.velocity)[1]
+            before = _see(self.scene, self.scene.encounter.velocity)[1]
         return None if after is None else _ratio(after, before)
 
     @property
@@ -305,7 +301,7 @@ class ImpactResult(Answer, Generic[Each]):
         """Angle of the centre's path from the normal before the impact, in rad."""
         scene = self.scene
         if scene.along is not None:
-            normal, along = _seen(scene, scene.encounter.velocity)
+            normal, along = _see(scene, scene.encounter.velocity)
             return _angle(along, normal)
         speed = kinetics.along_slip(scene, scene.tangential_velocity)
         angle: Any = of_each(_angle(speed, scene.normal_speed), scene.shape)
@@ -434,14 +430,14 @@ class ImpactResult(Answer, Generic[Each]):
         return (self[index] for index in range(len(self)))
 
 
-def _numbers_told(value: Real) -> str:
+def _tell_numbers(value: Real) -> str:
     """Return a number, or the numbers of a vector or tensor."""
     return (
         f"{value:.6g}" if np.ndim(value) == 0 else np.array2string(np.asarray(value), precision=6)
     )
 
 
-def _seen(scene: Scene, velocity: Array) -> tuple[Any, Any]:
+def _see(scene: Scene, velocity: Array) -> tuple[Any, Any]:
     """Return a velocity in space as ``body_contact.seen`` does, of an encounter alone."""
     from contactlab.impact.body_contact import seen  # spheres need none of this
 

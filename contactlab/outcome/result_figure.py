@@ -11,7 +11,7 @@ from contactlab.impact.scene import entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array, Places, Real
 from contactlab.outcome.columns import find_quantity, unit_in
-from contactlab.outcome.history import WithHistory, scaled_forces
+from contactlab.outcome.history import WithHistory, scale_forces
 from contactlab.outcome.history_figure import on_axes
 from contactlab.outcome.plan import Plan
 from contactlab.outcome.style import (
@@ -105,7 +105,7 @@ def _abscissa(result: Drawn) -> str:
 
 def _forces(axes: Axes, result: Drawn) -> Axes:
     """Draw the tangential force of a single impact with the friction limit."""
-    time, tangential, normal = scaled_forces(result)
+    time, tangential, normal = scale_forces(result)
     zero_line(axes)
     friction_limit(axes, time, normal)
     axes.plot(time, tangential, color=curve_colour(0))

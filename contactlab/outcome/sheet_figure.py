@@ -47,8 +47,8 @@ def draw_sheet(
         If there is no such column, or it holds no numbers.
     """
     numbers = _numbers(sheet)
-    x = _known("x", x or next(iter(sheet.axes), None) or next(iter(numbers)), numbers)
-    y = _known("y", y or next(name for name in numbers if name != x), numbers)
+    x = _find_column("x", x or next(iter(sheet.axes), None) or next(iter(numbers)), numbers)
+    y = _find_column("y", y or next(name for name in numbers if name != x), numbers)
     rows = sheet.shape[0] if sheet.shape else 1
     across, up = (numbers[name].reshape(rows, -1) for name in (x, y))
     names = [*np.ndindex(*sheet.shape[1:])]
@@ -61,7 +61,7 @@ def draw_sheet(
             if len(names) <= MOST_CURVES:
                 look["color"] = curve_colour(k)
             curves = drawn.plot(across[order, k], up[order, k], **look)
-            curves[0].set_label(_told(sheet, place))
+            curves[0].set_label(_tell_place(sheet, place))
         for name, put in ((x, drawn.set_xlabel), (y, drawn.set_ylabel)):
             put(label(name, sheet.units.get(name, "") or "1"))
         if 1 < len(names) <= MOST_CURVES:
@@ -85,7 +85,7 @@ def _numbers(sheet: Sheet) -> dict[str, Array]:
     }
 
 
-def _known(argument: str, name: str, numbers: dict[str, Array]) -> str:
+def _find_column(argument: str, name: str, numbers: dict[str, Array]) -> str:
     """Return the name of a column that holds numbers, or refuse it."""
     if name not in numbers:
         remedy = f"{nearest(name, numbers)}known: {', '.join(numbers)}"
@@ -93,7 +93,7 @@ def _known(argument: str, name: str, numbers: dict[str, Array]) -> str:
     return name
 
 
-def _told(sheet: Sheet, place: tuple[int, ...]) -> str:
+def _tell_place(sheet: Sheet, place: tuple[int, ...]) -> str:
     """Return the place of a curve on the axes but the first."""
     parts = []
     for (name, values), index in zip([*sheet.axes.items()][1:], place, strict=True):

@@ -24,7 +24,7 @@ from contactlab.outcome.chunk_files import (
     abouts_in,
     columns_of,
     read_about,
-    refuse_damaged,
+    refuse_damage,
     refuse_file,
 )
 from contactlab.outcome.chunk_forms import COLUMN_OF_STATUS, FORMS, NPZ, About, Form
@@ -82,7 +82,7 @@ def about_of(
     )
 
 
-def _told(same: list[tuple[list[float], str, About]], total: int) -> str:
+def _tell(same: list[tuple[list[float], str, About]], total: int) -> str:
     """Return one sentence for those of several chunks, which differ in numbers only."""
     _, sentence, about = max(same, key=lambda each: each[0])
     if len(same) == total and all(other == sentence for _, other, _ in same):
@@ -182,7 +182,7 @@ class SweepFolder(Checked):
         except FileNotFoundError:
             return None
         except (OverflowError, *DAMAGED) as error:
-            raise refuse_damaged("path", path, error) from error
+            raise refuse_damage("path", path, error) from error
 
     @property
     def missing(self) -> list[tuple[int, int]]:
@@ -222,11 +222,11 @@ class SweepFolder(Checked):
         ValueError
             If there is no such column, or a file is damaged.
         """
-        wanted = self._wanted(names)
+        wanted = self._find_names(names)
         for path, about in self._check_chunks():
             yield slice(*about.chunk), _read(path, self._form, self._names, about, wanted)
 
-    def _wanted(self, names: Sequence[str]) -> Sequence[str]:
+    def _find_names(self, names: Sequence[str]) -> Sequence[str]:
         """Return names of columns, all of them if none is given, or refuse what is none."""
         wanted = names or tuple(self.units)
         for name in wanted:
@@ -311,7 +311,7 @@ class SweepFolder(Checked):
             Columns, all of them by default.
         """
         dask = import_optional("dask.dataframe", "to_dask", extra="dask,pandas,pyarrow")
-        wanted = self._wanted(names)
+        wanted = self._find_names(names)
         told = [_Unchanged(path, about, self._stamps[path]) for path, about in self._abouts]
         if not told:
             remedy = "run the sweep into it first"
@@ -371,7 +371,7 @@ class SweepFolder(Checked):
                 same = said.setdefault(NUMBER.sub("#", sentence), [])
                 same.append((numbers, sentence, about))
         total = len(self._abouts)
-        return [_told(same, total) for same in said.values()]
+        return [_tell(same, total) for same in said.values()]
 
     @property
     def _of_many(self) -> bool:

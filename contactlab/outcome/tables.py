@@ -132,7 +132,7 @@ def sweep_section(
     scene, columns = result.scene, {}
     for name, (unit, values) in varied.items():
         columns[heading(name, unit)] = np.broadcast_to(values, scene.shape)
-    for column in _shown(scene, (*SWEEP_TABLE, *foreign())):
+    for column in _show_columns(scene, (*SWEEP_TABLE, *foreign())):
         for part, values in _parts(result, column):
             if part not in varied and not np.isnan(values).all():
                 columns[heading(part, column.unit_in(scene))] = values
@@ -144,7 +144,7 @@ def sweep_section(
     return Section([*columns, "status"], rows)
 
 
-def _shown(scene: Scene, names: Sequence[str]) -> Iterator[Column]:
+def _show_columns(scene: Scene, names: Sequence[str]) -> Iterator[Column]:
     """Yield the columns of a table that a scene has, without vectors in space."""
     known = {column.name for column in columns_of(scene)}
     if scene.along is not None:

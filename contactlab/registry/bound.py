@@ -44,7 +44,7 @@ def bind(laws: Laws, scene: Scene) -> tuple[Laws, Scene]:
     used, scene = bind_laws(laws, scene)
     pairs = zip(laws.by_kind().items(), used, strict=True)
     changed = {kind: own for (kind, law), own in pairs if own is not law}
-    return laws.changed(**changed) if changed else laws, scene
+    return laws.change(**changed) if changed else laws, scene
 
 
 def bind_laws(laws: Iterable[Law], scene: Scene) -> tuple[list[Any], Scene]:

@@ -88,9 +88,9 @@ class Laws:
 
     def taking(self, names: Mapping[str, str]) -> Laws:
         """Return the laws with others of some kinds, by name."""
-        return self.changed(**{kind: law(kind, name) for kind, name in names.items()})
+        return self.change(**{kind: law(kind, name) for kind, name in names.items()})
 
-    def changed(self, **laws: Any) -> Laws:
+    def change(self, **laws: Any) -> Laws:
         """Return the laws with others of some kinds."""
         return attrs.evolve(self, **laws)
 

@@ -24,7 +24,7 @@ from contactlab.outcome.chunk_files import (
 )
 from contactlab.outcome.chunk_forms import COLUMN_OF_STATUS, Chunk, Form, checksum
 from contactlab.outcome.columns import columns, unit_in
-from contactlab.outcome.files import written
+from contactlab.outcome.files import replace_file
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.sweep_folder import about_of
 from contactlab.runs.pieces import Part, Piece
@@ -140,7 +140,7 @@ class ChunkFolder:
         path, words = self.folder / self.form.finished, json.dumps({"impacts": impacts}) + "\n"
         if path.is_file() and path.read_text("utf-8") == words:
             return  # nothing is to be written, and maybe nothing can be
-        with written(path) as stream:
+        with replace_file(path) as stream:
             stream.write(words)
 
 

@@ -17,7 +17,7 @@ from contactlab.outcome.chunk_files import (
     DAMAGED,
     chunks_in,
     name_of,
-    refuse_damaged,
+    refuse_damage,
     refuse_file,
     refuse_place,
 )
@@ -79,7 +79,7 @@ class Kept:
                         raise ValueError("its numbers are not those that were written")
                     piece, sweep = _piece(arrays), str(arrays["sweep"])
             except DAMAGED as error:
-                raise refuse_damaged("keep", path, error) from error
+                raise refuse_damage("keep", path, error) from error
             if piece.chunk != chunk:
                 raise refuse_place("keep", path, piece.chunk)
             if sweep != self.sweep:

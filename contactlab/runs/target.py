@@ -14,7 +14,7 @@ from typing import IO
 from contactlab.numeric.checks import of_kind, refuse
 from contactlab.outcome.chunk_files import chunks_in, name_of
 from contactlab.outcome.chunk_forms import NPZ, Chunk, Form
-from contactlab.outcome.files import PARTS, written
+from contactlab.outcome.files import PARTS, replace_file
 from contactlab.outcome.locks import InUseError, alone_with
 from contactlab.registration.names import KINDS, PROJECT
 from contactlab.registry.composition import Laws
@@ -125,7 +125,7 @@ def written_piece(
 ) -> Iterator[IO[bytes]]:
     """Return a stream of a chunk's file; ``of`` ends "holds 80 of 150 impacts" in an error."""
     try:
-        with written(folder / name_of(chunk, form), binary=True) as stream:
+        with replace_file(folder / name_of(chunk, form), binary=True) as stream:
             yield stream
     except OSError as error:
         first, stop = chunk

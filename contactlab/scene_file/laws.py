@@ -129,7 +129,7 @@ class LawChoice:
             if name not in KINDS:  # check options of laws that are not chosen too
                 REGISTRY.create(name, **options)
         named = frozenset(kind for kind in KINDS if getattr(self, kind) or kind in self.options)
-        laws = composition.Laws(*(choice.made(kind) for kind in KINDS)).changed(named=named)
+        laws = composition.Laws(*(choice.made(kind) for kind in KINDS)).change(named=named)
         composition.check(laws)
         return Simulation.of(laws)
 

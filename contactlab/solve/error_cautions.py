@@ -64,7 +64,7 @@ def _remedy(laws: Laws, scene: Scene) -> str:
             law, integrator = _finer(law, own), _finer(integrator, errors - own)
         except ValueError:  # beyond what the law allows
             break
-        laws = laws.changed(tangential=law, integrator=integrator)
+        laws = laws.change(tangential=law, integrator=integrator)
     return "finer resolutions reduce the error"
 
 

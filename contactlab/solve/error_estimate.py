@@ -166,7 +166,7 @@ def _finer(laws: Laws, options: Mapping[str, float], times: int) -> Laws | None:
             changed[kind] = attrs.evolve(law, **{law.resolution: finer})
         except ValueError:  # beyond what the law allows
             return None
-    return laws.changed(**changed) if changed else None
+    return laws.change(**changed) if changed else None
 
 
 def _successes(status: Statuses) -> Any:

@@ -79,7 +79,7 @@ def _make(laws: Laws, resolutions: tuple[tuple[str, float], ...], reason: str) -
     for kind, value in resolutions:
         law: Any = getattr(laws, kind)
         changed[kind] = attrs.evolve(law, **{law.resolution: type(resolution_of(law))(value)})
-    return laws.changed(**changed, by_scene=frozenset(changed), reason=reason, asked=laws)
+    return laws.change(**changed, by_scene=frozenset(changed), reason=reason, asked=laws)
 
 
 _kept = lru_cache(maxsize=256)(_make)

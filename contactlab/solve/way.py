@@ -194,7 +194,7 @@ class Way(Entries, ABC):
         """Return a motion of this way with its slip in the axes of the scene."""
         if scene is self.scene or kinetics.slip_axes(scene) == kinetics.slip_axes(self.scene):
             return motion
-        return motion.turned(self.line(scene))
+        return motion.turn(self.line(scene))
 
     def refuse_history(self, history: bool | str) -> None:
         """Refuse the history of a batch whose impacts have instants of their own."""

@@ -12,7 +12,7 @@ from contactlab.impact.scene import entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array
 from contactlab.outcome.columns import find_quantity
-from contactlab.outcome.history import scaled_forces
+from contactlab.outcome.history import scale_forces
 from contactlab.outcome.history_figure import on_axes
 from contactlab.outcome.style import (
     MEASURED_COLOUR,
@@ -179,7 +179,7 @@ def forces_over_contact(axes: Axes, comparison: Drawn) -> Axes:
             words = f"{describe_law(comparison, run.name)}: no course"
             axes.plot([], [], label=verbatim(words), **law_style(number))
             continue
-        time, tangential, normal = scaled_forces(run.result)
+        time, tangential, normal = scale_forces(run.result)
         if not drawn:
             friction_limit(axes, time, normal)
             drawn = True

@@ -19,7 +19,7 @@ from contactlab.impact.hertz import rigid_body_rebound
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array, Real
-from contactlab.outcome.history import scaled_forces
+from contactlab.outcome.history import scale_forces
 from contactlab.runs.simulation import Simulation
 
 #: chi of a solid homogeneous sphere of Poisson's ratio 0.3, eq. (38): the paper's 1.4412.
@@ -184,7 +184,7 @@ def _forces(
     curves: list[Curve] = []
     for value, scene in scenes.items():
         result = simulation.run(scene, history=True).check()
-        time, tangential, normal = scaled_forces(result)
+        time, tangential, normal = scale_forces(result)
         if not curves:  # the normal force is the same for all
             curves.append(Curve("P/P_max", np.nan, time, normal))
         curves.append(Curve("F/(mu P_max)", value, time, tangential))

@@ -13,7 +13,7 @@ import inspect
 from pathlib import Path
 
 from contactlab.cli import arguments as shared
-from contactlab.outcome.files import written
+from contactlab.outcome.files import replace_file
 from contactlab.registration.hooks import Execute, hookimpl
 from contactlab_pages.explore import ARGUMENTS, RANGES, explore_page
 
@@ -56,7 +56,7 @@ def execute(arguments: argparse.Namespace) -> int:
     """Write the page and print its path."""
     names = inspect.signature(explore_page).parameters
     page = explore_page(**{name: getattr(arguments, name) for name in names})
-    with written(arguments.out) as stream:
+    with replace_file(arguments.out) as stream:
         stream.write(page)
     print(arguments.out)
     return shared.OK

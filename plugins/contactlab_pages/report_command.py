@@ -16,7 +16,7 @@ import attrs
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import add_file, with_restitution
-from contactlab.outcome.files import written
+from contactlab.outcome.files import replace_file
 from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.registration.names import full_name, short_name
 from contactlab.scene_file import read_scene
@@ -73,7 +73,7 @@ def execute(arguments: argparse.Namespace) -> int:
         page = report_page(file, simulations, comparison)
 
     def write(path: Path) -> None:
-        with written(path) as stream:
+        with replace_file(path) as stream:
             stream.write(page)
         print(path)
 

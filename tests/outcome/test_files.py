@@ -13,7 +13,7 @@ import textwrap
 import pytest
 
 from contactlab.outcome import files
-from contactlab.outcome.files import content, distinct, unwritable, write_table, written
+from contactlab.outcome.files import content, distinct, replace_file, unwritable, write_table
 
 OLD = "old and whole\n"
 
@@ -31,7 +31,7 @@ def names(folder):
 
 def test_an_error_in_the_middle_leaves_the_old_file_and_no_other(old):
     def half():
-        with written(old) as stream:
+        with replace_file(old) as stream:
             stream.write("new")
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
@@ -90,7 +90,7 @@ def test_permissions_are_those_of_the_old_file_or_of_the_umask(old, tmp_path):
     before = os.umask(0o027)
     try:
         for path in (old, tmp_path / "new.csv"):
-            with written(path) as stream:
+            with replace_file(path) as stream:
                 stream.write("new")
     finally:
         os.umask(before)
@@ -103,11 +103,11 @@ def test_permissions_are_those_of_the_old_file_or_of_the_umask(old, tmp_path):
 def test_a_link_stays_a_link(old, tmp_path):
     link = tmp_path / "link.csv"
     link.symlink_to(old)
-    with written(link, binary=True) as stream:
+    with replace_file(link, binary=True) as stream:
         stream.write(b"new")
     assert link.is_symlink()
     assert old.read_text() == "new"
-    with written(tmp_path / "link.csv") as stream:
+    with replace_file(tmp_path / "link.csv") as stream:
         stream.write("newer")
     assert old.read_text() == "newer"
 
@@ -119,7 +119,7 @@ def test_what_is_no_file_is_not_written_to(tmp_path):
     (tmp_path / "folder.csv").mkdir()
     for name in ("pipe.csv", "device.csv", "folder.csv"):
         assert "not a regular file" in unwritable(tmp_path / name)
-        with pytest.raises(OSError, match="not a regular file"), written(tmp_path / name):
+        with pytest.raises(OSError, match="not a regular file"), replace_file(tmp_path / name):
             pass
     assert stat.S_ISCHR(os.stat(os.devnull).st_mode)
     assert unwritable(tmp_path / "none" / "a.csv") == f"there is no folder {tmp_path / 'none'}"
@@ -132,7 +132,7 @@ def test_a_folder_or_file_that_may_not_be_written(old, monkeypatch):
     assert "folder" in unwritable(old)
     monkeypatch.setattr(files.os, "access", lambda path, _: path != str(old))
     assert "protected" in unwritable(old)
-    with pytest.raises(OSError, match="protected"), written(old):
+    with pytest.raises(OSError, match="protected"), replace_file(old):
         pass
 
 
@@ -177,7 +177,7 @@ def test_the_content_of_a_file_or_why_it_cannot_be_read(tmp_path, monkeypatch):
 def test_an_error_of_another_file_keeps_its_name(old):
     """An error without a number, or about another file, is not about this one."""
     for error in (OSError("odd"), OSError(errno.ENOENT, "none", "other.csv")):
-        with pytest.raises(OSError, match=r"odd|other\.csv") as caught, written(old):
+        with pytest.raises(OSError, match=r"odd|other\.csv") as caught, replace_file(old):
             raise error
         assert caught.value is error
         assert str(old) not in str(error)
@@ -187,7 +187,7 @@ def test_an_error_of_another_file_keeps_its_name(old):
 def test_a_table_is_written_with_its_headings(tmp_path):
     write_table(tmp_path / "a.csv", ["a", "b (m)"], [(1.5, "x,y"), (2, "é")])
     assert (tmp_path / "a.csv").read_bytes() == 'a,b (m)\r\n1.5,"x,y"\r\n2,é\r\n'.encode()
-    with pytest.raises(OSError, match=" ") as caught, written(tmp_path / "none" / "a.csv"):
+    with pytest.raises(OSError, match=" ") as caught, replace_file(tmp_path / "none" / "a.csv"):
         pass
     folder = tmp_path / "none"
     assert str(caught.value) == f"{folder / 'a.csv'}: there is no folder {folder}"

@@ -264,7 +264,7 @@ def test_a_plan_is_worded_once_from_the_whole_batch_when_it_is_read_and_may_trav
         assert [clause.code for clause in travelled.computed] == ["", TANGENTIAL_MOTION, PSI2_ERROR]
         assert str(travelled) == str(result.plan) == str(simulation.plan(batch))
         Doubtful.asked.clear()
-    other = result.plan.changed(left_out=(), psi2_error=0.5)
+    other = result.plan.change(left_out=(), psi2_error=0.5)
     assert (other.left_out, other.psi2_error) == ((), 0.5)
     assert other.computed == result.plan.computed
 

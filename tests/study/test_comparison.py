@@ -127,7 +127,7 @@ def test_a_point_without_a_number_takes_none_of_the_others_with_it():
 
 def test_the_numerical_error_is_estimated_or_else_declared(both):
     run = both.runs[1]
-    plan = run.result.plan.changed(psi2_error=np.array([0.1, 0.2, 0.3]))
+    plan = run.result.plan.change(psi2_error=np.array([0.1, 0.2, 0.3]))
     declared = attrs.evolve(run, result=attrs.evolve(run.result, plan=plan))
     estimate = np.array([0.01, np.nan, 0.03])
     result = attrs.evolve(declared.result, psi2_error_estimate=estimate)
