@@ -58,7 +58,7 @@ def items(info: PluginInfo) -> list[Told]:
         arguments = {"scene": reference(), "laws": Simulation().laws}
     if info.kind == "options":
         arguments = {"command": "run", "parser": argparse.ArgumentParser()}
-    told = MANAGER.brought(info.kind, **arguments)
+    told = MANAGER.gather(info.kind, **arguments)
     error = MANAGER.faults.get(info.qualified)
     if error is not None:
         raise error

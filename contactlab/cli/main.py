@@ -213,7 +213,7 @@ def _parser(names: Mapping[str, PluginInfo], called: bool) -> argparse.ArgumentP
         if called:
             added = subparsers.add_parser(name, formatter_class=raw, allow_abbrev=False)
             execute = MANAGER.ask(info, parser=added)
-            MANAGER.brought("options", only=name, command=name, parser=added)
+            MANAGER.gather("options", only=name, command=name, parser=added)
             if not callable(execute):
                 raise PluginError(f"{info.source} returned {execute!r}, which runs no command")
             text = inspect.cleandoc(sys.modules[info.module].__doc__ or "")

@@ -31,7 +31,7 @@ from contactlab.registration.names import (
     COMMAND,
     clash,
     kind_of,
-    meant,
+    resolve_name,
     same_distribution,
     split_name,
 )
@@ -112,7 +112,7 @@ def _no_law(name: str) -> PluginInfo | None:
     if all(info.blocked for info in found):
         raise refuse("name", name, f"is blocked by {BLOCK_VARIABLE}", "unset it to use the plug-in")
     free = [info for info in found if not info.blocked]
-    if (one := meant(free)) is None:
+    if (one := resolve_name(free)) is None:
         raise ValueError(clash(free))
     return one
 

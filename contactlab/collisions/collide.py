@@ -15,7 +15,7 @@ from contactlab.impact.encounter import Encounter
 from contactlab.impact.gathering import Gathering
 from contactlab.impact.of_speed import numbers_at, spread_over
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import every, some, taken
+from contactlab.numeric.arrays import every, some, take
 from contactlab.numeric.checks import of_kind, real, refuse
 from contactlab.numeric.types import Array, Numbers, Real
 from contactlab.numeric.vectors import LEAST
@@ -156,7 +156,7 @@ def collide(
     else:  # the index of an impact is its place in the whole batch
         places = np.arange(np.size(met)).reshape(np.shape(met))[met]
         scene = encounter.take(met).scene.with_index(places)
-        e = taken(e, encounter.shape, met)
+        e = take(e, encounter.shape, met)
     if simulation is not None:
         result = run_in_blocks(simulation, scene)
     else:

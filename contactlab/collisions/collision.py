@@ -21,9 +21,9 @@ from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.body_contact import in_space, push_bodies
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.rigid_body import RigidBody
-from contactlab.numeric.arrays import every, of_each, plain, spread_object, taken
+from contactlab.numeric.arrays import every, of_each, plain, spread_object, take
 from contactlab.numeric.checks import of_kind, refuse
-from contactlab.numeric.names import attributes_told
+from contactlab.numeric.names import tell_attributes
 from contactlab.numeric.types import Array, Each, Labelled, Mask, Numbers, Real
 from contactlab.numeric.vectors import NOTHING, components, cross, join_components
 from contactlab.outcome.answer import Answer
@@ -59,7 +59,7 @@ NUMBERS_AFTER = (
 )  # fmt: skip
 
 
-@attributes_told
+@tell_attributes
 @attrs.frozen(kw_only=True, eq=False, repr=False, slots=False)
 class Collision(Answer, Generic[Each]):
     """Both bodies after an encounter; vectors have the shape ``(..., 3)``, numbers the batch's.
@@ -234,7 +234,7 @@ class Collision(Answer, Generic[Each]):
     def _restitutions(self) -> Real:
         """The restitution of each encounter that collided, or a number that all share."""
         met = ... if np.all(self.collided) else self.collided
-        restitutions: Real = taken(self.restitution, self.encounter.shape, met)
+        restitutions: Real = take(self.restitution, self.encounter.shape, met)
         return restitutions
 
     @property

@@ -17,7 +17,7 @@ from contactlab.contracts.tangential_motion import Sample
 from contactlab.impact.gathering import Body, Gathering
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.names import attributes_told
+from contactlab.numeric.names import tell_attributes
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.answer import Answer, tell_statuses
 from contactlab.outcome.columns import components, json_value
@@ -55,7 +55,7 @@ VECTORS_OF_BODIES = (("velocity", "m/s"), ("spin", "rad/s"))
 VECTORS_OF_CONTACTS = (("impulse", "N s"), ("slip_velocity", "m/s"))
 
 
-@attributes_told
+@tell_attributes
 @attrs.frozen(kw_only=True, eq=False, repr=False, slots=False)
 class GatheringResult(Answer):
     """All bodies after a gathering of N bodies at C contacts, in the batch shape ``(...)``.

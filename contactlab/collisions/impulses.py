@@ -11,7 +11,7 @@ from contactlab.impact.bodies import Pair, Sphere, inverse_turning_mass
 from contactlab.impact.body_contact import Contact
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import LEAST_IMPULSE
-from contactlab.numeric.arrays import chosen, every, finite, lock_arrays, plain, spread
+from contactlab.numeric.arrays import choose, every, finite, lock_arrays, plain, spread
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array, Mask, Real
 from contactlab.numeric.vectors import LEAST, components, three
@@ -48,11 +48,11 @@ def rebounding(
         unit: Real = part.friction_coefficient * contact.approach / pair.stiffness_ratio
         # without slip and friction 0/0 is NaN, in place of which fmin takes the other number
         psi1: Real = np.fmin(np.divide(contact.slip, unit), end)
-        psi1 = chosen(contact.approach >= LEAST, psi1, 0.0)
+        psi1 = choose(contact.approach >= LEAST, psi1, 0.0)
         psi2: Real = rebound(psi1, chi, restitution=restitution)
         change = (psi2 - psi1) * unit
         work = -pair.tangential_mass * change * (contact.slip + 0.5 * change)
-    return -restitution * contact.approach, change, chosen(work <= 0.0, 0.0, work)
+    return -restitution * contact.approach, change, choose(work <= 0.0, 0.0, work)
 
 
 def _check(part: Encounter, impulse: Real, change: Real) -> None:
@@ -100,7 +100,7 @@ def strike(
         if answers is None:
             e = restitution if isinstance(restitution, float) else restitution.reshape(-1)[where]
             after, change, work = rebounding(part, contact, pair, e)
-            _check(part, chosen(meets, pair.normal_mass * contact.approach, 1.0), change)
+            _check(part, choose(meets, pair.normal_mass * contact.approach, 1.0), change)
         else:
             after, change, work = answers[:, where]
         if not met:

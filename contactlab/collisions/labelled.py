@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.numeric.checks import of_kind, real, refuse, shown
+from contactlab.numeric.checks import of_kind, quote, real, refuse
 from contactlab.numeric.labels import library_of
 
 #: Names of what is returned: psi2 and its derivatives.
@@ -171,5 +171,5 @@ def _one_or_all(answers: Iterable[object]) -> Any:
 def _unequal(arguments: Mapping[str, object], what: str, remedy: str) -> ValueError:
     """Return the refusal of arguments whose labels differ."""
     names = [name for name, value in arguments.items() if library_of(value)]
-    values = ", ".join(shown(arguments[name], most=40) for name in names)
+    values = ", ".join(quote(arguments[name], most=40) for name in names)
     return ValueError(f"{', '.join(names)} = {values}: must have equal {what}; {remedy}")

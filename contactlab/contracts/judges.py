@@ -22,7 +22,7 @@ from contactlab.contracts.tangential import (
     TangentialResponse,
 )
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import shown
+from contactlab.numeric.checks import quote
 from contactlab.numeric.types import Real
 
 #: What is below zero by less than this, over the largest of its kind, is zero but for rounding.
@@ -59,11 +59,11 @@ def judge_contact(law: Law, contact: object, shape: tuple[int, ...], step: int) 
         Number of the step, from 1, for the sentence.
     """
     if not isinstance(contact, NormalContact):
-        sentence = faults.sentence(law, f"respond gave {shown(contact)}, not a NormalContact", step)
+        sentence = faults.sentence(law, f"respond gave {quote(contact)}, not a NormalContact", step)
         raise faults.LawFaultError(Status.LAW_RAISED, sentence)
     for entry in contact:
         if entry is not None and faults.is_malformed(entry, shape):
-            raise _refusal(law, f"the answer {shown(entry)}", step)
+            raise _refusal(law, f"the answer {quote(entry)}", step)
     return contact.complete
 
 
@@ -77,11 +77,11 @@ def wrong_response(
     force, work, settled, shear_loss = response
     for answer, wanted in ((force, (*shape, *axes)), (work, shape), (shear_loss, shape)):
         if faults.is_malformed(answer, wanted):
-            return f"the answer {shown(answer)}"
+            return f"the answer {quote(answer)}"
     if axes and np.ndim(force) == 0 and force != 0.0:  # no force is a number
-        return f"no vector: {shown(force)}"
+        return f"no vector: {quote(force)}"
     mask = isinstance(settled, np.ndarray) and settled.dtype == np.bool_
-    return "" if mask or isinstance(settled, bool | np.bool_) else f"settled = {shown(settled)}"
+    return "" if mask or isinstance(settled, bool | np.bool_) else f"settled = {quote(settled)}"
 
 
 def stiffness_of(law: SteppedTangentialLaw, scene: Scene, normal: NormalMotion) -> Real:
@@ -97,12 +97,12 @@ def books_bound_of(law: TangentialLaw, scene: Scene) -> Real:
 def judge_errors(law: Law, errors: object, shape: tuple[int, ...]) -> Errors:
     """Return declared errors: numbers from 0, or NaN where none is declared."""
     if not isinstance(errors, Errors):
-        raise _refusal(law, f"errors gave {shown(errors)}, not Errors", 1)
+        raise _refusal(law, f"errors gave {quote(errors)}, not Errors", 1)
     for name, error in zip(errors._fields, errors, strict=True):
         if type(error) is float and not error < 0.0:  # NaN is not declared
             continue
         if faults.is_malformed(error, shape) or np.any(np.less(error, 0.0)):
-            raise _refusal(law, f"errors gave {name} = {shown(error)}", 1)
+            raise _refusal(law, f"errors gave {name} = {quote(error)}", 1)
     return errors
 
 
@@ -111,7 +111,7 @@ def _read_declaration(law: Law, name: str, value: Any, shape: tuple[int, ...]) -
     if isinstance(value, float) and value >= 0.0:
         return value
     if faults.is_malformed(value, shape) or not np.all(np.greater_equal(value, 0.0)):
-        raise _refusal(law, f"{name} gave {shown(value)}, not a number from 0", 1)
+        raise _refusal(law, f"{name} gave {quote(value)}, not a number from 0", 1)
     number: Real = value
     return number
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import chosen
+from contactlab.numeric.arrays import choose
 from contactlab.numeric.types import Array, Mask, Real
 
 
@@ -191,11 +191,11 @@ def from_change(
     unit = scene.friction_coefficient * scene.normal_speed / scene.pair.stiffness_ratio
     change: Any = psi_change * unit
     lost: Any = -scene.pair.tangential_mass * change * (scene.slip_velocity + 0.5 * change)
-    lost = chosen(lost < 0.0, 0.0, lost)
+    lost = choose(lost < 0.0, 0.0, lost)
     shear: Real = 0.0
     if in_shear is not None:
         shear = in_shear * unit * (0.5 * scene.pair.tangential_mass * unit)
-        shear = chosen(shear > lost, lost, shear)
+        shear = choose(shear > lost, lost, shear)
     return WholeImpact(
         where=where,
         slip_velocity_change=change,

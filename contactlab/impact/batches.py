@@ -160,7 +160,7 @@ class Batches(Motions):
         if self.links is not None:
             return self._gatherings(part)
         plain = self if self.encounter is None else self._with(encounter=None)
-        taken: Self = batch.taken(plain, self.shape, part)
+        taken: Self = batch.take(plain, self.shape, part)
         if self.encounter is not None:
             object.__setattr__(taken, "encounter", self.encounter.take(part))
         object.__setattr__(taken, "_varied", ())
@@ -184,7 +184,7 @@ class Batches(Motions):
         if len(found) != 1:
             rule = "would take contacts of a gathering apart"
             raise refuse("part", part, rule, "give a slice or a mask of the gatherings")
-        taken: Self = batch.taken(self, shape, part)
+        taken: Self = batch.take(self, shape, part)
         object.__setattr__(taken, "shape", (*found, self.shape[-1]))
         return taken
 

@@ -15,7 +15,7 @@ from contactlab.numeric.checks import (
     NON_NEGATIVE,
     POSITIVE,
     Rule,
-    derived,
+    derive,
     instance,
     key,
     quantity,
@@ -127,7 +127,7 @@ class Sphere(_SphereArguments, Generic[Each]):
             )
         solid = 4.0 / 3.0 * math.pi * self.radius * self.radius * self.radius * density
         given = {"radius": self.radius, "density": density}
-        mass = derived("mass", solid, "check the units, or give mass", **given)
+        mass = derive("mass", solid, "check the units, or give mass", **given)
         object.__setattr__(self, "mass", mass)
 
 
@@ -255,7 +255,7 @@ class Pair:
         try:
             return cls._of(sphere, target, turning)
         except (ValueError, ZeroDivisionError):
-            if told := _lost(sphere, target):
+            if told := _find_loss(sphere, target):
                 raise told from None
             raise
 
@@ -286,7 +286,7 @@ class Pair:
         )
 
 
-def _lost(*bodies: Sphere | HalfSpace) -> ValueError | None:
+def _find_loss(*bodies: Sphere | HalfSpace) -> ValueError | None:
     """Return the ValueError of the number that makes those of the contact 0 or infinite, if any."""
     numbers: dict[str, Real] = {}
     for name, body in zip(("sphere", "target"), bodies, strict=True):

@@ -156,7 +156,7 @@ def units_of_bodies(encounter: Encounter) -> list[str]:
     return said
 
 
-def taken_of_bodies(encounter: Encounter, *, several: bool = False) -> list[str]:
+def tell_radii(encounter: Encounter, *, several: bool = False) -> list[str]:
     """Return one sentence for each radius of curvature that nobody gave.
 
     It moves velocities where there are ``several`` contacts at once.

@@ -21,7 +21,7 @@ from contactlab.impact.bodies import (
 from contactlab.impact.of_speed import OfSlip
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import chosen, every, magnitude, some
+from contactlab.numeric.arrays import choose, every, magnitude, some
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import AnyArray, Array, Mask, Real, Vector
 from contactlab.numeric.vectors import (
@@ -234,7 +234,7 @@ def spin_about(encounter: _Meeting, normal: Sequence[Real]) -> Real:
     if not some(omega != 0.0):
         return 0.0
     whole = sum(magnitude(one) for spin in spins for one in spin)
-    omega = chosen(magnitude(omega) > TURNING * whole, omega, 0.0)
+    omega = choose(magnitude(omega) > TURNING * whole, omega, 0.0)
     return np.broadcast_to(omega, encounter.shape) if encounter.shape else omega
 
 
@@ -243,13 +243,13 @@ def _spin_alone(encounter: _Meeting, bodies: Sequence[Side], n: Vector, round_: 
 
     It is 0 where a body is off centre, or the normal is no principal axis of its inertia.
     """
-    spin = chosen(round_, spin_about(encounter, n), 0.0)
+    spin = choose(round_, spin_about(encounter, n), 0.0)
     for _, body, arm, _ in bodies:
         if isinstance(body, RigidBody) and some(spin != 0.0):
             for vector in (arm, *turn_body(body, n)):
                 least = inverse_mass.ROUNDING * square_root(dot(vector, vector))
                 x, y, z = (magnitude(each) > least for each in cross(vector, n))
-                spin = chosen(x | y | z, 0.0, spin)
+                spin = choose(x | y | z, 0.0, spin)
     return spin if some(spin != 0.0) else 0.0
 
 
@@ -278,7 +278,7 @@ def _tangents(normal: Vector) -> tuple[Vector, Vector]:
     """Return unit vectors of the tangent plane at right angles: along an axis, and n times that."""
     x, y, z = map(magnitude, normal)
     first, second = (x <= y) & (x <= z), (y < x) & (y <= z)
-    axis = (chosen(first, 1.0, 0.0), chosen(second, 1.0, 0.0), chosen(first | second, 0.0, 1.0))
+    axis = (choose(first, 1.0, 0.0), choose(second, 1.0, 0.0), choose(first | second, 0.0, 1.0))
     part = dot(axis, normal)
     along = [each - part * n for each, n in zip(axis, normal, strict=True)]
     size = square_root(dot(along, along))
@@ -307,7 +307,7 @@ def frame(encounter: _Meeting, bodies: Sequence[Side], normal: Vector) -> Frame:
     turn: Any = 1.0 + 0.0j
     for vector, rounding in reversed(candidates):
         size = abs(vector)
-        turn = chosen(size > rounding, vector / (size + (size == 0.0)), turn)
+        turn = choose(size > rounding, vector / (size + (size == 0.0)), turn)
     gap = gap_of(encounter, one, other)
     if some(gap.elliptic):
         turn, gap = _along_an_axis(gap, turn, candidates)
@@ -446,7 +446,7 @@ def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
         along, entries = hypotenuse(*slip), {}
         unit = along + (along == 0.0)
         tangential = inverse_mass.along(W, (slip[0] + (along == 0.0)) / unit, slip[1] / unit)
-    spin = _spin_alone(encounter, bodies, normal, chosen(gap.elliptic, False, central))
+    spin = _spin_alone(encounter, bodies, normal, choose(gap.elliptic, False, central))
     if some(spin != 0.0):
         turning = turning_compliance(bodies, normal, contact["radius"])
         contact |= {"inverse_spin_mass": turning}
@@ -459,11 +459,11 @@ def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
         try:
             inverse_mass.check(join_components(W, shape))
         except (ValueError, FloatingPointError):
-            raise _lost(bodies) from None
+            raise _find_loss(bodies) from None
         raise
 
 
-def _lost(bodies: Sequence[Side]) -> ValueError:
+def _find_loss(bodies: Sequence[Side]) -> ValueError:
     """Return the ValueError of a mass and an inertia beside each other that rounding loses."""
     for name, body, arm, _ in bodies:
         if isinstance(body, RigidBody):
@@ -514,7 +514,7 @@ def in_space(axes: Array, vectors: Array) -> Array:
     return np.asarray(np.einsum("...ia,...i->...a", axes, vectors))
 
 
-def seen(scene: Scene, velocity: Array) -> tuple[Any, Any]:
+def resolve_velocity(scene: Scene, velocity: Array) -> tuple[Any, Any]:
     """Return the components along the normal and ``scene.along`` of a velocity of the first body.
 
     They are relative to the surface that it strikes, in m/s, numbers for one impact.

@@ -163,7 +163,7 @@ def yielding(scene: Scene, peak: Real | None = None) -> tuple[str, ...]:
     )
 
 
-def yield_unknown(scene: Scene) -> tuple[str, Any, Real]:
+def tell_yield(scene: Scene) -> tuple[str, Any, Real]:
     """Return words on bodies without yield stress, where there are any, and pressures in GPa.
 
     The words are empty if all bodies have one.
@@ -243,7 +243,7 @@ def unit_slips(scene: Scene) -> list[str]:
             return slips
         from contactlab.impact import body_cautions  # spheres need none of this
 
-        return [*slips, *body_cautions.units_of_bodies(met), *body_cautions.taken_of_bodies(met)]
+        return [*slips, *body_cautions.units_of_bodies(met), *body_cautions.tell_radii(met)]
     speed = math.hypot(_most(scene.normal_speed), _most(abs(scene.tangential_velocity)))
     spin = _most(abs(scene.spin))
     rim = _most(scene.sphere.radius) * spin

@@ -224,7 +224,7 @@ class Encounter:
             if isinstance(value, RigidBody):
                 value = value.take(self.shape, part)
             else:
-                value = batch.taken(value, self.shape, part)
+                value = batch.take(value, self.shape, part)
             object.__setattr__(taken, name, value)
         for name in GIVEN:
             vectors = getattr(self, name)

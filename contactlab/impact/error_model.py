@@ -15,7 +15,7 @@ import numpy as np
 
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import chosen, greater
+from contactlab.numeric.arrays import choose, greater
 from contactlab.numeric.types import Real
 
 #: An answer is coarse if its numerical error is more than this share of the range.
@@ -45,4 +45,4 @@ def range_of(scene: Scene) -> Range:
 def psi_magnitude(scene: Scene) -> Any:
     """Return max(1, |psi1|), the scale of relative errors of psi2; 1 where psi1 is infinite."""
     magnitude: Any = kinetics.size_of(scene, scene.psi1)
-    return greater(chosen(magnitude < math.inf, magnitude, 1.0), 1.0)
+    return greater(choose(magnitude < math.inf, magnitude, 1.0), 1.0)

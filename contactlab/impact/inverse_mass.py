@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from contactlab.numeric.arrays import chosen, every, quotient
+from contactlab.numeric.arrays import choose, every, quotient
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array, Real, Rows, Vector
 from contactlab.numeric.vectors import hypotenuse, rows, solve_tensor, square_root
@@ -78,7 +78,7 @@ def ways(tensor: Rows, speed: Real, slip: Vector, cross_stiffness_ratio: Real = 
     turns = turned > ROUNDING * W[1][1] * (moved + square_root(moved) * abs(speed))
     turns = turns | (leaves & (cross_stiffness_ratio != 1.0))
     leaves = leaves | (abs(W[0][2]) > ROUNDING * size) | (abs(W[1][2]) > ROUNDING * W[1][1])
-    return chosen(pressed | turns, chosen(leaves, SPATIAL, PLANAR), CENTRAL)
+    return choose(pressed | turns, choose(leaves, SPATIAL, PLANAR), CENTRAL)
 
 
 def impulse(inverse: Array, change: Vector) -> tuple[Any, Any, Any]:

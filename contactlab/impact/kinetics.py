@@ -10,7 +10,7 @@ import numpy as np
 from contactlab.impact import inverse_mass
 from contactlab.impact.bodies import Pair, Sphere, size_ratio
 from contactlab.numeric import arrays as batch
-from contactlab.numeric.arrays import chosen, magnitude, quotient
+from contactlab.numeric.arrays import choose, magnitude, quotient
 from contactlab.numeric.types import Array, Index, Places, Real
 from contactlab.numeric.vectors import components, dot, entry, hypotenuse, join_components, rows
 
@@ -234,7 +234,7 @@ def normal_inertia(scene: Motions) -> Real:
     """Return J about the normal in kg m², 1/J the sum of both bodies'; 0 without spin about it."""
     inverse = scene.pair.inverse_spin_mass
     size = scene.pair.radius
-    return chosen(inverse > 0.0, quotient(size * size, inverse), 0.0)
+    return choose(inverse > 0.0, quotient(size * size, inverse), 0.0)
 
 
 def spin_energies(scene: Motions, change: Real) -> tuple[Real, Real]:

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any, Generic, overload
 import attrs
 import numpy as np
 
-from contactlab.numeric.checks import POISSON, POSITIVE, derived, of_kind, quantity, real, refuse
-from contactlab.numeric.named import NOTHING, named_numbers, split_heading
-from contactlab.numeric.names import arguments_told, nearest
+from contactlab.numeric.checks import POISSON, POSITIVE, derive, of_kind, quantity, real, refuse
+from contactlab.numeric.named import NOTHING, numbers_by_name, split_heading
+from contactlab.numeric.names import nearest, tell_arguments
 from contactlab.numeric.types import Array, Each, Number, Numbers
 from contactlab.registration.bring import by_name, own_first
 from contactlab.registration.hooks import hookimpl
@@ -66,18 +66,18 @@ class _MaterialArguments:
                 )
             follows = young / (2.0 * (1.0 + ratio))
             remedy = "give it in Pa"
-            shear_modulus = derived("shear modulus", follows, remedy, young_modulus=young_modulus)
+            shear_modulus = derive("shear modulus", follows, remedy, young_modulus=young_modulus)
         shear = real("shear_modulus", shear_modulus, rule=POSITIVE, remedy="give it in Pa")
         self.__attrs_init__(  # type: ignore[attr-defined]
             shear_modulus=shear,
             poisson_ratio=ratio,
             density=density,
             yield_stress=yield_stress,
-            properties=named_numbers("properties", properties, taken=OWN_NUMBERS),
+            properties=numbers_by_name("properties", properties, taken=OWN_NUMBERS),
         )
 
 
-@arguments_told
+@tell_arguments
 @attrs.frozen(init=False, kw_only=True, repr=False)
 class Material(_MaterialArguments, Generic[Each]):
     """A linear elastic, isotropic material.
@@ -140,7 +140,7 @@ class Material(_MaterialArguments, Generic[Each]):
         told = [each for each in NAMES if each != "properties" or self.properties]
         return f"Material({', '.join(f'{each}={getattr(self, each)!r}' for each in told)})"
 
-    def property_named(self, name: str) -> tuple[Each | float, str] | None:
+    def find_property(self, name: str) -> tuple[Each | float, str] | None:
         """Return a property and the unit that was given with it, empty if none; None without it.
 
         Parameters

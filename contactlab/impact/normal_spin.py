@@ -163,11 +163,11 @@ def normal_spin(scene: Scene, *, answered: Mask = False) -> NormalSpin | None:
         chi_w = inertia * inverse * (radius / central.pair.radius) ** 2
         shift, loss = shift_and_loss(central.psi1, central.chi, w, chi_w)
         part = np.where(acts, loss / np.where(w > 0.0, w, 1.0), 0.0)
-    known = _known(np.abs(central.psi1), np.asarray(central.chi), w)
+    known = _covers(np.abs(central.psi1), np.asarray(central.chi), w)
     return NormalSpin(acts, w, np.where(acts, shift, 0.0), part, known)
 
 
-def _known(psi1: Array, chi: Array, w: Array) -> Mask:
+def _covers(psi1: Array, chi: Array, w: Array) -> Mask:
     """Return where the table has an impact, or it slips throughout beyond the table."""
     slips, ratios, _ = (axis[[0, -1]] for axis in nodes().axes)
     tabled = (psi1 <= slips[1]) & (chi >= ratios[0]) & (chi <= ratios[1])

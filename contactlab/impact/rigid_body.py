@@ -11,7 +11,7 @@ import numpy as np
 
 from contactlab.impact.bodies import MOST_RADIUS
 from contactlab.impact.material import Material
-from contactlab.numeric.arrays import chosen, common_shape, known, some, taken
+from contactlab.numeric.arrays import choose, common_shape, none_for_nan, some, take
 from contactlab.numeric.checks import (
     POSITIVE,
     Rule,
@@ -276,7 +276,7 @@ class RigidBody:
             rule = "is at right angles to the surface: it has no part in the tangent plane"
             remedy = "give the direction in which curvature_radius is measured"
             raise refuse("curvature_axis", self.curvature_axis.tolist(), rule, remedy)
-        return one, other, chosen(size < LOST, 1.0 + 0.0j, seen / chosen(size < LOST, 1.0, size))
+        return one, other, choose(size < LOST, 1.0 + 0.0j, seen / choose(size < LOST, 1.0, size))
 
     def __repr__(self) -> str:
         """Return the arguments that were given."""
@@ -299,7 +299,7 @@ class RigidBody:
         """
         inertia = np.broadcast_to(self.inertia, (*shape, 3, 3))[part]
         entries: dict[str, Any] = {
-            name: known(taken(getattr(self, name), shape, part))
+            name: none_for_nan(take(getattr(self, name), shape, part))
             for name in ("mass", "material", "curvature_radius", "cross_radius", "bending_period")
         }
         if self.curvature_axis is not None:

@@ -20,7 +20,7 @@ from contactlab.impact.material import Material
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.arrays import lock_arrays
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, real, refuse
-from contactlab.numeric.names import SHAPES, function_told
+from contactlab.numeric.names import SHAPES, tell_function
 from contactlab.numeric.taken import Taken
 from contactlab.numeric.types import Array, Numbers, Real
 from contactlab.registration.bring import by_name
@@ -113,7 +113,7 @@ def _radii(radii: list[Real], shape: tuple[int, ...]) -> Any:
     return radii[0] if all(taken) else np.array(radii).reshape(shape)
 
 
-@function_told
+@tell_function
 @_pose_each
 def rod(
     *,
@@ -188,7 +188,7 @@ def rod(
     return body, contact
 
 
-@function_told
+@tell_function
 @_pose_each
 def disc(
     *,
@@ -262,7 +262,7 @@ def disc(
     return body, contact
 
 
-@function_told
+@tell_function
 @_pose_each
 def box(
     *,
@@ -342,7 +342,7 @@ def box(
     return body, turn @ contact
 
 
-@function_told
+@tell_function
 def flat_box(
     *,
     sides: Numbers,
@@ -387,7 +387,7 @@ def flat_box(
     return body, *_in_reach(corners, outward, reach)
 
 
-@function_told
+@tell_function
 def flat_rod(
     *,
     length: float,
@@ -442,7 +442,7 @@ def _in_reach(contacts: Array, outward: Array, reach: float) -> tuple[Array, Arr
     return contacts[order], gaps[order]
 
 
-@function_told
+@tell_function
 @_pose_each
 def ellipsoid(
     *,

@@ -90,10 +90,10 @@ def stack_trees(items: Sequence[Any]) -> Any:
 
 
 @overload
-def taken(tree: Real, shape: tuple[int, ...], part: Index) -> Real: ...
+def take(tree: Real, shape: tuple[int, ...], part: Index) -> Real: ...
 @overload
-def taken(tree: Tree, shape: tuple[int, ...], part: Index) -> Tree: ...
-def taken(tree: Any, shape: tuple[int, ...], part: Index) -> object:
+def take(tree: Tree, shape: tuple[int, ...], part: Index) -> Tree: ...
+def take(tree: Any, shape: tuple[int, ...], part: Index) -> object:
     """Return the tree of the impacts that ``part`` indexes; plain numbers stay plain.
 
     An array with more axes than ``shape`` begins with those of the batch.
@@ -107,13 +107,13 @@ def taken(tree: Any, shape: tuple[int, ...], part: Index) -> object:
     if attrs.has(type(tree)):
         copy = object.__new__(type(tree))  # every number was checked when the tree was made
         for field in attrs.fields(type(tree)):
-            value = taken(getattr(tree, field.name), shape, part)
+            value = take(getattr(tree, field.name), shape, part)
             if "unknown" in field.metadata:
-                value = known(value)
+                value = none_for_nan(value)
             object.__setattr__(copy, field.name, value)
         return copy
     if type(tree) is Named and tree:
-        return Named({name: taken(number, shape, part) for name, number in tree.items()})
+        return Named({name: take(number, shape, part) for name, number in tree.items()})
     return tree
 
 
@@ -140,7 +140,7 @@ def _entries(kind: Hashable) -> tuple[tuple[str, ...], Callable[[object], Any]]:
     return names, lambda tree: tuple(getattr(tree, name) for name in names)
 
 
-def known(value: Tree) -> Tree | None:
+def none_for_nan(value: Tree) -> Tree | None:
     """Return a value; None for NaN, which stands for None in arrays."""
     return None if isinstance(value, float) and value != value else value
 
@@ -274,12 +274,12 @@ def every(mask: Mask) -> bool:
 
 
 @overload
-def chosen(condition: Mask, if_true: Real, if_false: Real) -> Real: ...
+def choose(condition: Mask, if_true: Real, if_false: Real) -> Real: ...
 @overload
-def chosen(
+def choose(
     condition: Mask, if_true: Real | complex, if_false: Real | complex
 ) -> Real | complex | NDArray[np.complex128]: ...
-def chosen(
+def choose(
     condition: Mask, if_true: Real | complex, if_false: Real | complex
 ) -> Real | complex | NDArray[np.complex128]:
     """Return ``np.where`` for arrays; a plain condition is decided by ``if``, ten times as fast."""

@@ -52,7 +52,7 @@ GYRATION = Rule(
 )
 
 
-def shown(value: object, *, most: int = 80) -> str:
+def quote(value: object, *, most: int = 80) -> str:
     """Return ``value`` as one line of at most ``most`` characters, for a message."""
     try:
         text = " ".join(repr(value).split())
@@ -63,7 +63,7 @@ def shown(value: object, *, most: int = 80) -> str:
 
 def refuse(argument: str, value: object, rule: str, remedy: str = "") -> ValueError:
     """Return the ValueError for a bad argument: name, value, rule and remedy in one sentence."""
-    return ValueError(f"{argument} = {shown(value)}: {rule}" + (f"; {remedy}" if remedy else ""))
+    return ValueError(f"{argument} = {quote(value)}: {rule}" + (f"; {remedy}" if remedy else ""))
 
 
 def of_kind(
@@ -142,7 +142,7 @@ def real(
     return widened
 
 
-def derived(name: str, value: object, remedy: str, **given: object) -> Real:
+def derive(name: str, value: object, remedy: str, **given: object) -> Real:
     """Return a positive number that follows from ``given`` ones, or refuse those that lose it."""
     try:
         return real(name, value, rule=POSITIVE, empty=True)
@@ -214,7 +214,7 @@ def _check_field(
         return value  # the remedy of a refusal takes longer to write than a number to check
     remedy = unit_remedy(meta["unit"])
     if "unknown" in meta:
-        return some_known(field.name, value, rule=meta["rule"], remedy=remedy, empty=meta["empty"])
+        return real_or_nan(field.name, value, rule=meta["rule"], remedy=remedy, empty=meta["empty"])
     number = real(field.name, value, rule=meta["rule"], remedy=remedy, empty=meta["empty"])
     one_number = getattr(type(owner), "_plain_options", False) and "per_impact" not in meta
     if one_number and isinstance(number, np.ndarray):
@@ -223,11 +223,11 @@ def _check_field(
     return number
 
 
-def some_known(
+def real_or_nan(
     argument: str, value: object, *, rule: Rule = FINITE, remedy: str = "", empty: bool = False
 ) -> Real:
     """Return ``real``, of an array in which NaN stands for an impact without the number."""
-    if (numbers := _partly_known(value)) is None:
+    if (numbers := _read_gaps(value)) is None:
         return real(argument, value, rule=rule, remedy=remedy, empty=empty)
     real(argument, numbers[~np.isnan(numbers)], rule=rule, remedy=remedy, empty=True)
     numbers = np.array(numbers, dtype=np.float64)
@@ -235,7 +235,7 @@ def some_known(
     return numbers
 
 
-def _partly_known(value: object) -> Array | None:
+def _read_gaps(value: object) -> Array | None:
     """Return an array, or a list, of numbers with NaN among them as an array; else None."""
     if not isinstance(value, np.ndarray | list | tuple):
         return None

@@ -13,7 +13,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.numeric.checks import key, of_kind, refuse, some_known
+from contactlab.numeric.checks import key, of_kind, real_or_nan, refuse
 from contactlab.numeric.types import Array, Either
 
 #: A name, and its unit in brackets where one is given.
@@ -90,7 +90,7 @@ def split_heading(heading: str) -> tuple[str, str]:
     return (found[1], found[2] or "") if found else (heading, "")
 
 
-def named_numbers(argument: str, given: object, *, taken: tuple[str, ...] = ()) -> Named:
+def numbers_by_name(argument: str, given: object, *, taken: tuple[str, ...] = ()) -> Named:
     """Return numbers by name, checked; ``taken`` names stand elsewhere.
 
     An array may hold NaN, of an impact for which the number is not known.
@@ -113,5 +113,5 @@ def named_numbers(argument: str, given: object, *, taken: tuple[str, ...] = ()) 
         if name in names:
             raise refuse(f"{argument}: name", heading, "is given twice", "leave out one of them")
         names.add(name)
-        numbers[heading] = some_known(f"{argument}[{heading!r}]", value, remedy="give it in SI")
+        numbers[heading] = real_or_nan(f"{argument}[{heading!r}]", value, remedy="give it in SI")
     return Named(numbers)

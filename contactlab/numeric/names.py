@@ -92,7 +92,7 @@ def _plain(name: str) -> str:
     return name.lstrip("-").replace("-", "_")
 
 
-def arguments_told(made: Class) -> Class:
+def tell_arguments(made: Class) -> Class:
     """Return a class that users make: wrong arguments are refused with the nearest, and all names.
 
     ``_remedy(name, value)`` of a class tells where an argument belongs that it does not have.
@@ -113,17 +113,17 @@ def _telling(made: Class, call: Callable[..., None]) -> Class:
     """Return a class whose class methods tell, and ``call`` in place of its ``__init__``."""
     for name, each in [*vars(made).items()]:
         if isinstance(each, classmethod):
-            setattr(made, name, classmethod(_told(made, each.__func__)))
+            setattr(made, name, classmethod(_tell(made, each.__func__)))
     stated = made.__init__  # type: ignore[misc]
-    made.__init__ = functools.wraps(stated)(_told(made, call))  # type: ignore[misc]
+    made.__init__ = functools.wraps(stated)(_tell(made, call))  # type: ignore[misc]
     return made
 
 
-def function_told(call: Function) -> Function:
+def tell_function(call: Function) -> Function:
     """Return a function whose wrong arguments are refused with the nearest, and all names."""
 
     @functools.wraps(call)
-    def told(*values: object, **named: object) -> object:
+    def run(*values: object, **named: object) -> object:
         try:
             return call(*values, **named)
         except TypeError:
@@ -131,10 +131,10 @@ def function_told(call: Function) -> Function:
                 raise TypeError(f"{call.__name__}: {complaint}") from None
             raise
 
-    return told  # type: ignore[return-value]
+    return run  # type: ignore[return-value]
 
 
-def attributes_told(made: Class) -> Class:
+def tell_attributes(made: Class) -> Class:
     """Return a class of results that refuses a wrong attribute with the nearest, or all names."""
 
     def __getattr__(self: object, name: str) -> Any:  # noqa: N807
@@ -149,11 +149,11 @@ def attributes_told(made: Class) -> Class:
     return made
 
 
-def _told(made: type, call: Callable[..., T]) -> Callable[..., T]:
+def _tell(made: type, call: Callable[..., T]) -> Callable[..., T]:
     """Return a method that says which of its arguments are wrong."""
 
     @functools.wraps(call)
-    def told(*values: object, **named: object) -> T:
+    def run(*values: object, **named: object) -> T:
         try:
             return call(*values, **named)
         except TypeError:
@@ -161,7 +161,7 @@ def _told(made: type, call: Callable[..., T]) -> Callable[..., T]:
                 raise TypeError(f"{made.__name__}: {complaint}") from None
             raise
 
-    return told
+    return run
 
 
 def _unfit(

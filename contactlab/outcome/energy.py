@@ -14,7 +14,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import of_each, plain, some
-from contactlab.numeric.names import attributes_told
+from contactlab.numeric.names import tell_attributes
 from contactlab.numeric.types import Each, Mask, Real
 from contactlab.outcome.motion import Motion, all_finite
 from contactlab.outcome.plan import PlanColumns
@@ -44,7 +44,7 @@ def _energy() -> Any:
     return attrs.field(metadata={"unit": "J"})
 
 
-@attributes_told
+@tell_attributes
 @attrs.frozen(kw_only=True, eq=False)
 class EnergyLedger(Generic[Each]):
     """Kinetic energy of the relative motion at the contact, in J.

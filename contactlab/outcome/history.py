@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from contactlab.contracts.tangential_motion import Sample
 from contactlab.impact.scene import Scene
-from contactlab.numeric.names import attributes_told
+from contactlab.numeric.names import tell_attributes
 from contactlab.numeric.types import Array, Index
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.tabled import Plotted
@@ -28,7 +28,7 @@ def _column(unit: str) -> Any:
     return attrs.field(metadata={"unit": unit})
 
 
-@attributes_told
+@tell_attributes
 @attrs.frozen(kw_only=True, eq=False, repr=False)
 class History(Plotted):
     """Arrays over the instants of an impact, shape (K, ...): instants first, then the batch.

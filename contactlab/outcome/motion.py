@@ -15,7 +15,7 @@ from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential_motion import TangentialMotion
 from contactlab.contracts.whole_impact import WholeImpact
-from contactlab.numeric.arrays import are_zeros, chosen, finite, lock_arrays, spread, zeros
+from contactlab.numeric.arrays import are_zeros, choose, finite, lock_arrays, spread, zeros
 from contactlab.numeric.types import Array, Either, Real
 
 #: Entries of ``Motion`` by the name of their source in a normal motion.
@@ -130,11 +130,11 @@ def _gather_ends(
     # NaN, unequal to itself, where friction left the normal motion as it was.
     alone = own.final_rate != own.final_rate
     coupled = {
-        name: chosen(alone, entries[name], getattr(own, source)) for name, source in ENDS.items()
+        name: choose(alone, entries[name], getattr(own, source)) for name, source in ENDS.items()
     }
     return coupled | {
-        "exchange": chosen(alone, 0.0, _exchange(normal, own)),
-        "compressions": chosen(alone, 1.0, own.compressions),
+        "exchange": choose(alone, 0.0, _exchange(normal, own)),
+        "compressions": choose(alone, 1.0, own.compressions),
     }
 
 

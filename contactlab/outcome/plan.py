@@ -11,7 +11,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.numeric.arrays import consecutive, every, merge_parts, share, some, taken
+from contactlab.numeric.arrays import consecutive, every, merge_parts, share, some, take
 from contactlab.numeric.types import Index, Real
 
 Mask = NDArray[np.bool_]
@@ -99,7 +99,7 @@ class PlanColumns(NamedTuple):
     def take(self, part: Index) -> PlanColumns:
         """Return the columns of some impacts of a batch."""
         psi2, restitution = (
-            taken(error, self.code.shape, part)
+            take(error, self.code.shape, part)
             for error in (self.psi2_error, self.restitution_error)
         )
         return PlanColumns(self.code[part], psi2, self.reasons, restitution)
@@ -166,7 +166,7 @@ class Clause(NamedTuple):
         """Return the clause for some of the impacts."""
         values = self.values
         if values is not None:
-            values = tuple(taken(value, self.where.shape, part) for value in values)
+            values = tuple(take(value, self.where.shape, part) for value in values)
         return self._replace(where=np.asarray(self.where[part]), values=values)
 
 

@@ -11,8 +11,8 @@ import numpy as np
 from contactlab.impact import kinetics
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import equal, of_each, plain, taken
-from contactlab.numeric.names import attributes_told
+from contactlab.numeric.arrays import equal, of_each, plain, take
+from contactlab.numeric.names import tell_attributes
 from contactlab.numeric.types import Array, Each, Real
 from contactlab.outcome.answer import Answer, tell_statuses
 from contactlab.outcome.energy import EnergyLedger, ledger
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from contactlab.outcome.style import Width
 
 
-@attributes_told
+@tell_attributes
 @attrs.frozen(kw_only=True, eq=False, repr=False, slots=False)  # frozen slots are slow to fill
 class ImpactResult(Answer, Generic[Each]):
     """Result of one impact, or of a batch: every quantity has the scene's shape.
@@ -419,10 +419,10 @@ class ImpactResult(Answer, Generic[Each]):
             self,
             scene=self.scene.take(index),
             plan=self.plan[index],
-            motion=taken(self.motion, shape, index),
+            motion=take(self.motion, shape, index),
             history=history.part(index) if history else history,
-            psi2_error_estimate=taken(self.psi2_error_estimate, shape, index),
-            restitution_error_estimate=taken(self.restitution_error_estimate, shape, index),
+            psi2_error_estimate=take(self.psi2_error_estimate, shape, index),
+            restitution_error_estimate=take(self.restitution_error_estimate, shape, index),
         )
 
     def __iter__(self) -> Iterator[ImpactResult]:
@@ -439,9 +439,9 @@ def _tell_numbers(value: Real) -> str:
 
 def _see(scene: Scene, velocity: Array) -> tuple[Any, Any]:
     """Return a velocity in space as ``body_contact.seen`` does, of an encounter alone."""
-    from contactlab.impact.body_contact import seen  # spheres need none of this
+    from contactlab.impact.body_contact import resolve_velocity  # spheres need none of this
 
-    return seen(scene, velocity)
+    return resolve_velocity(scene, velocity)
 
 
 def _ratio(after: Real, before: Real) -> Any:

@@ -17,7 +17,7 @@ import numpy as np
 
 from contactlab.contracts.status import Status
 from contactlab.numeric.checks import of_kind, refuse
-from contactlab.numeric.names import attributes_told, nearest
+from contactlab.numeric.names import nearest, tell_attributes
 from contactlab.outcome.answer import Checked
 from contactlab.outcome.chunk_files import (
     DAMAGED,
@@ -124,7 +124,7 @@ def _frame(form: Form, statuses: Sequence[str], names: Sequence[str], chunk: _Un
     return pandas.DataFrame(_read(chunk.path, form, statuses, chunk.about, names), index)
 
 
-@attributes_told
+@tell_attributes
 class SweepFolder(Checked):
     """The finished chunks of ``sweep(..., into=folder)``, read by columns and chunks.
 

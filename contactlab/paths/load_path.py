@@ -28,7 +28,7 @@ from contactlab.paths.path_steps import Followed, Points, follow_path
 from contactlab.registry import composition
 from contactlab.registry.acceptance import accept
 from contactlab.registry.bound import bind_laws
-from contactlab.registry.law_words import name_of, of_taken
+from contactlab.registry.law_words import name_of, tell_assumptions
 from contactlab.solve.solve import refuse_gathering
 from contactlab.solve.unfollowed import refusal
 
@@ -108,7 +108,7 @@ class LoadPath(Answer):
         round_ = [law for law in (self.normal, self.tangential) if "elliptic" not in claims(law)]
         return [
             *self.tangential.path_cautions(),
-            *of_taken(self.normal, self.tangential),
+            *tell_assumptions(self.normal, self.tangential),
             *(text for law in round_ for text in of_ellipse(self.scene, name_of(law))),
             *path_cautions(self.scene, deepest, plastic="plastic" in claims(self.normal)),
         ]

@@ -27,7 +27,7 @@ class Points(NamedTuple):
     approach: Array
     displacement: Array
 
-    def moved(self, column: Array, first: Real) -> tuple[Array, Array]:
+    def change(self, column: Array, first: Real) -> tuple[Array, Array]:
         """Return the change of a column over each step from ``first`` on, and its rate."""
         moved, drift = (
             np.diff(column, axis=0, prepend=first),
@@ -76,7 +76,7 @@ def follow_path(
     LawFaultError
         If a law raises, or its answer is malformed.
     """
-    rate = points.moved(points.approach, 0.0)[1]
+    rate = points.change(points.approach, 0.0)[1]
     contacts = _press(normal, scene, points, rate)
     sampled = NormalContact(*(_column(rows, scene.shape) for rows in zip(*contacts, strict=True)))
     radius, load = sampled.radius, sampled.friction_load
@@ -123,7 +123,7 @@ def _steps(
 ) -> Iterable[tuple[Increment, NormalContact]]:
     """Iterate over the steps, and count them; the first one presses only."""
     drift = np.diff(points.time, axis=0, prepend=0.0)
-    moved, velocity = points.moved(points.displacement, points.displacement[:1])
+    moved, velocity = points.change(points.displacement, points.displacement[:1])
     places = zip(_rows(points.approach), _rows(rates), strict=True)
     rows = zip(*(_rows(each) for each in (moved, velocity, drift)), places, contacts, strict=True)
     for blamed.step, (by, speed, time, place, after) in enumerate(rows, 1):

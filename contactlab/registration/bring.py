@@ -40,7 +40,7 @@ def sound(
     ``fault`` returns what is wrong with a thing of another distribution, or nothing.
     """
     found = []
-    for told in MANAGER.brought(kind, **arguments):
+    for told in MANAGER.gather(kind, **arguments):
         rule = ""
         if not isinstance(told.item, of):
             rule = f"which is no {of.__name__}"
@@ -78,7 +78,7 @@ def by_name(
     found: dict[str, T] = {}
     for name, several in offers.items():
         rivals = _once(name, several)
-        one = meant_of(rivals)
+        one = find_thing(rivals)
         if one is not None:
             found[name] = one.item
         for rival in rivals:
@@ -103,7 +103,7 @@ def _once(name: str, several: list[Told]) -> list[Told]:
     ]
 
 
-def meant_of(rivals: list[Told]) -> Told | None:
+def find_thing(rivals: list[Told]) -> Told | None:
     """Return what a name means among things of that name, or None if it is refused."""
     for origin in (HERE, PROJECT):  # who registers in a program means it
         own = [told for told in rivals if told.info.distribution == origin]

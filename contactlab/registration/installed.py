@@ -14,8 +14,8 @@ from contactlab.registration.names import (
     PROJECT,
     PluginInfo,
     blocks,
-    meant,
     read_blocks,
+    resolve_name,
     same_distribution,
 )
 
@@ -70,7 +70,7 @@ def describe_offers(found: Iterable[tuple[str, str, str, str]]) -> list[PluginIn
     blocking = read_blocks()
     infos = [PluginInfo(*each, blocks(blocking, *each[:2])) for each in found]
     return [
-        attrs.evolve(info, meant=info is meant(rivals))
+        attrs.evolve(info, meant=info is resolve_name(rivals))
         for rivals in by_name(infos).values()
         for info in rivals
     ]

@@ -42,8 +42,8 @@ from contactlab.registration.names import (
     clash,
     is_place,
     kind_of,
-    meant,
     read_blocks,
+    resolve_name,
     short_name,
 )
 
@@ -99,13 +99,13 @@ class Manager(pluggy.PluginManager):
                 if self.has_plugin(name):
                     self.unregister(name=name)
         everything = describe_offers(self._found)
-        self._warn_of_unknown(everything)
+        self._warn_of_misspelling(everything)
         infos = [info for info in everything if not kinds or info.kind in kinds]
         return sorted(
             infos, key=lambda each: (RANK.get(each.kind, len(RANK)), each.name, each.distribution)
         )
 
-    def _warn_of_unknown(self, infos: list[PluginInfo]) -> None:
+    def _warn_of_misspelling(self, infos: list[PluginInfo]) -> None:
         """Warn once of each blocked name that is not installed: a misspelt name blocks nothing."""
         for entry in sorted(read_blocks() - self._warned):
             if any(blocks({entry}, info.name, info.distribution) for info in infos):
@@ -256,7 +256,7 @@ class Manager(pluggy.PluginManager):
                     self.tell(info, error)
         self._loaded.add(key)
 
-    def brought(
+    def gather(
         self, kind: str, *, only: str = "", silent: bool = True, **arguments: object
     ) -> list[Told]:
         """Return what all plug-ins bring of a kind, with the plug-in of each.
@@ -369,7 +369,7 @@ def command(word: str) -> PluginInfo | None:
             info for info in MANAGER.installed(COMMAND)
             if info.usable and info.name == f"{COMMAND}.{word}"
         ]  # fmt: skip
-        if len(rivals) > 1 and meant(rivals) is None:
+        if len(rivals) > 1 and resolve_name(rivals) is None:
             raise ValueError(clash(rivals))
     return found
 

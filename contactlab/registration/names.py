@@ -47,7 +47,7 @@ def is_place(name: str) -> bool:
     return PLACE.search(name) is not None
 
 
-def seen_from(folder: Path, name: str, *, trusted: bool) -> str:
+def name_from(folder: Path, name: str, *, trusted: bool) -> str:
     """Return a name in a file of ``folder``: the path of a law in a file begins there."""
     if re.search(r"\.py(:|$)", name):
         name = str(folder / os.path.expanduser(name))
@@ -167,7 +167,7 @@ class PluginInfo:
         return not (self.blocked or self.malformed)
 
 
-def meant(rivals: list[PluginInfo]) -> PluginInfo | None:
+def resolve_name(rivals: list[PluginInfo]) -> PluginInfo | None:
     """Return the law that a name means, among laws of that name; None if the name is refused.
 
     The name of a command of contactlab's own means no other, even where contactlab is blocked.
@@ -181,7 +181,7 @@ def meant(rivals: list[PluginInfo]) -> PluginInfo | None:
 
 def clash(rivals: list[PluginInfo]) -> str:
     """Return a sentence on a name of several distributions: its meaning, and how to choose."""
-    name, law = rivals[0].name, meant(rivals)
+    name, law = rivals[0].name, resolve_name(rivals)
     origins = " and ".join(f"{info.distribution} {info.version}" for info in rivals)
     others = [info for info in rivals if info is not law]
     written = " or ".join(repr(info.qualified) for info in others)

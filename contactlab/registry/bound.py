@@ -13,7 +13,7 @@ from contactlab.impact.cautions import name_bodies
 from contactlab.impact.material import Material
 from contactlab.impact.of_speed import spread_over
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import real, refuse, some_known, unit_remedy
+from contactlab.numeric.checks import real, real_or_nan, refuse, unit_remedy
 from contactlab.numeric.named import Named, OfImpacts, mark_of, split_heading
 from contactlab.numeric.names import nearest
 from contactlab.numeric.taken import Taken
@@ -92,12 +92,12 @@ def _from_materials(law: Law, option: Read, scene: Scene) -> Any:
     given = getattr(law, name)
     found: dict[str, Any] = {}
     for body, each in bodies.items():
-        if (own := each.material.property_named(name)) is not None:
+        if (own := each.material.find_property(name)) is not None:
             number, stated = own
             if stated and stated != unit:
                 rule = f"has the unit {stated}, and {REGISTRY.short_name(law)} reads it in {unit}"
                 raise refuse(f"{body}.material: {name}", number, rule, unit_remedy(unit))
-            found[body] = some_known(
+            found[body] = real_or_nan(
                 f"{body}.material: {name}", number, rule=option.rule, remedy=unit_remedy(unit)
             )
     told = f"Material(properties={{{name!r}: ...}}) in {unit}"

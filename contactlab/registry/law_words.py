@@ -9,8 +9,8 @@ import attrs
 import numpy as np
 
 from contactlab.contracts.law import Law, law_kind
-from contactlab.numeric.checks import shown
-from contactlab.numeric.taken import taken
+from contactlab.numeric.checks import quote
+from contactlab.numeric.taken import list_assumptions
 from contactlab.registry.registry import REGISTRY
 
 #: The address of an object without words of its own, which differs from run to run.
@@ -34,20 +34,20 @@ def in_words(law: Law) -> str:
 def own_options(law: Law) -> str:
     """Return the options that differ from their defaults, as a user writes them: ``steps=400``."""
     words = [
-        f"{option}={_shown(value)}"
+        f"{option}={_show_value(value)}"
         for name, option, default in _fields(type(law))
         if (value := getattr(law, name)) is not default and _differs(value, default)
     ]
     return ", ".join(words)
 
 
-def of_taken(*laws: Law) -> list[str]:
+def tell_assumptions(*laws: Law) -> list[str]:
     """Return a caution of each number that laws took as nobody gave it."""
     return [
         f"{name_of(law)}: no {name} given, using {value:g}. Set your own: --set "
         f"{law_kind(law)}.{name}=..."
         for law in laws
-        for name, value in taken(law).items()
+        for name, value in list_assumptions(law).items()
     ]
 
 
@@ -64,11 +64,11 @@ def _fields(law_class: type) -> tuple[tuple[str, str, object], ...]:
     return tuple((field.name, field.alias or "", field.default) for field in shown_fields)
 
 
-def _shown(value: object) -> str:
+def _show_value(value: object) -> str:
     """Return the value of an option in words, without an address."""
     if isinstance(value, np.ndarray) and value.size:
         return f"{np.min(value):.6g} to {np.max(value):.6g}, one an impact"
-    return in_words(value) if isinstance(value, Law) else ADDRESS.sub("", shown(value))
+    return in_words(value) if isinstance(value, Law) else ADDRESS.sub("", quote(value))
 
 
 def _differs(value: object, default: object) -> bool:

@@ -25,8 +25,8 @@ from contactlab.registration.names import (
     blocks,
     clash,
     is_place,
-    meant,
     read_blocks,
+    resolve_name,
     same_distribution,
     short_name,
     split_name,
@@ -130,14 +130,14 @@ class Registry:
             if len(full) == 1:  # the only law of this name
                 return self.info(f"{distribution}:{full.pop()}".removeprefix(":"))
         if not matches:
-            raise self._unknown(name)
+            raise self._refuse_name(name)
         if matches[0].malformed:
             rule = f"the name must be one of {', '.join(KINDS)}, a dot, a name in lower case"
             raise PluginError(f"{matches[0].source}: {rule}")
         usable = [info for info in matches if not info.blocked]
         if not usable:
             raise refuse("name", name, f"is blocked by {BLOCK_VARIABLE}", "unset it to use the law")
-        law = meant(usable)
+        law = resolve_name(usable)
         if law is None:
             raise ValueError(clash(usable))
         return law
@@ -224,7 +224,7 @@ class Registry:
                     self.law_class(name)
         return next((info for each, info in self._loaded.values() if each is law_class), None)
 
-    def _unknown(self, name: str) -> ValueError:
+    def _refuse_name(self, name: str) -> ValueError:
         """Return the refusal of a name that is not installed, with the nearest installed name."""
         distribution, plain = split_name(str(name))
         kind, _, short = plain.rpartition(".")

@@ -26,7 +26,7 @@ class Calls:
 
     def __init__(self, laws: Laws, executor: Executor) -> None:
         self.executor, self.answered = executor, False
-        self._sent, self._ours = _sent(laws), versions(*laws)
+        self._sent, self._ours = _pickle(laws), versions(*laws)
         self._finished: SimpleQueue[Future[Reply]] = SimpleQueue()
         self._waiting: dict[Future[Reply], Part] = {}
 
@@ -93,7 +93,7 @@ class Calls:
         return answer.piece
 
 
-def _sent(laws: Laws) -> bytes:
+def _pickle(laws: Laws) -> bytes:
     """Return the pickled laws, or refuse the first that does not pickle."""
     for kind, law in laws.by_kind().items():
         try:

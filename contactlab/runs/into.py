@@ -24,7 +24,7 @@ from contactlab.runs.fingerprints import fingerprint
 from contactlab.runs.into_folder import NAMES, ChunkFolder
 from contactlab.runs.pieces import Part, Piece
 from contactlab.runs.sweep import WHOLE_IMPACTS, block_for, cut, one_axis, solve_parts
-from contactlab.runs.target import check_folder, held
+from contactlab.runs.target import check_folder, hold_folder
 from contactlab.solve.solve import accept_scene
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ MARCHED_AT_A_TIME = 1000
 AHEAD = 32
 
 
-def swept_into(
+def sweep_into(
     laws: Laws,
     scenes: Scene | GridParts | Iterable[Scene],
     folder: str | Path,
@@ -78,7 +78,7 @@ def swept_into(
     def parts(target: ChunkFolder) -> Iterator[Part]:
         nonlocal done, stop
         for scene in itertools.chain([begin], later):
-            _bound_alike(given, laws, scene)
+            _refuse_unlike(given, laws, scene)
             accept_scene(laws, scene)
             before, block = stop, block_for(laws, scene)
             usual = IMPACTS_AT_A_TIME if block == WHOLE_IMPACTS else MARCHED_AT_A_TIME
@@ -98,7 +98,7 @@ def swept_into(
                 yield part
         target.compare(solve, result_of)
 
-    with held("into", folder, laws, more, form) as (path, sweep):
+    with hold_folder("into", folder, laws, more, form) as (path, sweep):
         target = ChunkFolder(path, sweep, form)
         pieces = solve(unsolved(target), ahead=AHEAD)
         try:
@@ -121,7 +121,7 @@ def swept_into(
     return SweepFolder(path)
 
 
-def _bound_alike(given: Laws, laws: Laws, scene: Scene) -> None:
+def _refuse_unlike(given: Laws, laws: Laws, scene: Scene) -> None:
     """Refuse a batch for which materials give other options than for the first."""
     if bind(given, scene)[0] != laws:
         rule = "has materials whose properties give its laws other options than the first batch's"

@@ -29,7 +29,7 @@ from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.sweep_folder import about_of
 from contactlab.runs.pieces import Part, Piece
 from contactlab.runs.recomputed import Finished, Sample, refuse_other_bits
-from contactlab.runs.target import written_piece
+from contactlab.runs.target import write_piece
 
 #: Codes of statuses; that of success is 0.
 CODES = {status: code for code, status in enumerate(Status)}
@@ -116,7 +116,7 @@ class ChunkFolder:
             sums={name: checksum(values) for name, values in arrays.items()},
             computer=piece.computer,
         )
-        with written_piece("into", self.folder, piece.chunk, "impacts", self.form) as stream:
+        with write_piece("into", self.folder, piece.chunk, "impacts", self.form) as stream:
             # A sweep that grew and was stopped is not the one that was finished.
             (self.folder / self.form.finished).unlink(missing_ok=True)
             self.form.write(stream, arrays, about, NAMES)

@@ -29,7 +29,7 @@ from contactlab.registry.composition import Laws
 from contactlab.runs.fingerprints import fingerprint
 from contactlab.runs.pieces import Part, Piece
 from contactlab.runs.recomputed import Finished, Sample, numbers_of, refuse_other_bits
-from contactlab.runs.target import held, written_piece
+from contactlab.runs.target import hold_folder, write_piece
 
 
 class Kept:
@@ -46,7 +46,7 @@ class Kept:
         arrays = _arrays(piece) | {"sweep": np.array(self.sweep)}
         arrays["checksum"] = np.array(_checksum(arrays))
         of = f"of {self.scene.shape[0]} impacts"
-        with written_piece("keep", self.folder, piece.chunk, of) as stream:
+        with write_piece("keep", self.folder, piece.chunk, of) as stream:
             np.savez(stream, **arrays)
 
     def compare(
@@ -91,10 +91,10 @@ class Kept:
 
 
 @contextlib.contextmanager
-def kept_in(folder: str | Path, laws: Laws, scene: Scene, block: int) -> Iterator[Kept]:
+def keep_in(folder: str | Path, laws: Laws, scene: Scene, block: int) -> Iterator[Kept]:
     """Hold the folder of a sweep, and yield its pieces."""
     more = {"impacts": scene.shape[0], "scene": fingerprint(scene), "block": block}
-    with held("keep", folder, laws, more) as (path, sweep):
+    with hold_folder("keep", folder, laws, more) as (path, sweep):
         yield Kept(path, sweep, scene)
 
 

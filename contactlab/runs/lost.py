@@ -52,7 +52,7 @@ class Rescue:
         broken = isinstance(lost[0].error, BrokenExecutor)
         if self.ends >= MOST_ENDS or (broken and not self._replace(pool, 1)):
             for part, error in lost:
-                yield self._given_up(part, error)
+                yield self._give_up(part, error)
             return []
         # A pool takes parts in order: one of those that it was solving has ended a process.
         suspects = pool._max_workers if broken else len(lost)
@@ -64,7 +64,7 @@ class Rescue:
             self._replace(pool, pool._max_workers)
         return [part for part, _ in lost[suspects:]]
 
-    def _given_up(self, part: Part, error: Exception) -> Piece:
+    def _give_up(self, part: Part, error: Exception) -> Piece:
         """Return the piece of a part that the same sweep tries again."""
         started = self.calls.answered or self._pool is not None
         remedy = "" if started else f"; {MAIN_REMEDY}"
@@ -79,10 +79,10 @@ class Rescue:
             return answer
         self.ends += 1
         if not isinstance(answer, BrokenExecutor):
-            return self._given_up(part, answer)
+            return self._give_up(part, answer)
         self._replace(self.calls.executor, 1)
         if part.chunk.size == 1 or self.ends >= MOST_ENDS:
-            return self._given_up(part, answer)
+            return self._give_up(part, answer)
         return Piece.join([self._alone(half) for half in halves(part)])
 
     def _replace(self, pool: Executor, workers: int) -> bool:

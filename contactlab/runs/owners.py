@@ -14,7 +14,7 @@ from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import real, refuse, shown
+from contactlab.numeric.checks import quote, real, refuse
 from contactlab.numeric.names import REMARKS, SYMBOLS, nearest
 from contactlab.numeric.taken import Taken
 from contactlab.registration.names import full_name, kind_of
@@ -65,13 +65,13 @@ def remedy_of(name: str, value: object) -> str:
     known = options(at_hand=True)
     if name in known:
         law = known[name][0]
-        made = f"create({law!r}, {name}={shown(value)})"
+        made = f"create({law!r}, {name}={quote(value)})"
         return f"{name} belongs to {law}: write {kind_of(law)}={made}; "
     if not isinstance(value, str):  # a name is that of a law
         for entry in (name, *SYMBOLS.get(name, ())):
             for made, call in OF_SCENES.items():
                 if entry in signature(call).parameters:
-                    given = "..." if name in REMARKS else shown(value)
+                    given = "..." if name in REMARKS else quote(value)
                     return f"{name} belongs to the scene: write {made}(..., {entry}={given}); "
     near = nearest(name, known, alike=0.75)
     return f"{near}It is an option of a law; " if near else ""
@@ -91,7 +91,7 @@ def with_restitution(law: Law, restitution: object) -> str:
     return f"create({name!r}, restitution={restitution!r})"
 
 
-def restituted(normal: object, restitution: object) -> Any:
+def normal_of_restitution(normal: object, restitution: object) -> Any:
     """Return the normal law of a restitution, or a named one with it; None for elastic bodies.
 
     Raises

@@ -16,9 +16,9 @@ from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import succeeded
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import taken
+from contactlab.numeric.arrays import take
 from contactlab.numeric.checks import of_kind, refuse
-from contactlab.numeric.names import arguments_told
+from contactlab.numeric.names import tell_arguments
 from contactlab.numeric.types import Array, Each, Numbers
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory, Recorder
 from contactlab.outcome.motion import Motion, without_failures
@@ -49,7 +49,7 @@ FOR_FILES = "of a file: case = read_scene(path); case.laws.simulation().run(case
 FOR_BODIES = "for bodies in space use collide(encounter, simulation), or encounter.scene"
 
 
-@arguments_told
+@tell_arguments
 @attrs.frozen(kw_only=True, init=False)
 class Simulation:
     """A normal law, a tangential law and an integrator that fit together.
@@ -98,9 +98,9 @@ class Simulation:
     ) -> None:
         own = normal
         if restitution is not None:
-            from contactlab.runs.owners import restituted  # most simulations name laws
+            from contactlab.runs.owners import normal_of_restitution  # most simulations name laws
 
-            own = restituted(normal, restitution)
+            own = normal_of_restitution(normal, restitution)
         self._set(composition.compose(own, tangential, integrator), normal, restitution)
 
     @staticmethod
@@ -205,7 +205,7 @@ class Simulation:
         columns, motion = solve.outcome(ways, flat, history, recorder)
         if flat is not scene:
             place = np.arange(flat.shape[0]).reshape(scene.shape)
-            columns, motion = columns.take(place), taken(motion, flat.shape, place)
+            columns, motion = columns.take(place), take(motion, flat.shape, place)
         plan = plan_of(laws, scene, columns, motion, history, estimated=estimate_error)
         kept = NO_HISTORY if recorder is None else recorder.history()
         result = _result(ways, scene, plan, motion, started, kept)
@@ -328,7 +328,7 @@ class Simulation:
         """
         from contactlab.impact.grid import GridParts
         from contactlab.numeric.progress import follow
-        from contactlab.runs.sweep import one_axis, swept  # a single run needs none of this
+        from contactlab.runs.sweep import one_axis, sweep_columns  # a single run needs none of this
 
         started = time.perf_counter()
         options: dict[str, Any] = {"chunk": chunk, "executor": executor}
@@ -347,7 +347,7 @@ class Simulation:
         laws, batch = bind(self.laws, batch)
         ways = solve.accept_scene(laws, batch)
         with follow(progress, "impacts") as count:
-            columns, motion = swept(laws, batch, keep=keep, progress=count, **options)
+            columns, motion = sweep_columns(laws, batch, keep=keep, progress=count, **options)
         return _result(ways, batch, plan_of(laws, batch, columns, motion), motion, started)
 
     def _into(
@@ -358,7 +358,7 @@ class Simulation:
         options: Any,
     ) -> SweepFolder:
         """Return the folder of a sweep that is written as it goes."""
-        from contactlab.runs.into import swept_into  # needed with ``into`` only
+        from contactlab.runs.into import sweep_into  # needed with ``into`` only
 
         if keep is not None:
             remedy = "give one: into resumes too; keep returns the result"
@@ -372,7 +372,7 @@ class Simulation:
             plan = plan_of(own, scene, piece.columns, piece.motion)
             return _result(solve.ways(own, scene), scene, plan, piece.motion, time.perf_counter())
 
-        return swept_into(laws, scenes, into, result_of=result_of, **options)
+        return sweep_into(laws, scenes, into, result_of=result_of, **options)
 
     def normal_motion(self, scene: Scene) -> NormalMotion:
         """Return the approach without friction; all values are NaN if the normal law fails.

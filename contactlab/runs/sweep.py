@@ -57,7 +57,7 @@ def solve_parts(
     return pieces_of(laws, parts, executor, ahead=ahead)
 
 
-def swept(
+def sweep_columns(
     laws: Laws,
     scene: Scene,
     *,
@@ -72,7 +72,7 @@ def swept(
     step = math.ceil(whole("chunk", block if chunk is None else chunk) / block) * block
     solve = partial(solve_parts, laws, executor=executor)
     plain = batches.drop_varying(scene)
-    with _kept(keep, laws, scene, block) as kept:
+    with _keep_pieces(keep, laws, scene, block) as kept:
         finished = [] if kept is None else kept.pieces()
         done = sum(piece.chunk.size for piece in finished)
         missing = cut(_gaps(finished, size), step)
@@ -105,15 +105,15 @@ def swept(
     return columns, Motion.join([piece.motion for piece in finished], (size,))
 
 
-def _kept(
+def _keep_pieces(
     keep: str | Path | None, laws: Laws, scene: Scene, block: int
 ) -> AbstractContextManager[Kept | None]:
     """Return a context with the folder of finished pieces, or with None."""
     if keep is None:
         return contextlib.nullcontext()
-    from contactlab.runs.kept import kept_in  # needed with ``keep`` only
+    from contactlab.runs.kept import keep_in  # needed with ``keep`` only
 
-    return kept_in(keep, laws, scene, block)
+    return keep_in(keep, laws, scene, block)
 
 
 def one_axis(scene: Scene) -> None:

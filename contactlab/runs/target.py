@@ -38,7 +38,7 @@ def check_folder(argument: str, folder: object) -> Path:
 
 
 @contextlib.contextmanager
-def held(
+def hold_folder(
     argument: str, folder: str | Path, laws: Laws, more: Mapping[str, object], form: Form = NPZ
 ) -> Iterator[tuple[Path, str]]:
     """Hold the folder of a sweep, made if there is none; yield it with the sweep's fingerprint.
@@ -120,7 +120,7 @@ def _write(descriptor: int, words: bytes) -> None:
 
 
 @contextlib.contextmanager
-def written_piece(
+def write_piece(
     argument: str, folder: Path, chunk: Chunk, of: str, form: Form = NPZ
 ) -> Iterator[IO[bytes]]:
     """Return a stream of a chunk's file; ``of`` ends "holds 80 of 150 impacts" in an error."""

@@ -19,7 +19,7 @@ from contactlab.registration.names import (
     full_name,
     is_place,
     kind_of,
-    seen_from,
+    name_from,
     short_name,
     split_name,
 )
@@ -278,7 +278,7 @@ def read_laws(content: object, folder: Path, *, allow_code: bool) -> LawChoice:
             raise ValueError(f"simulation.{key}: belongs to {having[0]}; {remedy}")
     table = Table(content, "simulation", known=known)
     names = {
-        kind: seen_from(folder, table.text(kind), trusted=allow_code)
+        kind: name_from(folder, table.text(kind), trusted=allow_code)
         for kind in KINDS
         if table.has(kind)
     }

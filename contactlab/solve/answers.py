@@ -18,7 +18,7 @@ from contactlab.contracts.tangential import Errors, TangentialLaw
 from contactlab.contracts.tangential_motion import Observer, Sample, TangentialMotion
 from contactlab.contracts.whole_impact import WholeImpact
 from contactlab.numeric.arrays import lock_arrays
-from contactlab.numeric.checks import shown
+from contactlab.numeric.checks import quote
 from contactlab.numeric.types import Real
 
 Mask = NDArray[np.bool_]
@@ -161,7 +161,7 @@ def _check_answer(answer: WholeImpact, law: TangentialLaw, shape: tuple[int, ...
     for name in ("slip_velocity_change", "friction_work", "shear_loss", "normal_spin_change"):
         entry = getattr(answer, name)
         if type(entry) is not float and faults.is_malformed(entry, shape):
-            sentence = faults.sentence(law, f"the answer {shown(entry)} to a whole impact", 1)
+            sentence = faults.sentence(law, f"the answer {quote(entry)} to a whole impact", 1)
             raise faults.LawFaultError(Status.MALFORMED, sentence)
     if not (type(answer.psi2_error) is float and answer.psi2_error >= 0.0):
         judges.judge_errors(law, Errors(answer.psi2_error), shape)
@@ -182,13 +182,13 @@ def check_motion(
     ``axes`` are those of a slip velocity beside the batch's.
     """
     if not isinstance(motion, TangentialMotion):
-        raise TypeError(f"gave {shown(motion)}, not a TangentialMotion")
+        raise TypeError(f"gave {quote(motion)}, not a TangentialMotion")
     for name, own in ("slip_velocity_change", axes), ("friction_work", ()), ("shear_loss", ()):
         value, whole = getattr(motion, name), (*shape, *own)
         if not (type(value) is float and not whole) and faults.is_malformed(value, whole):
-            raise TypeError(f"{name} = {shown(value)}: must be real, of shape {whole}")
+            raise TypeError(f"{name} = {quote(value)}: must be real, of shape {whole}")
     if not _of_each(motion.status, shape):
-        raise TypeError(f"status = {shown(motion.status)}: must be a Status for each impact")
+        raise TypeError(f"status = {quote(motion.status)}: must be a Status for each impact")
     return motion
 
 

@@ -18,7 +18,7 @@ from contactlab.contracts.tangential_motion import Observer
 from contactlab.impact import kinetics
 from contactlab.impact.cautions import OUTSIDE
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import chosen, every, spread
+from contactlab.numeric.arrays import choose, every, spread
 from contactlab.numeric.types import Array, Index, Real
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
@@ -80,7 +80,7 @@ class Coupled(Way):
         scene, laws = self.scene, self.laws
         law, integrator = laws.capability.coupled, laws.integrator
         law = law if scene.links is None else None
-        code = chosen(separates(normal), MARCHED if law is None else 0, ENDLESS)
+        code = choose(separates(normal), MARCHED if law is None else 0, ENDLESS)
         errors: object
         if type(normal) is FailedMotion:  # no law is asked about an approach that is not known
             errors = Errors()

@@ -69,5 +69,5 @@ class UnfollowedMotion(_UnknownMotion):
 
     def take(self, part: Index) -> UnfollowedMotion:
         """Return the motion of some impacts."""
-        rate = batch.taken(self.final_rate, self.scene.shape, part)
+        rate = batch.take(self.final_rate, self.scene.shape, part)
         return UnfollowedMotion(self.law, self.scene.take(part), rate)

@@ -11,13 +11,13 @@ import numpy as np
 
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
-from contactlab.impact.body_cautions import taken_of_bodies
+from contactlab.impact.body_cautions import tell_radii
 from contactlab.impact.body_contact import spin_about
 from contactlab.impact.gathering import Gathering
 from contactlab.numeric.types import Array, Mask
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import Clause, Clauses, Plan, Words
-from contactlab.registry.law_words import in_words, name_of, of_taken
+from contactlab.registry.law_words import in_words, name_of, tell_assumptions
 from contactlab.solve.coupled import Coupled
 from contactlab.solve.way import ask
 
@@ -212,7 +212,7 @@ class _Words:
         yield from self._weights()
         yield from self._turning()
         yield from self._of_laws()
-        for text in of_taken(self.laws.normal, self.laws.tangential):
+        for text in tell_assumptions(self.laws.normal, self.laws.tangential):
             yield self._everywhere(text)
 
     def _gaps(self, plan: GatheringPlan) -> Iterator[Clause]:
@@ -316,7 +316,7 @@ class _Words:
             laws = self.laws.normal, self.laws.tangential
             told = [text for law in laws for text in ask(law, law.cautions, alone, normal)]
             told += NormalLaw.cautions(self.laws.normal, alone, normal)
-            told += taken_of_bodies(encounter, several=True)
+            told += tell_radii(encounter, several=True)
             for text in dict.fromkeys(told):
                 said.setdefault(text, []).append(k)
         for text, numbers in said.items():

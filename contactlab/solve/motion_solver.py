@@ -11,7 +11,7 @@ from contactlab.contracts import faults, judges
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import shown
+from contactlab.numeric.checks import quote
 from contactlab.numeric.lobatto import lobatto, rows
 from contactlab.numeric.runge_kutta import attempt
 from contactlab.numeric.types import Array
@@ -106,9 +106,9 @@ class Solver:
             course = np.einsum("min,nci->mci", weights, course)
             contacts = self._contacts(course)
         if not np.isfinite(contacts[:, (0, 1, 3)][..., taken]).all():
-            raise law.fault(Status.NON_FINITE, f"the answer {shown(contacts[:, 0].max())}")
+            raise law.fault(Status.NON_FINITE, f"the answer {quote(contacts[:, 0].max())}")
         if not np.isfinite(contacts[0, [0, 3]][:, law.active]).all():
-            raise law.fault(Status.NON_FINITE, f"the answer {shown(contacts[0, 3].max())}")
+            raise law.fault(Status.NON_FINITE, f"the answer {quote(contacts[0, 3].max())}")
         largest = law.radius[taken], 1.0 / law.response[taken]
         if words := judges.below_zero(contacts[:, 1, taken], contacts[:, 3, taken], largest):
             raise law.fault(Status.MALFORMED, words)

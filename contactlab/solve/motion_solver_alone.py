@@ -12,7 +12,7 @@ from contactlab.contracts import faults, judges
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import shown
+from contactlab.numeric.checks import quote
 from contactlab.numeric.lobatto import lobatto
 from contactlab.numeric.runge_kutta import Alone as Step
 from contactlab.solve import normal_steps as rule
@@ -108,7 +108,7 @@ class Alone:
         self._plan(step.error, width, rule.sure_part(until, doubt), taken)
         if not taken:
             if not math.isfinite(begin.force + begin.load):  # a shorter step begins there too
-                raise law.fault(Status.NON_FINITE, f"the answer {shown(begin.load)}")
+                raise law.fault(Status.NON_FINITE, f"the answer {quote(begin.load)}")
             self.seen = begin
             self._abandon(self.place[1], begin.force, taken=False)
             return 0.0, None
@@ -118,7 +118,7 @@ class Alone:
             asked = self.points[len(contacts) : -1]
             contacts += [*(self._contact(step.at(point)) for point in asked), end]
         if not all(math.isfinite(each.force + each.radius + each.load) for each in contacts):
-            raise law.fault(Status.NON_FINITE, f"the answer {shown(contacts[-1].force)}")
+            raise law.fault(Status.NON_FINITE, f"the answer {quote(contacts[-1].force)}")
         radius, load = min(each.radius for each in contacts), min(each.load for each in contacts)
         if (radius < 0.0 or load < 0.0) and (
             words := judges.below_zero(radius, load, self.largest)

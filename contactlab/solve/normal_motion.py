@@ -18,7 +18,7 @@ from contactlab.impact import batches
 from contactlab.impact.batches import NoIndexError
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every
-from contactlab.numeric.checks import shown
+from contactlab.numeric.checks import quote
 from contactlab.solve.failed_motion import FailedMotion, UnfollowedMotion
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def _solve_closed_form(law: ClosedFormNormalLaw, scene: Scene) -> NormalMotion:
     try:
         motion = law.motion(scene)
         if NormalMotion not in type(motion).__mro__:  # isinstance of an abstract class is slow
-            raise TypeError(f"motion returned {shown(motion)}, which is no NormalMotion")
+            raise TypeError(f"motion returned {quote(motion)}, which is no NormalMotion")
         if motion.scene is not scene:
             raise ValueError("motion returned the motion of another scene")
     except BaseException as error:

@@ -10,7 +10,7 @@ from typing import Any
 
 from contactlab.contracts import faults
 from contactlab.contracts.status import Status
-from contactlab.numeric.arrays import chosen, greater
+from contactlab.numeric.arrays import choose, greater
 from contactlab.numeric.types import Mask, Real
 from contactlab.solve.scaled_normal_law import ScaledNormalLaw
 
@@ -47,29 +47,29 @@ SHORTEST = 1e-15
 
 def doubt(error: Real, width: Real) -> Any:
     """Return the uncertainty of an event's place over the way to it; 1 if it cannot be located."""
-    blur: Any = DOUBT * TOLERANCE * error / chosen(width > 0.0, width, 1.0)
-    least = chosen(blur < MOST_DOUBT, blur, MOST_DOUBT)
-    return chosen(error <= 1.0, 0.0, chosen(error < TRUSTED, least, 1.0))
+    blur: Any = DOUBT * TOLERANCE * error / choose(width > 0.0, width, 1.0)
+    least = choose(blur < MOST_DOUBT, blur, MOST_DOUBT)
+    return choose(error <= 1.0, 0.0, choose(error < TRUSTED, least, 1.0))
 
 
 def sure_part(until: Real, doubt: Real) -> Any:
     """Return the fraction of a step that is surely before an event ``until`` its fraction."""
-    return chosen(until < 1.0, until * (1.0 - doubt), 1.0)
+    return choose(until < 1.0, until * (1.0 - doubt), 1.0)
 
 
 def sets_width(missed: Mask, sure: Real, width: Real, allowed: Real) -> Any:
     """Return whether a step sets the next width: none that an event shortened, or missed over."""
-    return chosen(missed, sure == 1.0, width == allowed)
+    return choose(missed, sure == 1.0, width == allowed)
 
 
 def next_width(width: Real, factor: Real) -> Any:
     """Return the width after a step, by the factor that its error allows."""
-    return width * chosen(factor > GROWTH, GROWTH, greater(factor, SHRINKAGE))
+    return width * choose(factor > GROWTH, GROWTH, greater(factor, SHRINKAGE))
 
 
 def next_event(width: Real, sure: Real, rejected: Mask) -> Any:
     """Return the time until the event over which a step was rejected; infinite without one."""
-    return chosen(rejected, chosen(sure < 1.0, sure * width, math.inf), math.inf)
+    return choose(rejected, choose(sure < 1.0, sure * width, math.inf), math.inf)
 
 
 def too_short(law: ScaledNormalLaw) -> faults.LawFaultError:

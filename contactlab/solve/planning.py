@@ -18,14 +18,14 @@ from contactlab.impact.cautions import (
     name_bodies,
     of_ellipse,
     rigid_bodies,
+    tell_yield,
     three_numbers,
     unit_slips,
     unlikely,
-    yield_unknown,
 )
 from contactlab.impact.hertz import elongation_of
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import every, some, spread, taken
+from contactlab.numeric.arrays import every, some, spread, take
 from contactlab.numeric.types import Real
 from contactlab.outcome.energy import ledger
 from contactlab.outcome.motion import ENDS, Motion
@@ -40,7 +40,7 @@ from contactlab.outcome.plan import (
 )
 from contactlab.registration.bring import sound
 from contactlab.registry.composition import Laws
-from contactlab.registry.law_words import in_words, name_of, of_taken
+from contactlab.registry.law_words import in_words, name_of, tell_assumptions
 from contactlab.solve.answers import Mask
 from contactlab.solve.normal_motion import normal_motion, try_normal
 from contactlab.solve.solve import ways
@@ -87,7 +87,7 @@ def plan_of(
         said = []
         for way in found:
             some_columns = columns.take(way.where)
-            moved = None if motion is None else taken(motion, scene.shape, way.where)
+            moved = None if motion is None else take(motion, scene.shape, way.where)
             kinds = _words(laws, way, scene.take(way.where), some_columns, moved, asked_for)
             said.append((way.where, Plan(some_columns, kinds)))
         return Plan.merge(said, scene.shape).words
@@ -137,7 +137,7 @@ def _words(
     if _loses_in_pressure_alone(way):
         name = name_of(used.tangential)
         left_out.append(Clause(f"loss in shear: {name} has none", masks.known))
-    words, unknown, pressure = yield_unknown(scene)
+    words, unknown, pressure = tell_yield(scene)
     if words and "plastic" not in used.capability.normal_claims:
         left_out.append(Clause(words, masks.known & unknown, (pressure,)))
     absent = [*_absent(way), *_no_history(asked_for.history, columns, masks.marched)]
@@ -215,7 +215,11 @@ def _cautions(
         if "elliptic" not in words:
             said += of_ellipse(whole, name_of(law))
     own = [text for text in dict.fromkeys(of_laws) if text not in said]
-    said += [*own, *way.own_cautions(bool(own)), *of_taken(way.laws.normal, way.laws.tangential)]
+    said += [
+        *own,
+        *way.own_cautions(bool(own)),
+        *tell_assumptions(way.laws.normal, way.laws.tangential),
+    ]
     said += [
         f"{told.item} ({told.info.distribution})"
         for told in sound("cautions", str, silent=False, scene=whole, laws=laws)
@@ -233,7 +237,7 @@ def _motion_of(laws: Laws, scene: Scene, motion: Motion | None, where: Mask) -> 
     if motion is None:
         return try_normal(laws, part)
     return _AfterRun(
-        laws.normal, part, motion if every(where) else taken(motion, scene.shape, where)
+        laws.normal, part, motion if every(where) else take(motion, scene.shape, where)
     )
 
 

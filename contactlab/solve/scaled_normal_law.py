@@ -14,7 +14,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat, lock_arrays
-from contactlab.numeric.checks import shown
+from contactlab.numeric.checks import quote
 from contactlab.numeric.types import Array, Real
 
 #: Types of an entry of a contact that are always well formed.
@@ -98,14 +98,14 @@ class ScaledNormalLaw:
             with np.errstate(all="ignore"):  # restores the settings if the law changes them
                 contact, state = self.law.respond(self.state, approach, rate)
             if not isinstance(contact, NormalContact):
-                raise TypeError(f"respond gave {shown(contact)}, not a NormalContact")
+                raise TypeError(f"respond gave {quote(contact)}, not a NormalContact")
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # a plug-in may not end the process
             raise self.fault(Status.LAW_RAISED, faults.tell_error(error)) from error
         for entry in contact:
             if type(entry) not in PLAIN and faults.is_malformed(entry, self.shape):
-                raise self.fault(Status.MALFORMED, f"the answer {shown(entry)}")
+                raise self.fault(Status.MALFORMED, f"the answer {quote(entry)}")
         return contact, state
 
     def _per_item(self, entry: Real) -> Any:

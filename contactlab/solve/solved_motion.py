@@ -250,7 +250,7 @@ class SolvedMotion(NormalMotion):
         scene, table = self.scene.take(part), self.table
         if table.shape:
             table = table.take(np.arange(math.prod(table.shape)).reshape(table.shape)[part])
-        units = Units._make(batch.taken(each, self.scene.shape, part) for each in self.units)
+        units = Units._make(batch.take(each, self.scene.shape, part) for each in self.units)
         return SolvedMotion(self.law, scene, table, self.first, units)
 
 

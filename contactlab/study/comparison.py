@@ -11,7 +11,7 @@ import numpy as np
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.names import attributes_told
+from contactlab.numeric.names import tell_attributes
 from contactlab.numeric.progress import Count, follow
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.result import ImpactResult
@@ -37,7 +37,7 @@ EXACT = 1e-6
 LONG_RUN = 2.0
 
 
-@attributes_told
+@tell_attributes
 @attrs.frozen(kw_only=True, eq=False)
 class Comparison(Tabled):
     """Laws side by side; the first law is the reference of the others.

@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 
 from contactlab.impact.bodies import Sphere
-from contactlab.impact.body_contact import seen, sides
+from contactlab.impact.body_contact import resolve_velocity, sides
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array, Real
 from contactlab.numeric.vectors import components, dot
@@ -216,7 +216,7 @@ def _check_speed(file: SceneFile, table: Measurements) -> None:
     scene = file.scene if file.scene.along else file.of_spheres
     normal, along = scene.normal_speed, scene.tangential_velocity
     if scene.along and file.encounter is not None:
-        normal, along = seen(scene, file.encounter.velocity)
+        normal, along = resolve_velocity(scene, file.encounter.velocity)
     own = {"speed": np.hypot(normal, along), "normal_speed": np.asarray(normal)}
     for name in own.keys() & table.given.keys() - file.varied.keys():
         measured, in_scene = float(np.mean(table.given[name])), float(np.mean(own[name]))

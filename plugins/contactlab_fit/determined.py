@@ -8,7 +8,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from contactlab.impact.body_contact import seen
+from contactlab.impact.body_contact import resolve_velocity
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array
 from contactlab.outcome.columns import foreign
@@ -260,7 +260,7 @@ def _candidates_in_units(first: Scene) -> Scene:
 
 def _candidates_of_bodies(scene: Scene) -> Scene:
     """Return candidate impacts of a body, on a surface at rest."""
-    before = np.hypot(*seen(scene, scene.encounter.velocity))
+    before = np.hypot(*resolve_velocity(scene, scene.encounter.velocity))
     speed, angle = float(np.median(before)), np.radians(ANGLES_DEG)[:, None]
     met = scene.encounter.take(0)
     n = met.normal / np.linalg.norm(met.normal)

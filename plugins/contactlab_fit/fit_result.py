@@ -11,7 +11,7 @@ import numpy as np
 
 from contactlab.impact.scene import entry_unit
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.names import attributes_told
+from contactlab.numeric.names import tell_attributes
 from contactlab.numeric.types import Array, Numbers
 from contactlab.outcome.columns import QUANTITIES, json_value
 from contactlab.outcome.result import ImpactResult
@@ -54,7 +54,7 @@ class Estimate:
     robust: float | None = None
 
 
-@attributes_told
+@tell_attributes
 @attrs.frozen(kw_only=True, eq=False, repr=False)
 class Fit(Tabled):
     """Best parameters, their errors, and the residuals.

@@ -18,7 +18,7 @@ from contactlab.outcome.motion import ENDS, Motion
 from contactlab.outcome.plan import Clause, Plan, PlanColumns, Words
 from contactlab.outcome.result import ImpactResult
 from contactlab.registry import composition
-from contactlab.registry.law_words import of_taken
+from contactlab.registry.law_words import tell_assumptions
 from contactlab.runs.simulation import Simulation
 
 #: The normal law behind ``rebound(restitution=)``.
@@ -72,7 +72,7 @@ def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
 
     def clauses() -> Words:
         said = (*unit_slips(scene), *laws.normal.cautions(scene, course), *coupling(scene))
-        said += tuple(of_taken(laws.normal, laws.tangential))
+        said += tuple(tell_assumptions(laws.normal, laws.tangential))
         if lossy:
             said += laws.tangential.cautions(scene, course)
         return (), (), tuple(Clause(text, everywhere) for text in dict.fromkeys(said))

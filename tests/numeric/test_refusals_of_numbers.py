@@ -191,7 +191,7 @@ def test_what_cannot_be_shown_is_named_by_its_class():
         def __repr__(self):
             raise RuntimeError
 
-    assert checks.shown(Mute()) == "a Mute"
-    assert checks.shown("x" * 30, most=10) == "'xxxxxx..."
-    assert checks.shown("abc", most=5) == "'abc'"
+    assert checks.quote(Mute()) == "a Mute"
+    assert checks.quote("x" * 30, most=10) == "'xxxxxx..."
+    assert checks.quote("abc", most=5) == "'abc'"
     assert str(checks.refuse("x", 1, "is bad")) == "x = 1: is bad"

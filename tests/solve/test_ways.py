@@ -77,7 +77,7 @@ from tests.solve.mistaken import (
 def test_the_index_is_numbered(scene):
     if not scene.shape:
         assert scene.index == 0
-        assert scene.numbered(7).index == 7
+        assert scene.with_index(7).index == 7
         return
     assert scene.index.tolist() == [0, 1, 2, 3, 4, 5]
     assert scene.take(slice(1, 3)).index.tolist() == [1, 2]
@@ -720,7 +720,7 @@ def test_an_impact_that_fails_takes_no_other_with_it(scene, integrator, law, sta
 
 @each_batch
 def test_one_of_thousands_that_raises_costs_that_impact_alone(scene):
-    batch = scene.take(np.resize(np.arange(3), 2001)).numbered(np.arange(2001))
+    batch = scene.take(np.resize(np.arange(3), 2001)).with_index(np.arange(2001))
     result = Simulation(tangential=Liar("raises"), integrator="symplectic").sweep(batch)
     assert list(result.failures) == [1]
     assert statuses(result)[1] == "LAW_RAISED"

@@ -21,7 +21,7 @@ from contactlab import (
     load_path,
 )  # fmt: skip
 from contactlab.contracts import SteppedTangentialLaw
-from contactlab.numeric.names import arguments_told
+from contactlab.numeric.names import tell_arguments
 
 STEEL = Material.named("steel")
 #: E in GPa, as a handbook lists it.
@@ -197,7 +197,7 @@ def test_errors_from_within_and_missing_protocols_stay_what_they_are():
     assert pickle.loads(pickle.dumps(RESULT)).psi2 == RESULT.psi2
 
 
-@arguments_told
+@tell_arguments
 class Broken:
     def __init__(self, value):
         raise TypeError("unorderable")

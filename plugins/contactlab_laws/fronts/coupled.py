@@ -19,7 +19,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.hertz import DURATION_CONSTANT, hertz_scales
-from contactlab.numeric.arrays import chosen, some, spread_object
+from contactlab.numeric.arrays import choose, some, spread_object
 from contactlab.numeric.types import Array, Mask
 from contactlab.numeric.vectors import entry, join_components
 from contactlab_laws.fronts import compiled
@@ -67,14 +67,14 @@ def motion(
     rate, psi, work, time, radius, times, counted = rows
     pressed = entry(W, 0, 0)
     unit = mu * speed / kappa
-    change = chosen(smooth, -2.0 * speed * entry(W, 0, 1) / pressed, psi * unit)
+    change = choose(smooth, -2.0 * speed * entry(W, 0, 1) / pressed, psi * unit)
     # over v1²/(2 W_nn): 2.5 rho work (theory §14)
     energy = 1.25 * mu * mu / kappa * speed * speed / pressed
     approach = radius * radius
     ends = (
         time * scales.approach / speed, rate * speed, radius * scales.radius,
         approach * scales.approach, radius * approach * scales.force, 0.0 * work,
-        chosen(times == times, times, 0.0),
+        choose(times == times, times, 0.0),
     )  # fmt: skip
     return TangentialMotion(
         slip_velocity_change=change,

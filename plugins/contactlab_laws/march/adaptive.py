@@ -135,7 +135,7 @@ class Adaptive(CoupledIntegrator):
         if scene.shape:
             failed = before.status != Status.SUCCESS
             everywhere = np.ones(scene.shape, dtype=bool)
-            parts = [(everywhere, motion), (failed, batch.taken(before, scene.shape, failed))]
+            parts = [(everywhere, motion), (failed, batch.take(before, scene.shape, failed))]
             steps = motion.counters
             motion = attrs.evolve(TangentialMotion.merge(parts, scene.shape), counters=steps)
         if observer is not None:
@@ -164,7 +164,7 @@ class Adaptive(CoupledIntegrator):
             return last, finer
         if not scene.shape:
             return self._double_coupled(scene, normal, law, finer, last)
-        middle = batch.taken(last, scene.shape, left)
+        middle = batch.take(last, scene.shape, left)
         more, most = self._double_coupled(
             scene.take(left), normal.take(left), law, finer[left], middle
         )
@@ -198,7 +198,7 @@ class Adaptive(CoupledIntegrator):
             return last.failing(unresolved, Status.UNRESOLVED, sentence)
         if not shape or unresolved.all():
             return self._double(normal, law, 2 * count, (before[1], last), tried + count)
-        middle, fine = (batch.taken(motion, shape, unresolved) for motion in (before[1], last))
+        middle, fine = (batch.take(motion, shape, unresolved) for motion in (before[1], last))
         finer = self._double(normal.take(unresolved), law, 2 * count, (middle, fine), 0)
         parts = ((np.ones_like(unresolved), last), (unresolved, finer))
         merged = TangentialMotion.merge(parts, shape)

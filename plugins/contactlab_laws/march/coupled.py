@@ -32,7 +32,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
-from contactlab.numeric.arrays import chosen, lock_arrays, spread_object
+from contactlab.numeric.arrays import choose, lock_arrays, spread_object
 from contactlab.numeric.types import Mask, Real
 from contactlab_laws.march import coupled_steps
 from contactlab_laws.march.contacts import TouchingContacts, joined, whole
@@ -266,8 +266,8 @@ class _March:
     def _note_parting(self, parted: Mask, time: Real, approach: Real, rate: Real) -> None:
         """Note when surfaces of an elastic contact parted: between two steps, at a known rate."""
         if np.any(parted):
-            crossed = time - approach / chosen(parted, rate, 1.0)
-            self.duration = chosen(parted, crossed, self.duration)
+            crossed = time - approach / choose(parted, rate, 1.0)
+            self.duration = choose(parted, crossed, self.duration)
 
     def _count_turns(self, back: Mask) -> None:
         """Count turns that tension made, and give up impacts that had too many."""

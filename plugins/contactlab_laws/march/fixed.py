@@ -28,7 +28,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import chosen, every, for_share
+from contactlab.numeric.arrays import choose, every, for_share
 from contactlab.numeric.checks import count, flag
 from contactlab.numeric.types import Real
 from contactlab_laws.march import coupled, coupled_steps
@@ -158,7 +158,7 @@ class FixedSteps(CoupledIntegrator):
         declared = tangential.errors(scene, normal, taken)
         if every(followed := np.less_equal(needed, taken) & np.isfinite(taken)):
             return declared
-        return Errors(*(chosen(followed, each, math.nan) for each in declared))
+        return Errors(*(choose(followed, each, math.nan) for each in declared))
 
     def _take_coupled(self, needed: Real) -> Real:
         """Return the steps of each impact in the approach without friction; infinite if refused."""

@@ -27,7 +27,7 @@ from contactlab.contracts import (
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import keep_freed_memory, lock_arrays, plain, spread, spread_object
-from contactlab.numeric.checks import shown
+from contactlab.numeric.checks import quote
 from contactlab.numeric.types import Array, Real
 from contactlab_laws.march.division import one_by_one
 
@@ -103,7 +103,7 @@ def _complain_of_shape(response: AllStepsResponse, scene: Scene, steps: int) -> 
         or not force.ndim
         or faults.is_malformed(force, force.shape)
     ):
-        return f"the forces {shown(force)}"
+        return f"the forces {quote(force)}"
     count = len(force)
     missing = count > steps or (count < steps and np.all(settled))
     if missing or force.shape[1:] != scene.shape:
@@ -111,7 +111,7 @@ def _complain_of_shape(response: AllStepsResponse, scene: Scene, steps: int) -> 
         return f"forces of shape {force.shape} {wanted}"
     for name, energy in (("friction work", work), ("loss in shear", shear)):
         if faults.is_malformed(energy, scene.shape):
-            return f"{name} {shown(energy)}"
+            return f"{name} {quote(energy)}"
     return None
 
 
@@ -209,7 +209,7 @@ def _end(
 
 def _number(value: Real) -> str:
     """Return a number, or the numbers of a batch, for a sentence."""
-    return shown(plain(value))
+    return quote(plain(value))
 
 
 def _finite(value: Real) -> bool:
