@@ -101,7 +101,7 @@ def tell_arguments(made: Class) -> Class:
 
 
 def state_arguments(made: Class) -> Class:
-    """Return a class of ``arguments_told`` whose ``__init__`` states arguments only.
+    """Return a class of ``tell_arguments`` whose ``__init__`` states arguments only.
 
     Type checkers and readers see that method, attrs takes the arguments: no checker sees what the
     converters of attrs accept, and a call between the two would take as long as a small object.

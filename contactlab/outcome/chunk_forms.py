@@ -79,7 +79,7 @@ class About(NamedTuple):
         return Chunk(self.first, self.stop)
 
     def to_json(self) -> str:
-        """Return a text with its own checksum, from which ``told_in`` reads the entries."""
+        """Return a text with its own checksum, from which ``read_notes`` reads the entries."""
         words = json.dumps(self._asdict())
         return json.dumps([words, zlib.crc32(words.encode())])
 

@@ -39,7 +39,7 @@ SPIN_BEFORE = "spin"
 DEFAULTS = {"friction_coefficient": 0.1}
 
 
-def as_met(table: Measurements, scene: object) -> Measurements:
+def as_target_sees(table: Measurements, scene: object) -> Measurements:
     """Return measurements relative to the surface of the struck body of a scene.
 
     Its spin moves the surface at the contact, and a file may have what the table does not say of
@@ -147,7 +147,7 @@ def with_measurements(file: SceneFile, table: Measurements) -> SceneFile:
             f"{file.path}: the struck body moves, but measured impacts are relative; leave out "
             "[sweep]"
         )
-    table = _by_angle(as_met(table, file))
+    table = _by_angle(as_target_sees(table, file))
     if not table.given:
         raise ValueError(
             f"{table.source}: no column describes the impact before contact; give one, such as "
@@ -166,7 +166,7 @@ def with_measurements(file: SceneFile, table: Measurements) -> SceneFile:
     if file.varied:
         _check_speed(file, table)
     else:
-        file = _swept(_relative(file, table), table, x_name, alone=len(moving) == 1)
+        file = _sweep_file(_relative(file, table), table, x_name, alone=len(moving) == 1)
     return attrs.evolve(
         file, measured=tuple(_series(table, name, x_name) for name in table.measured)
     )
@@ -191,7 +191,7 @@ def _moving(table: Measurements) -> list[str]:
     ]
 
 
-def _swept(file: SceneFile, table: Measurements, x_name: str, *, alone: bool) -> SceneFile:
+def _sweep_file(file: SceneFile, table: Measurements, x_name: str, *, alone: bool) -> SceneFile:
     """Return a file with a sweep over the one column that varies, or with the rows as a sweep."""
     x = table.given[x_name]
     varied: dict[str, Array] = {x_name: np.linspace(float(np.min(x)), float(np.max(x)), SWEPT)}

@@ -30,7 +30,7 @@ from contactlab.registry.composition import DEFAULT_NORMAL
 from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab_fit import Fit, Ranked, fit, in_order, rank, read_flight
-from contactlab_fit.beside import as_met
+from contactlab_fit.beside import as_target_sees
 from contactlab_fit.csv_columns import read_text
 from contactlab_fit.estimation import default_laws, parameters_of
 from contactlab_fit.flight import is_film
@@ -119,9 +119,9 @@ def execute(arguments: argparse.Namespace) -> int:
         names = arguments.columns or dict(arguments.column)
         read = partial(read_flight, data, frame_rate=arguments.fps)
         impacts = read_named(read, names, arguments, first_fit)
-    impacts = as_met(impacts, path)
+    impacts = as_target_sees(impacts, path)
     samples = _samples(arguments.bootstrap, len(impacts))
-    file, simulations, own = _posed(impacts, path, arguments)
+    file, simulations, own = _pose(impacts, path, arguments)
     shared.tell_normal_spin(file.scene, *simulations.values())
     selection: dict[str, Any] = {"quantities": arguments.quantity}
     first, *others = simulations
@@ -160,7 +160,7 @@ def execute(arguments: argparse.Namespace) -> int:
     return shared.INTERRUPTED if interrupted else max(saved, _failures(ranked))
 
 
-def _posed(
+def _pose(
     impacts: Measurements, path: Path, arguments: argparse.Namespace
 ) -> tuple[SceneFile, dict[str, Simulation | None], dict[str, list[str]]]:
     """Return the file of the bodies, the laws by name, and the parameters of each."""
@@ -186,8 +186,8 @@ def _tell_film(error: ValueError, data: Any, arguments: argparse.Namespace) -> V
 
 def _first_fit(path: Path, arguments: argparse.Namespace, impacts: Measurements) -> Fit:
     """Return the fit of the first law to a reading of a table."""
-    impacts = as_met(impacts, path)
-    _, simulations, own = _posed(impacts, path, arguments)
+    impacts = as_target_sees(impacts, path)
+    _, simulations, own = _pose(impacts, path, arguments)
     first = next(iter(simulations))
     chosen: dict[str, Any] = {"parameters": own[first], "quantities": arguments.quantity}
     return fit(impacts, path, simulation=simulations[first], **chosen)

@@ -114,7 +114,7 @@ def read_heading(text: str, columns: Mapping[str, str]) -> Heading:
         return Heading("unused", text)
     raise UnknownHeadingError(
         f"heading {text!r}: is no known name; {nearest(name, [*ENTRIES, *measurable()])}"
-        f"{known_names()}name the column: --column '{text.strip()}=...' (columns= in Python), or "
+        f"{list_names()}name the column: --column '{text.strip()}=...' (columns= in Python), or "
         "put # before the heading to skip the column"
     )
 
@@ -138,7 +138,7 @@ def unit_of(name: str, text: str) -> str:
     return units.pop()
 
 
-def known_names() -> str:
+def list_names() -> str:
     """Return the names that a heading may have."""
     before = [entry for entry in ENTRIES if "." not in entry]
     return f"before the impact: {', '.join(before)}; after it: {', '.join(measurable())}; "

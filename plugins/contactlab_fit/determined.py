@@ -99,7 +99,7 @@ def idle(problem: Problem, values: Array) -> list[str]:
     No parameter can meet such a quantity, for example a measured restitution under an elastic
     law. Its residuals would only hide how well the other quantities are met.
     """
-    effects = problem.linearised(values, problem.sizes())[1]
+    effects = problem.linearise(values, problem.sizes())[1]
     effects = np.abs(effects * _sizes(problem.model.parameters, values)).max(axis=1)
     parts = problem.by_quantity(effects)
     without_effect = [name for name, part in parts.items() if part.max() < NO_EFFECT]
@@ -109,7 +109,7 @@ def idle(problem: Problem, values: Array) -> list[str]:
 def check_determined(problem: Problem, values: Array) -> None:
     """Refuse parameters without effect, or with indistinguishable effects, on the data."""
     parameters = problem.model.parameters
-    effects = problem.linearised(values, problem.sizes())[1] * _sizes(parameters, values)
+    effects = problem.linearise(values, problem.sizes())[1] * _sizes(parameters, values)
     lengths = np.sqrt(np.sum(effects**2, axis=0) / len(effects))
     for place, parameter in enumerate(parameters):
         if lengths[place] < NO_EFFECT and not _turns(problem, values, place):
@@ -130,7 +130,7 @@ def _turns(problem: Problem, values: Array, place: int) -> bool:
     low, high = problem.bounds()
     points = np.tile(values, (3, 1))
     points[1:, place] = np.clip(values[place] * np.array(TURNING), low[place], high[place])
-    moved = problem.weighted(points, problem.sizes())
+    moved = problem.weigh(points, problem.sizes())
     return bool(np.min(np.max(np.abs(moved[1:] - moved[0]), axis=1)) > NO_EFFECT)
 
 
@@ -178,7 +178,7 @@ def _meets(problem: Problem, other: Array, best: Array, ends: Spread) -> bool:
     if math.isnan(ends.rise):
         return problem.criterion(other) - problem.criterion(best) < CLOSE
     scales = problem.scales(problem.residuals(best[None]))
-    squares = np.sum(problem.weighted(np.array([best, other]), scales) ** 2, axis=1)
+    squares = np.sum(problem.weigh(np.array([best, other]), scales) ** 2, axis=1)
     return bool(squares[1] - squares[0] < ends.rise)
 
 
@@ -203,7 +203,7 @@ def _telling_apart(model: Model, both: Array) -> str:
     """Return a sentence on the measurement that differs most between two sets of values."""
     scene, x, words = _candidates(model.setup.scene)
     name = CANDIDATES[1] if words != "psi1" else "psi2"
-    first, second = model.at(scene).predicted(both, [name])[name]
+    first, second = model.at(scene).predict(both, [name])[name]
     best = int(np.argmax(np.abs(first - second)))
     return (
         f"measure {name} at {words} of about {x[best]:g}: {first[best]:.3g} of the first, "
@@ -278,7 +278,7 @@ def _effect(model: Model, values: Array, place: int, quantity: str) -> Array:
     ends = np.array([values, values])
     ends[0, place] = max(values[place] - 0.05 * size, parameter.least)
     ends[1, place] = min(values[place] + 0.05 * size, parameter.most)
-    below, above = model.predicted(ends, [quantity])[quantity]
+    below, above = model.predict(ends, [quantity])[quantity]
     return np.asarray(np.abs(above - below) / (ends[1, place] - ends[0, place]) * size)
 
 

@@ -86,19 +86,19 @@ def _others(
 ) -> tuple[str, ...]:
     """Return sentences on outliers, patterns and leverage."""
     sentences: list[str] = []
-    scales, seen = _seen(problem, table, values)
+    scales, seen = _judge_errors(problem, table, values)
     if far.places and far.chance <= seen.chance:
         sentences += outliers.describe_outliers(problem, far)
         if seen.chance < POSSIBLE:
             sentences.append(f"or, with every number kept, {seen.words}")
         problem, values = far.rest, far.values
-        scales, seen = _seen(problem, table, values)
+        scales, seen = _judge_errors(problem, table, values)
     if seen.chance < CHANCE:
         sentences.append(seen.words)
     return (*sentences, *patterns.leverage(problem, values, scales))
 
 
-def _seen(
+def _judge_errors(
     problem: Problem, table: Measurements, values: Array
 ) -> tuple[Mapping[str, Real], patterns.Pattern]:
     """Return the error of each quantity, and what scatter makes with the least chance."""
@@ -108,7 +108,7 @@ def _seen(
     return scales, common if common.chance < SIMPLER * pattern.chance else pattern
 
 
-def lost(problem: Problem, values: Array) -> list[str]:
+def tell_loss(problem: Problem, values: Array) -> list[str]:
     """Return a sentence if the measured normal motion has another restitution than the laws."""
     seen = lossy(fewer(problem)[0], values)
     return [seen.words] if seen.chance < CHANCE else []
@@ -142,7 +142,7 @@ def cautions(problem: Problem, values: Array, *, of_any_friction: bool = False) 
     motion = attrs.evolve(result.motion, slip_velocity_change=velocity)
     shifted = attrs.evolve(result, motion=motion)
     scales = problem.scales(problem.residuals(values[None]))
-    inverse = np.asarray(np.linalg.pinv(problem.linearised(values, scales)[1]), dtype=np.float64)
+    inverse = np.asarray(np.linalg.pinv(problem.linearise(values, scales)[1]), dtype=np.float64)
     moves = np.zeros((*result.scene.shape, len(values)))
     for name, part in problem.by_quantity(inverse.T).items():
         off = (QUANTITIES[name].of(shifted) - QUANTITIES[name].of(result)) / scales[name]
@@ -219,7 +219,7 @@ def table_notes(table: Measurements, parameters: Collection[str]) -> list[str]:
     return notes
 
 
-def followed_notes(problem: Problem) -> list[str]:
+def note_marches(problem: Problem) -> list[str]:
     """Return a sentence on columns for which impacts are followed, not tabulated."""
     model = problem.model
     if model.tabled or not tabulated.holds(model.setup.simulation):

@@ -21,7 +21,7 @@ from contactlab.outcome.result import ImpactResult
 from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import SceneFile
 from contactlab_fit import determined, nearby, tabulated
-from contactlab_fit.beside import as_met
+from contactlab_fit.beside import as_target_sees
 from contactlab_fit.diagnosis import (
     Diagnosis,
     cautions,
@@ -29,9 +29,9 @@ from contactlab_fit.diagnosis import (
     diagnose,
     end_notes,
     error_notes,
-    followed_notes,
-    lost,
+    note_marches,
     table_notes,
+    tell_loss,
 )
 from contactlab_fit.fit_result import Estimate, Fit
 from contactlab_fit.intervals import TAIL, Spread, spread
@@ -48,7 +48,7 @@ from contactlab_fit.parameters import (
 from contactlab_fit.plausible import restitutions, trend_of_restitution, unlikely_parameters
 from contactlab_fit.problem import Problem, fewer, solve_problem
 from contactlab_fit.slips import SOME_LOSS, slips, state_assumptions
-from contactlab_fit.taken import taken
+from contactlab_fit.taken import tell_assumptions
 from contactlab_fit.unknown_friction import (
     lacks_friction,
     normal_motion_alone,
@@ -139,7 +139,7 @@ def _fit(
     if scene is None:
         raise refuse("scene", None, "must be given", "a Scene, or a TOML file with the bodies")
     samples = whole("bootstrap", bootstrap, least=0, most=100_000)
-    table = as_met(read_measurements(measurements), scene).only(quantities)
+    table = as_target_sees(read_measurements(measurements), scene).only(quantities)
     laws = simulation_of(simulation)
     if laws is None:
         laws = default_laws(parameters)
@@ -151,7 +151,7 @@ def _fit(
         problem = _problem(table, scene, parameters, laws)
     determined.check_enough(problem)
     determined.check_defined(problem)
-    said = (*table.notes, *table_notes(table, parameters), *followed_notes(problem))
+    said = (*table.notes, *table_notes(table, parameters), *note_marches(problem))
     counted = None if samples else progress
     values, *others = minima(problem, counted)
     slipped: list[str] = []
@@ -161,7 +161,7 @@ def _fit(
         left_out = (*left_out, idle_words)
         few, _ = fewer(problem)
         slipped, _ = slips(few, table, values, few.measured)
-        if not slipped and (seen := lost(problem, values)):
+        if not slipped and (seen := tell_loss(problem, values)):
             slipped, of_restitution = seen, []
         table = table.only([name for name in table.measured if name not in idle])
         problem = _problem(table, scene, parameters, laws)
@@ -191,7 +191,7 @@ def _fit(
         notes=(*said, *notes, *trend),
         cautions=warned,
         aic=aic,
-        taken=taken(table, scene, problem.model),
+        taken=tell_assumptions(table, scene, problem.model),
     )
     if counted is not None:
         counted(1, 1)
@@ -244,10 +244,10 @@ def _with_bootstrap(
     quick = problem
     if not problem.model.at_once(list(problem.measured)):
         quick = nearby.nearby(problem, values, scales)
-    drawn = _drawn(quick, values, samples, np.random.default_rng(seed), progress)
+    drawn = _draw_samples(quick, values, samples, np.random.default_rng(seed), progress)
     ends = np.quantile(drawn, [TAIL, 1.0 - TAIL], axis=0)
     if quick is not problem and not nearby.faithful(problem, quick, drawn, ends, scales):
-        drawn = _drawn(problem, values, samples, np.random.default_rng(seed), progress)
+        drawn = _draw_samples(problem, values, samples, np.random.default_rng(seed), progress)
         ends = np.quantile(drawn, [TAIL, 1.0 - TAIL], axis=0)
     estimates = {
         name: attrs.evolve(estimate, bootstrap=(low, high))
@@ -261,7 +261,7 @@ def _with_bootstrap(
     return attrs.evolve(outcome, parameters=estimates, notes=notes, samples=done)
 
 
-def _drawn(
+def _draw_samples(
     problem: Problem,
     values: Array,
     samples: int,
@@ -278,7 +278,7 @@ def _drawn(
         while len(drawn) < samples:
             signs = wider * generator.choice([-1.0, 1.0], len(next(iter(residuals.values()))))
             changes = {name: (signs - 1.0) * rows for name, rows in residuals.items()}
-            drawn.append(_solved_again(problem, changes, values, scales))
+            drawn.append(_solve_again(problem, changes, values, scales))
             if progress is not None:
                 progress(len(drawn), samples)
     except KeyboardInterrupt:
@@ -287,7 +287,7 @@ def _drawn(
     return np.array(drawn)
 
 
-def _solved_again(
+def _solve_again(
     problem: Problem, changes: Mapping[str, Array], values: Array, scales: Mapping[str, Real]
 ) -> Array:
     """Return the best values for the measured numbers plus ``changes``."""
@@ -356,7 +356,7 @@ def _outcome(
             robust=diagnosis.robust[place],
         )
     deviation = np.sqrt(np.diag(found.covariance))
-    predicted = problem.model.predicted(values[None], list(problem.measured))
+    predicted = problem.model.predict(values[None], list(problem.measured))
     intervals = {name: estimate.interval for name, estimate in estimates.items()}
     outcome = Fit(
         parameters=estimates,
@@ -416,7 +416,7 @@ def rank(
     ValueError
         If the measurements cannot be read. The failure of a single law is in its ``refusal``.
     """
-    table = as_met(read_measurements(measurements), scene)
+    table = as_target_sees(read_measurements(measurements), scene)
     own = parameters_of(table, scene, simulations, parameters)
     ranked = []
     with follow(progress, "laws") as count:

@@ -71,7 +71,7 @@ def draw_fits(
 
     def draw(axes: Panels) -> None:
         for column, name in enumerate(names):
-            measured_and_laws(axes[0, column], fits, name)
+            draw_measurements(axes[0, column], fits, name)
             residuals(axes[1, column], fits, name)
             axes[0, column].set_xlabel("")
             axes[0, column].get_legend().remove()  # one legend serves all panels
@@ -82,7 +82,7 @@ def draw_fits(
     save(path, draw, rows=2, columns=len(names), heights=(2.0, 1.0), look=look, width=width)
 
 
-def measured_and_laws(axes: Axes, fits: Mapping[str, Fitted], quantity: str) -> Axes:
+def draw_measurements(axes: Axes, fits: Mapping[str, Fitted], quantity: str) -> Axes:
     """Draw measured values of a quantity with their errors, and the predictions of each law."""
     first = next(iter(fits.values()))
     x, words = _abscissa(first)

@@ -176,14 +176,14 @@ class Fit(Tabled):
             If the quantity was not measured.
         """
         from contactlab.outcome.history_figure import on_axes  # matplotlib only when drawing
-        from contactlab_fit.figures import measured_and_laws
+        from contactlab_fit.figures import draw_measurements
 
         quantity = quantity or next(iter(self.predicted))
         if quantity not in self.predicted:
             remedy = f"there are {', '.join(self.predicted)}"
             raise refuse("quantity", quantity, "was not measured", remedy)
         with on_axes(axes, width) as drawn:
-            return measured_and_laws(drawn, {"law": self}, quantity)
+            return draw_measurements(drawn, {"law": self}, quantity)
 
     def to_dict(self) -> dict[str, Any]:
         """Return everything as plain numbers, lists and text."""

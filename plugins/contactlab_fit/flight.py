@@ -173,7 +173,7 @@ def _film(
             continue
         own = FILM[name]
         if name == "frame":
-            film["t"] = column_of(text, values, gaps=True) / _needed(rate, table)
+            film["t"] = column_of(text, values, gaps=True) / _need_rate(rate, table)
             continue
         if own == "m":
             in_pixels.add(unit in PIXELS)
@@ -229,7 +229,7 @@ def _tell_places(table: Mapping[str, object], film: Mapping[str, Array]) -> None
     raise ForeignHeadingsError("headings look like other words for those of a film", ways)
 
 
-def _needed(rate: Real | None, table: Mapping[str, object]) -> Real:
+def _need_rate(rate: Real | None, table: Mapping[str, object]) -> Real:
     """Return the frame rate, or refuse frames without it."""
     if rate is None:
         raise ValueError(
@@ -246,7 +246,7 @@ def _bounces(film: dict[str, Array], *, in_pixels: bool) -> Measurements:
     pairs: list[tuple[Flight, Flight, float, Flight | None]] = []
     notes: list[str] = []
     if in_pixels:
-        throws, scale = _scaled(throws)
+        throws, scale = _scale(throws)
         notes.append(scale)
     throws, left_out = _in_flight(throws)
     notes += left_out
@@ -293,12 +293,12 @@ def _bounces(film: dict[str, Array], *, in_pixels: bool) -> Measurements:
         measured={name: columns[name] for name in measured},
         errors={name: columns[f"{name}_error"] for name in measured},
         notes=(*dict.fromkeys(notes), *fall),
-        taken=_taken(film),
+        taken=_tell_assumptions(film),
         thrown={} if "angle" in film else thrown,
     )
 
 
-def _taken(film: Mapping[str, Array]) -> tuple[str, ...]:
+def _tell_assumptions(film: Mapping[str, Array]) -> tuple[str, ...]:
     """Return sentences on what is taken of the flights of a film."""
     level = () if "z" in film else ("z = 0 m: the ball stays in the plane of x and y",)
     return (f"gravity = {GRAVITY} m/s², of flights without air", *level)
@@ -343,7 +343,7 @@ def _in_flight(throws: list[dict[str, Array]]) -> tuple[list[dict[str, Array]], 
     return kept, [f"{count} frames {when} are left out" for count, when in told if count]
 
 
-def _scaled(throws: list[dict[str, Array]]) -> tuple[list[dict[str, Array]], str]:
+def _scale(throws: list[dict[str, Array]]) -> tuple[list[dict[str, Array]], str]:
     """Return throws in m whose places are in pixels, so that flights fall with g, and a note."""
     bends = np.concatenate([_bends(throw) for throw in throws])
     free = np.abs(bends) > 0.5 * np.quantile(np.abs(bends), 0.9) if bends.size else bends

@@ -68,10 +68,10 @@ def spread(problem: Problem, values: Array, first: Array | None = None) -> Sprea
 
     best = values if first is None else first
     scales = problem.scales(problem.residuals(best[None]))
-    weighted, jacobian = problem.linearised(values, scales)
+    weighted, jacobian = problem.linearise(values, scales)
     square = float(weighted @ weighted)
     if first is not None:
-        square = float(np.sum(problem.weighted(first[None], scales) ** 2))
+        square = float(np.sum(problem.weigh(first[None], scales) ** 2))
     freedom = len(weighted) - len(values)
     mean_square = square / freedom if freedom > 0 else math.nan
     stated = all(name in problem.errors for name in problem.measured)
@@ -87,14 +87,14 @@ def spread(problem: Problem, values: Array, first: Array | None = None) -> Sprea
     low, high = np.maximum(values - reaches, least), np.minimum(values + reaches, most)
     rise = factor * student**2
     if freedom > 0 and mean_square > EXACT and problem.model.at_once(list(problem.measured)):
-        for place in _bent(problem, values, scales, covariance, rise):
+        for place in _find_bends(problem, values, scales, covariance, rise):
             low[place], high[place] = _profile(problem, values, place, scales, square + rise)
             reaches[place] = 0.5 * (high[place] - low[place])
             errors[place] = reaches[place] / student
     return Spread(covariance, errors, reaches, low, high, mean_square, max(rise, student**2))
 
 
-def _bent(
+def _find_bends(
     problem: Problem, values: Array, scales: Mapping[str, Real], covariance: Array, rise: float
 ) -> list[int]:
     """Return the places of parameters at whose ends the sum of squares has not grown by ``rise``.
@@ -106,7 +106,7 @@ def _bent(
     reaches = np.sqrt(rise * np.diag(covariance))
     moves = (covariance / np.sqrt(np.diag(covariance))).T * math.sqrt(rise)
     points = np.clip(np.concatenate([values + moves, values - moves]), low, high)
-    squares = np.sum(problem.weighted(np.vstack([values, points]), scales) ** 2, axis=1)
+    squares = np.sum(problem.weigh(np.vstack([values, points]), scales) ** 2, axis=1)
     grown = (squares[1:] - squares[0]).reshape(2, count)
     shares = np.abs(np.diagonal((points - values).reshape(2, count, count), axis1=1, axis2=2))
     expected = rise * (shares / reaches) ** 2
@@ -129,7 +129,7 @@ def _profile(
         """Return the least square with the parameter at x, less the square."""
         nonlocal latest
         latest = _with(problem, latest, place, x, scales)
-        return float(np.sum(problem.weighted(latest[None], scales) ** 2)) - square
+        return float(np.sum(problem.weigh(latest[None], scales) ** 2)) - square
 
     def end(sign: float, bound: float) -> float:
         """Return the first value outwards at which the square is reached."""
@@ -165,7 +165,7 @@ def _with(
     rest = [k for k in range(len(values)) if k != place]
     fixed = attrs.evolve(
         model,
-        setup=model.parameters[place].applied(model.setup, x),
+        setup=model.parameters[place].apply(model.setup, x),
         parameters=tuple(model.parameters[k] for k in rest),
     )
     at[rest] = minimum(attrs.evolve(problem, model=fixed), values[rest], scales)

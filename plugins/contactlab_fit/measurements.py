@@ -16,7 +16,7 @@ from contactlab_fit.conventions import ForeignHeadingsError
 from contactlab_fit.csv_columns import (
     ERROR,
     UnknownHeadingError,
-    known_names,
+    list_names,
     measurable,
     name_and_unit,
     read_columns,
@@ -72,7 +72,7 @@ class Measurements:
         """Return the number of impacts."""
         return len(next(iter(self.measured.values())))
 
-    def named_as(self, name: str, alias: str) -> str:
+    def rename(self, name: str, alias: str) -> str:
         """Return HEADING=ALIAS for the column of a quantity, an alias of whose numbers is to hold.
 
         A sign turns what the column has now.
@@ -300,7 +300,7 @@ def _check_columns(
 ) -> None:
     """Refuse columns that do not belong together."""
     if not measured:
-        remedy = "; ".join([*notes, f"{known_names()}name one by --column 'heading=...'"])
+        remedy = "; ".join([*notes, f"{list_names()}name one by --column 'heading=...'"])
         raise ValueError(f"nothing was measured: no column describes a rebound; {remedy}")
     lengths = {name: len(values) for name, values in (given | measured).items()}
     lengths |= {f"{name}{ERROR}": len(values) for name, values in errors.items()}

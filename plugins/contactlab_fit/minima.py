@@ -55,10 +55,10 @@ def _further(problem: Problem, about: Array, found: list[Array]) -> list[Array]:
     points = points[(points[:, place] >= low) & (points[:, place] <= high)]
     scales = problem.scales(problem.residuals(about[None]))
     if not problem.model.tabled and len(names) == 1:
-        points = _allowed(problem, about, points, scales)
+        points = _allow(problem, about, points, scales)
         if not len(points):
             return []
-    squares = np.sum(problem.weighted(points, scales) ** 2, axis=1)
+    squares = np.sum(problem.weigh(points, scales) ** 2, axis=1)
     inner = (squares[1:-1] < squares[:-2]) & (squares[1:-1] <= squares[2:])
     known = np.array([minimum[place] for minimum in found])
     return [
@@ -68,7 +68,7 @@ def _further(problem: Problem, about: Array, found: list[Array]) -> list[Array]:
     ]
 
 
-def _allowed(problem: Problem, about: Array, points: Array, scales: Mapping[str, Real]) -> Array:
+def _allow(problem: Problem, about: Array, points: Array, scales: Mapping[str, Real]) -> Array:
     """Return the points up to the last that the data allow, by lines through the grid of starts.
 
     Laws that are marched take long. Residuals on the grid are known; between its points they are
@@ -78,11 +78,11 @@ def _allowed(problem: Problem, about: Array, points: Array, scales: Mapping[str,
 
     starts = grid(problem.model.parameters)
     at, x = np.log(starts[:, 0]), np.log(points[:, 0])
-    known = problem.weighted(starts, scales)
+    known = problem.weigh(starts, scales)
     curve = PchipInterpolator(at, known)(np.clip(x, at[0], at[-1]))
     line = np.stack([np.interp(x, at, row) for row in known.T], axis=-1)
     least = np.maximum(np.abs(curve) - np.abs(curve - line), 0.0)
-    best = float(np.sum(problem.weighted(about[None], scales) ** 2))
+    best = float(np.sum(problem.weigh(about[None], scales) ** 2))
     near = np.abs(points[:, 0] / about[0] - 1.0) < BESIDE
     allowed = np.flatnonzero((np.sum(least**2, axis=1) < ALLOWED * best) & ~near)
     if not allowed.size:

@@ -58,7 +58,7 @@ class Model:
         kinds = {getattr(parameter, "kind", "normal") for parameter in self.parameters}
         return kinds <= {"normal"} and tabulated.holds(self.setup.simulation)
 
-    def predicted(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
+    def predict(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
         """Return quantities of all impacts, shape (m, n), at points of shape (m, parameters).
 
         Points with equal options of laws run together in one batch. A point seen before
@@ -114,7 +114,7 @@ class Model:
             if parameter is restituted:
                 restitution = value
             else:
-                setup = parameter.applied(setup, value)
+                setup = parameter.apply(setup, value)
         if restitution is None:
             result = self._impacts(setup)
         else:
@@ -148,7 +148,7 @@ class Model:
         """Return scene and laws at values of the parameters."""
         setup = self.setup
         for parameter, value in zip(self.parameters, values, strict=True):
-            setup = parameter.applied(setup, value)
+            setup = parameter.apply(setup, value)
         return setup
 
     def _times(self, many: int) -> Scene:
@@ -184,7 +184,7 @@ def _read(column: Column, result: ImpactResult, simulation: Simulation | None) -
     return np.array([float(column.of(laws.run(one, history=True).check())) for one in impacts])
 
 
-def opened(scene: object, given: Mapping[str, Array]) -> Scene | SceneFile:
+def open_scene(scene: object, given: Mapping[str, Array]) -> Scene | SceneFile:
     """Return a scene, or a scene file with the measured entries."""
     if isinstance(scene, Scene):
         return scene
@@ -217,7 +217,7 @@ def setup_of(
 
 def scene_of(scene: object, given: Mapping[str, Array], count: int) -> Scene:
     """Return the batch of the measured impacts."""
-    file = opened(scene, given)
+    file = open_scene(scene, given)
     if isinstance(file, SceneFile):
         batch = file.scene if file.scene.along else file.of_spheres
     else:

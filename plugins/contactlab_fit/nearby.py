@@ -36,7 +36,7 @@ class Nearby(Model):
     axes: Array
     coefficients: Mapping[str, Array]
 
-    def predicted(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
+    def predict(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
         """Return quantities of all impacts, shape (m, n), at points of shape (m, parameters)."""
         terms = _terms(_along(self.axes, points - self.centre))
         return {name: terms @ self.coefficients[name] for name in quantities}
@@ -44,7 +44,7 @@ class Nearby(Model):
 
 def nearby(problem: Problem, values: Array, scales: Mapping[str, Real]) -> Problem:
     """Return the problem with polynomials about the best values in place of its laws."""
-    weighted, slopes = problem.linearised(values, scales)
+    weighted, slopes = problem.linearise(values, scales)
     square = float(weighted @ weighted) / max(len(weighted) - len(values), 1)
     axes = np.linalg.cholesky(square * np.linalg.inv(slopes.T @ slopes))
     low, high = problem.bounds()
@@ -52,7 +52,7 @@ def nearby(problem: Problem, values: Array, scales: Mapping[str, Real]) -> Probl
     terms, model = _terms(_along(axes, points - values)), problem.model
     coefficients = {
         name: np.asarray(np.linalg.lstsq(terms, rows, rcond=None)[0])
-        for name, rows in model.predicted(points, list(problem.measured)).items()
+        for name, rows in model.predict(points, list(problem.measured)).items()
     }
     near = Nearby(
         setup=model.setup,
@@ -76,8 +76,8 @@ def faithful(
         int(np.argmin(np.abs(samples[:, k] - end))) for row in ends for k, end in enumerate(row)
     }
     points = samples[sorted(places)]
-    gaps = problem.weighted(points, scales) - near.weighted(points, scales)
-    _, slopes = near.linearised(np.mean(ends, axis=0), scales)
+    gaps = problem.weigh(points, scales) - near.weigh(points, scales)
+    _, slopes = near.linearise(np.mean(ends, axis=0), scales)
     moves = gaps @ np.linalg.pinv(slopes).T
     return bool(np.all(np.abs(moves) <= OFF * 0.5 * (ends[1] - ends[0])))
 

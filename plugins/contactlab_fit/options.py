@@ -79,12 +79,12 @@ def read_named(
         command = f"contactlab {shlex.join(arguments.words)}"
         gives: list[Result] = []
         if fit_of is not None and isinstance(names, Mapping):
-            from contactlab_fit.printed import tried
+            from contactlab_fit.printed import tell_readings
 
-            def fitted(columns: Mapping[str, str]) -> Fit:
+            def fit(columns: Mapping[str, str]) -> Fit:
                 return fit_of(read(columns={**names, **columns}))
 
-            gives = tried(error.readings, fitted)
+            gives = tell_readings(error.readings, fit)
         raise ForeignHeadingsError(error.said, error.readings, command, gives) from None
 
 

@@ -58,7 +58,7 @@ def robust(problem: Problem, values: Array) -> tuple[Array, dict[str, Array]]:
     few, _ = fewer(problem)
     points = np.vstack([values, grid(problem.model.parameters)])
     near = _nearly(few.scales(few.residuals(values[None])))
-    start = points[int(np.argmin(np.sum(np.abs(few.weighted(points, near)), axis=1)))]
+    start = points[int(np.argmin(np.sum(np.abs(few.weigh(points, near)), axis=1)))]
     scales = _nearly(problem.scales(problem.residuals(values[None])))
     first = minimum(problem, start, scales, loss="soft_l1")
     scales = scatter(problem, first)
@@ -137,7 +137,7 @@ def describe_outliers(problem: Problem, far: Outliers) -> list[str]:
     """Return a sentence for each quantity that has outliers."""
     residuals = {
         name: problem.measured[name] - rows[0]
-        for name, rows in problem.model.predicted(far.values[None], list(far.places)).items()
+        for name, rows in problem.model.predict(far.values[None], list(far.places)).items()
     }
     without = in_words(problem.model.parameters, far.values)
     sentences = []
@@ -166,7 +166,7 @@ def impacts_in_words(places: NDArray[np.intp]) -> str:
 
 def _square(problem: Problem, values: Array, scales: Mapping[str, Real]) -> float:
     """Return the sum of squares of residuals over the scatter."""
-    weighted = problem.weighted(values[None], scales)[0]
+    weighted = problem.weigh(values[None], scales)[0]
     return float(weighted @ weighted)
 
 

@@ -71,7 +71,7 @@ class Parameter(abc.ABC):
         return True
 
     @abc.abstractmethod
-    def applied(self, setup: Setup, value: Real) -> Setup:
+    def apply(self, setup: Setup, value: Real) -> Setup:
         """Return scene and laws with this value, a number or an array over the impacts."""
 
 
@@ -83,7 +83,7 @@ class FrictionCoefficient(Parameter):
         """Infinite: ``most`` only bounds the search."""
         return math.inf
 
-    def applied(self, setup: Setup, value: Real) -> Setup:
+    def apply(self, setup: Setup, value: Real) -> Setup:
         """Return the scene with this friction."""
         return setup._replace(scene=attrs.evolve(setup.scene, friction_coefficient=value))
 
@@ -95,7 +95,7 @@ class StiffnessRatio(Parameter):
     of kappa = 2(1-nu)/(2-nu), and keep their compliance in normal contact, (1-nu)/(2G).
     """
 
-    def applied(self, setup: Setup, value: Real) -> Setup:
+    def apply(self, setup: Setup, value: Real) -> Setup:
         """Return the scene with bodies of this ratio."""
         scene = setup.scene
         assert scene.sphere is not None
@@ -129,7 +129,7 @@ class LawOption(Parameter):
         """Whether the option may be one number an impact; most have one for all impacts."""
         return self.each
 
-    def applied(self, setup: Setup, value: Real) -> Setup:
+    def apply(self, setup: Setup, value: Real) -> Setup:
         """Return the laws with this option."""
         assert setup.simulation is not None
         laws = {kind: getattr(setup.simulation, kind) for kind in KINDS}

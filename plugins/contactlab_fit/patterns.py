@@ -55,7 +55,7 @@ def pattern(
     be too weak: no run in ten impacts is improbable enough. The chance is multiplied by the number
     of tests (Bonferroni).
     """
-    weighted, jacobian = problem.linearised(values, scales)
+    weighted, jacobian = problem.linearise(values, scales)
     residuals, slopes = problem.by_quantity(weighted), problem.by_quantity(jacobian)
     own = problem.residuals(values[None])
     ranks = _rank(columns, len(next(iter(problem.measured.values()))))
@@ -167,7 +167,7 @@ def _changes(
 
 def leverage(problem: Problem, values: Array, scales: Mapping[str, Real]) -> list[str]:
     """Return a sentence for each number that the fit meets at any value."""
-    _, jacobian = problem.linearised(values, scales)
+    _, jacobian = problem.linearise(values, scales)
     shares = problem.by_quantity(np.sum(orthonormal(jacobian) ** 2, axis=1))
     if len(jacobian) <= jacobian.shape[1]:
         return []

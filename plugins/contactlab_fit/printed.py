@@ -22,7 +22,9 @@ from contactlab_fit.conventions import Reading, Result
 LETTERS = 400
 
 
-def tried(readings: Sequence[Reading], fit_of: Callable[[Mapping[str, str]], Fit]) -> list[Result]:
+def tell_readings(
+    readings: Sequence[Reading], fit_of: Callable[[Mapping[str, str]], Fit]
+) -> list[Result]:
     """Return what a fit gives for each reading of headings, in words; nothing where there is one.
 
     It is the parameters and the rms residual of each quantity, or why there is no fit.

@@ -65,10 +65,10 @@ class Problem:
 
     def residuals(self, points: Array) -> dict[str, Array]:
         """Return measured less predicted, shape (m, n) by quantity, at points (m, parameters)."""
-        predicted = self.model.predicted(points, list(self.measured))
+        predicted = self.model.predict(points, list(self.measured))
         return {name: values - predicted[name] for name, values in self.measured.items()}
 
-    def weighted(self, points: Array, scales: Mapping[str, Real]) -> Array:
+    def weigh(self, points: Array, scales: Mapping[str, Real]) -> Array:
         """Return residuals over errors, shape (m, numbers), by quantity, without gaps."""
         return self._over(self.residuals(points), scales)
 
@@ -111,7 +111,7 @@ class Problem:
         logs = sum(2.0 * self.counts[name] * math.log(scales[name]) for name in unknown)
         return float(weighted @ weighted) + logs + 2.0 * (len(values) + len(unknown))
 
-    def linearised(self, values: Array, scales: Mapping[str, Real]) -> tuple[Array, Array]:
+    def linearise(self, values: Array, scales: Mapping[str, Real]) -> tuple[Array, Array]:
         """Return weighted residuals, shape (numbers,), and their derivatives by the parameters.
 
         The derivatives, shape (numbers, parameters), are central differences inside the bounds,
@@ -125,7 +125,7 @@ class Problem:
         points = np.tile(values, (1 + 2 * count, 1))
         points[1 : 1 + count][np.diag_indices(count)] = below
         points[1 + count :][np.diag_indices(count)] = above
-        weighted = self.weighted(points, scales)
+        weighted = self.weigh(points, scales)
         slopes = (weighted[1 + count :] - weighted[1 : 1 + count]).T / (above - below)
         return weighted[0], slopes
 
@@ -155,7 +155,7 @@ def starting(problem: Problem) -> list[Array]:
     and a search ends in the nearest minimum.
     """
     points = _points(problem.model.parameters)
-    weighted = problem.weighted(grid(problem.model.parameters), problem.scales())
+    weighted = problem.weigh(grid(problem.model.parameters), problem.scales())
     costs = np.sum(weighted**2, axis=1).reshape(points.shape[:-1])
     least = np.ones(costs.shape, dtype=bool)
     for axis in range(costs.ndim):
@@ -216,19 +216,19 @@ def minimum(
 
     latest: dict[bytes, tuple[Array, Array]] = {}
 
-    def linearised(values: Array) -> tuple[Array, Array]:
+    def linearise(values: Array) -> tuple[Array, Array]:
         """Return residuals and derivatives; the search requests them in turn at one point."""
         key = values.tobytes()
         if key not in latest:
             latest.clear()
-            latest[key] = problem.linearised(values, scales)
+            latest[key] = problem.linearise(values, scales)
         return latest[key]
 
     def residuals(values: Array) -> Array:
-        return linearised(values)[0]
+        return linearise(values)[0]
 
     def slopes(values: Array) -> Array:
-        return linearised(values)[1]
+        return linearise(values)[1]
 
     low, high = problem.bounds()
     search = least_squares(

@@ -93,7 +93,7 @@ def readings(problem: Problem, given: Collection[str]) -> Iterator[Reading]:
                 factor = MISTAKEN["deg"].get(way, 1.0)
                 for name in angles:
                     both = _with(both, name, _way(name, way))
-                    names |= _named(name, way)
+                    names |= _name(name, way)
                 head = words.partition(" looks")[0]
                 words = f"{head} and {' and '.join(angles)} look as if {way}"
                 yield Reading(words, both, dict.fromkeys(angles, factor), names=names)
@@ -107,7 +107,7 @@ class Met(NamedTuple):
     names: Mapping[str, str] = {}
 
 
-def _named(name: str, way: str) -> dict[str, str]:
+def _name(name: str, way: str) -> dict[str, str]:
     """Return the name under which a column is read another way, by its name; none if there is."""
     if way == SIGN:
         return {name: f"-{name}"}
@@ -126,7 +126,7 @@ def _impacts(scene: Scene, given: Collection[str]) -> Iterator[Met]:
     name = "angle_deg" if "angle_deg" in given else "the angle of incidence"
     for way, reread in (("in radians", np.degrees(angle)), (SURFACE, 90.0 - angle)):
         if np.all(np.abs(reread) < 90.0):
-            names = _named(name, way) if name in given else {}
+            names = _name(name, way) if name in given else {}
             met = turn_scene(scene, np.radians(reread), given)
             yield Met(f"{name} looks as if {way}", met, names)
     if {"normal_speed", "tangential_velocity"} <= set(given) and np.all(along > 0.0):
@@ -145,12 +145,12 @@ def _impacts(scene: Scene, given: Collection[str]) -> Iterator[Met]:
                     field: factor * np.asarray(getattr(scene, field)) for field in fields
                 }
                 met = attrs.evolve(scene, **faster)
-                yield Met(f"{name} looks as if {way}", met, _named(name, way))
+                yield Met(f"{name} looks as if {way}", met, _name(name, way))
     if np.any(scene.spin):
         for way, factor in (MISTAKEN["rad/s"] | {SIGN: -1.0}).items():
             spin = factor * np.asarray(scene.spin)
             met = attrs.evolve(scene, spin=spin)
-            yield Met(f"spin looks as if {way}", met, _named("spin", way))
+            yield Met(f"spin looks as if {way}", met, _name("spin", way))
     for way, factor in {"in mm": 1e-3, "in cm": 1e-2, "the diameter": 0.5}.items():
         assert scene.sphere is not None
         ball = attrs.evolve(scene.sphere, radius=factor * np.asarray(scene.sphere.radius)[()])
@@ -175,11 +175,11 @@ def _numbers(problem: Problem) -> Iterator[Reading]:
         unit = QUANTITIES[name].unit
         for way, factor in (MISTAKEN.get(unit, {}) | {SIGN: -1.0}).items():
             read = _with(problem, name, _way(name, way))
-            names = _named(name, way)
+            names = _name(name, way)
             yield Reading(f"{name} looks as if {way}", read, {name: abs(factor)}, names=names)
         if unit in ("deg", "rad"):
             read = _with(problem, name, _way(name, SURFACE))
-            names = _named(name, SURFACE)
+            names = _name(name, SURFACE)
             yield Reading(f"{name} looks as if {SURFACE}", read, {}, names=names)
         twin = TAKEN_FOR.get(name, "")
         for other, sign, words in RESTITUTIONS.get(name, ((twin, 1.0, twin),)):

@@ -100,7 +100,7 @@ def slips(
 def _with_options(reading: Reading, table: Measurements) -> Reading:
     """Return a reading whose words name the options that read the columns of a table so."""
     options = " ".join(
-        f"--column {shlex.quote(table.named_as(name, alias))}"
+        f"--column {shlex.quote(table.rename(name, alias))}"
         for name, alias in reading.names.items()
     )
     if not options:
@@ -210,7 +210,7 @@ def _sentence(problem: Problem, values: Array, better: list[Read], *, more: int 
 class AngleOffset(Parameter):
     """The common excess of all angles of incidence, in degrees."""
 
-    def applied(self, setup: Setup, value: Real) -> Setup:
+    def apply(self, setup: Setup, value: Real) -> Setup:
         """Return the scene with corrected angles."""
         scene = setup.scene
         angle: Real = np.arctan2(scene.tangential_velocity, scene.normal_speed)
@@ -305,7 +305,7 @@ def _worth(problem: Problem, more: Parameter, values: Array, start: float) -> Pr
     model = attrs.evolve(problem.model, parameters=(*problem.model.parameters, more))
     wider = attrs.evolve(problem, model=model)
     scales = problem.scales(problem.residuals(values[None]))
-    weighted, slopes = wider.linearised(np.append(values, start), scales)
+    weighted, slopes = wider.linearise(np.append(values, start), scales)
     chance = chance_of(weighted, slopes[:, :-1], slopes[:, -1:], 0.0)
     return None if chance > WORTH_FITTING_MORE else wider
 
@@ -339,7 +339,7 @@ def _of_the_batch(problem: Problem, values: Array) -> tuple[Problem, Array]:
         if parameter.batched:
             kept.append(place)
         else:
-            setup = parameter.applied(setup, float(values[place]))
+            setup = parameter.apply(setup, float(values[place]))
     parameters = tuple(model.parameters[place] for place in kept)
     fixed = attrs.evolve(model, setup=setup, parameters=parameters)
     return attrs.evolve(problem, model=fixed), values[kept]
@@ -417,7 +417,7 @@ def _elasticity(problem: Problem, values: Array, reaches: Array) -> list[str]:
     *parameters, more = wider.model.parameters
     sentence: list[str] = []
     for restitution in LOSSES:
-        laws = more.applied(wider.model.setup, restitution)
+        laws = more.apply(wider.model.setup, restitution)
         fixed = attrs.evolve(
             problem, model=attrs.evolve(problem.model, setup=laws, parameters=tuple(parameters))
         )

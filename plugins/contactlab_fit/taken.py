@@ -12,14 +12,14 @@ from contactlab.impact.scene import Scene
 from contactlab.scene_file import SceneFile
 from contactlab.scene_file.entries import POLAR, STRUCK_KEYS
 from contactlab_fit.measurements import Measurements
-from contactlab_fit.model import Model, opened
+from contactlab_fit.model import Model, open_scene
 from contactlab_fit.parameters import defaults_of
 
 #: Motions that are 0 where nobody gives them, and their units.
 STILL = {"tangential_velocity": "m/s", "spin": "rad/s", "normal_spin": "rad/s"}
 
 
-def taken(table: Measurements, scene: object, model: Model) -> tuple[str, ...]:
+def tell_assumptions(table: Measurements, scene: object, model: Model) -> tuple[str, ...]:
     """Return a sentence for each number that enters a fit and that nobody gave.
 
     Parameters
@@ -31,7 +31,7 @@ def taken(table: Measurements, scene: object, model: Model) -> tuple[str, ...]:
     """
     found = [*table.taken, *_of_laws(model)]
     if model.setup.scene.sphere is not None or model.setup.scene.encounter is not None:
-        file = opened(scene, table.given)
+        file = open_scene(scene, table.given)
         own: Mapping[str, Any] = file.tables if isinstance(file, SceneFile) else {}
         found += [*_of_motion(table, file, own), *_of_bodies(model.setup.scene, own)]
     return tuple(dict.fromkeys(found))

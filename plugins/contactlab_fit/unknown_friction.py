@@ -13,7 +13,7 @@ from contactlab.numeric.types import Array
 from contactlab.outcome.result import ImpactResult
 from contactlab.scene_file import SceneFile
 from contactlab_fit.measurements import Measurements
-from contactlab_fit.model import FRICTION, Model, opened
+from contactlab_fit.model import FRICTION, Model, open_scene
 from contactlab_fit.problem import Problem
 
 #: Friction coefficients from ice to more than rubber: what is the same under all feels none.
@@ -26,7 +26,7 @@ def lacks_friction(
     scene: Scene | SceneFile | str | Path, given: Mapping[str, Array], parameters: Sequence[str]
 ) -> bool:
     """Return whether friction stands in neither table nor scene, and is not fitted."""
-    file = opened(scene, given)
+    file = open_scene(scene, given)
     return isinstance(file, SceneFile) and FRICTION in file.defaulted and FRICTION not in parameters
 
 
@@ -40,7 +40,7 @@ def without_friction(problem: Problem, table: Measurements) -> tuple[Measurement
     """
     model, names = problem.model, list(problem.measured)
     start = np.array([[parameter.starts[0] for parameter in model.parameters]])
-    each = [under(model, friction).predicted(start, names) for friction in FRICTIONS]
+    each = [under(model, friction).predict(start, names) for friction in FRICTIONS]
     unmoved = [
         name
         for name in names

@@ -14,7 +14,7 @@ from contactlab_halfspace.basis import basis
 from contactlab_halfspace.instants import Instants
 from contactlab_halfspace.march import Followed
 from contactlab_halfspace.rings import Rings, rings, settle
-from contactlab_halfspace.slips import begun, move_slips, rest
+from contactlab_halfspace.slips import begin_slips, move_slips, rest
 
 #: Steps from one ring to the next.
 STEPS = 4
@@ -60,7 +60,7 @@ def follow_all(
     impacts = len(psi1)
     change, shares = np.zeros((2, len(course.inside), impacts))
     zero = np.zeros((impacts, count))
-    slips, traction, displaced, work = begun(zero), zero, np.zeros(impacts), np.zeros(impacts)
+    slips, traction, displaced, work = begin_slips(zero), zero, np.zeros(impacts), np.zeros(impacts)
     stuck, sense = np.ones(zero.shape, dtype=bool), zero.copy()
     touched, kept, places = np.zeros(impacts, dtype=bool), [], np.arange(count)
     gains = 2.0 * chi * np.diff(course.impulse, axis=0)

@@ -12,7 +12,7 @@ from contactlab.numeric.types import Array
 from contactlab_halfspace.instants import units
 
 
-def changed_motion(
+def change_motion(
     normal: NormalMotion, changed: dict[int, tuple[Array, Array]]
 ) -> tuple[SampledMotion, dict[int, Array]]:
     """Return a motion, and the impulses in N s at its samples, of each changed impact from 0.

@@ -98,7 +98,7 @@ class Fields:
         rings, angles = self._options.rings, self._options.angles
         one = self._every.take(place) if self._every.scene.shape else self._every
         group = next(groups(self._options, one))
-        motion = group.followed(rings, angles, fields=True)
+        motion = group.follow(rings, angles, fields=True)
         spare = SPARE if motion.departures is not None else 0.0
         radii = basis(rings, 1 if group.plain else angles + 2, spare).edges[:-1]
         values = np.zeros((5, len(motion.impulse), angles, len(radii)))

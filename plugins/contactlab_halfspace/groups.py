@@ -120,7 +120,7 @@ class Group(NamedTuple):
         """Return the normal motions without friction, over ``rings`` rings."""
         return instants(self.normal, rings, self.parts)
 
-    def followed(self, rings: int, angles: int, *, fields: bool = False) -> Followed:
+    def follow(self, rings: int, angles: int, *, fields: bool = False) -> Followed:
         """Return these impacts over ``rings`` rings: together, or as vectors one after the other.
 
         Parameters

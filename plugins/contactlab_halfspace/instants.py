@@ -127,7 +127,7 @@ def _phases(normal: NormalMotion, places: Array, top: int) -> Array:
         phases[[0, top, -1], 0] = 0.0, 0.5 * math.pi, math.pi
         return phases
     if isinstance(normal, ClosedFormMotion):
-        return _halve(lambda phase: _scaled_radius(normal, phase), places, top, 0.5 * math.pi)
+        return _halve(lambda phase: _scale_radius(normal, phase), places, top, 0.5 * math.pi)
     single = not normal.scene.shape
 
     def radius(phase: Array) -> Array:
@@ -147,7 +147,7 @@ def _phases(normal: NormalMotion, places: Array, top: int) -> Array:
     return _halve(radius, places, top, 0.5 * (low + high))
 
 
-def _scaled_radius(normal: ClosedFormMotion, phase: Array) -> Array:
+def _scale_radius(normal: ClosedFormMotion, phase: Array) -> Array:
     """Return the radius over its largest of the scaled motion, which all impacts share."""
     return np.asarray(normal.scaled(phase[:, 0]).radius)[:, None]
 

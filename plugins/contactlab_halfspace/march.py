@@ -13,7 +13,7 @@ import numpy as np
 
 from contactlab.numeric.types import Array, Real
 from contactlab_halfspace.pressure import Answering, Prescribed
-from contactlab_halfspace.slips import begun, move_slips, rest
+from contactlab_halfspace.slips import begin_slips, move_slips, rest
 from contactlab_halfspace.splitting import settle
 
 
@@ -81,7 +81,7 @@ def follow(
     table, along = pressure.table, pressure.table.along
     change, shares, impulse = columns = np.zeros((3, len(pressure.course.inside)))
     zero = np.zeros((table.parts, table.angles, table.count))
-    slips, traction, memory = begun(zero[:2]), zero, zero
+    slips, traction, memory = begin_slips(zero[:2]), zero, zero
     displaced, work, residual = 0.0, 0.0, 0.0
     rotation, slowed, moment = 0.0, 0.0, 0.0
     touched, kept = False, []
@@ -110,7 +110,7 @@ def follow(
             new[:, :, :number], memory = solution.traction, solution.memory
             share, force = solution.share, solution.force
             residual = max(residual, solution.residual)
-            surface = table.displaced(solution.traction)[:2] + contact.dragged
+            surface = table.displace(solution.traction)[:2] + contact.dragged
             if table.spins:
                 moment = table.moment(solution.traction) / force
             if not touched:

@@ -98,7 +98,7 @@ class Modes:
         inner = self.basis.coefficients[1][: len(edges), : len(edges)]
         return float(0.4 * edges**4 @ inner @ torsion)
 
-    def displaced(self, traction: Array) -> Array:
+    def displace(self, traction: Array) -> Array:
         """Return the displacements at all rings, shape (parts, angles, rings)."""
         number = traction.shape[2]
         modes = (self.to @ traction).transpose(1, 0, 2).reshape(self.angles + 1, -1, 1)

@@ -30,7 +30,7 @@ class Slips(NamedTuple):
     inside: Array
 
 
-def begun(slip: Array) -> Slips:
+def begin_slips(slip: Array) -> Slips:
     """Return the slips at first touch."""
     return Slips(slip, slip, slip, (0.0, 0.0), np.zeros(slip.shape[-1]))
 

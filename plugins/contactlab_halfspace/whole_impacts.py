@@ -12,7 +12,7 @@ from contactlab.contracts import NormalMotion, Status, WholeImpact, sliding
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array, Mask, Real
-from contactlab_halfspace.changed_motion import changed_motion
+from contactlab_halfspace.changed_motion import change_motion
 from contactlab_halfspace.fields import Fields
 from contactlab_halfspace.groups import Options, groups
 from contactlab_halfspace.instants import units
@@ -77,13 +77,13 @@ def _solve(options: Options, normal: NormalMotion) -> list[_Solved]:
     solved: dict[int, _Solved] = {}
     rings, angles = options.rings, options.angles
     for group in groups(options, normal):
-        fine, matter = group.followed(rings, angles), group.matter
+        fine, matter = group.follow(rings, angles), group.matter
         change, work, share = fine.change[-1], fine.work, fine.share
         residual, error = fine.residual, np.full(work.shape, math.nan)
         spin = 0.0 * work if fine.spin is None else fine.spin
         spin_error = 0.0 * work
         if options.extrapolate:
-            coarse = group.followed(rings // 2, angles)
+            coarse = group.follow(rings // 2, angles)
             off = change - coarse.change[-1]
             slow = np.minimum(3.0 * np.abs(matter.psi1), 1.0)
             by_chance = slow * matter.chi * np.clip(GROWTH * matter.chi**2, LEAST, 1.0)
@@ -140,7 +140,7 @@ def _whole_impact(options: Options, every: NormalMotion, left: Mask) -> WholeImp
     own, own_impulses = None, dict[int, Array]()
     changed = {n: each.changed for n, each in zip(numbers, solved, strict=True) if each.changed}
     if changed:
-        own, own_impulses = changed_motion(every, changed)
+        own, own_impulses = change_motion(every, changed)
     change, work, error, residual, spin, off = np.array([each.numbers for each in solved]).T
     unit: Any = 1.0 / np.atleast_1d(scene.psi_scale)
     mass: Any = np.atleast_1d(scene.pair.tangential_mass)

@@ -21,7 +21,7 @@ class Line:
     x: np.ndarray = attrs.field(default=X)
     calls: list = attrs.field(factory=list)
 
-    def predicted(self, points, quantities):
+    def predict(self, points, quantities):
         self.calls.append(len(points))
         padded = np.hstack([points, np.zeros((len(points), 1))])
         a, b = padded[:, :1], padded[:, 1:2]

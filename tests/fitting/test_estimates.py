@@ -137,9 +137,9 @@ def test_many_points_are_predicted_as_one_by_one():
     setup = Setup(scene_of(scene(0.1), {}, len(ANGLES)), None)
     model = Model(setup=setup, parameters=tuple(find_parameter(name, setup) for name in BOTH))
     points = np.array([[0.1, 0.8], [0.2, 0.7], [0.05, 1.2]])
-    many = model.predicted(points, ["tangential_restitution"])["tangential_restitution"]
+    many = model.predict(points, ["tangential_restitution"])["tangential_restitution"]
     for row, point in zip(many, points, strict=True):
-        alone = model.predicted(point[None], ["tangential_restitution"])["tangential_restitution"]
+        alone = model.predict(point[None], ["tangential_restitution"])["tangential_restitution"]
         assert row == pytest.approx(alone[0], abs=1e-12)
 
 
@@ -147,7 +147,7 @@ def test_the_stiffness_ratio_leaves_normal_contact_as_it_is():
     glass = Material(young_modulus=70e9, poisson_ratio=0.22)
     before = attrs.evolve(scene(0.1), target=HalfSpace(glass))
     setup = Setup(before, None)
-    after = find_parameter("stiffness_ratio", setup).applied(setup, 0.93).scene
+    after = find_parameter("stiffness_ratio", setup).apply(setup, 0.93).scene
     assert after.pair.stiffness_ratio == pytest.approx(0.93, rel=1e-12)
     assert after.pair.effective_modulus == pytest.approx(before.pair.effective_modulus, rel=1e-12)
     assert after.pair.normal_mass == before.pair.normal_mass

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from contactlab import Material, Scene, Simulation, Sphere
 from contactlab_fit import fit
-from contactlab_fit.figures import draw_fits, measured_and_laws, residuals
+from contactlab_fit.figures import draw_fits, draw_measurements, residuals
 
 ANGLES = np.array([10.0, 10.0, 20.0, 30.0, 50.0])
 BALL = Sphere(0.01, Material.named("steel"))
@@ -26,7 +26,7 @@ def exact():
 def test_each_law_has_a_smooth_curve_and_its_points(exact):
     rigid = fit(TABLE, BODIES, simulation=Simulation(tangential="coulomb"))
     laws = {"exact": exact, "$rigid": rigid}
-    axes = measured_and_laws(Figure().subplots(), laws, "tangential_restitution")
+    axes = draw_measurements(Figure().subplots(), laws, "tangential_restitution")
     curve, points, other, others, *_ = axes.lines
     assert list(points.get_xdata()) == [10.0, 10.0, 30.0, 50.0]  # where it is measured
     x, y = curve.get_data()
@@ -47,7 +47,7 @@ def test_each_law_has_a_smooth_curve_and_its_points(exact):
 def test_errors_are_bars_and_residuals_are_measured_less_predicted():
     errors = np.full(5, 0.05)
     found = fit(TABLE | {"tangential_restitution_error": errors}, BODIES)
-    above = measured_and_laws(Figure().subplots(), {"a": found}, "tangential_restitution")
+    above = draw_measurements(Figure().subplots(), {"a": found}, "tangential_restitution")
     below = residuals(Figure().subplots(), {"a": found}, "tangential_restitution")
     ((line, _, bars),) = below.containers
     np.testing.assert_allclose(line.get_ydata(), found.residuals["tangential_restitution"])
@@ -76,13 +76,13 @@ def test_without_an_angle_the_abscissa_is_what_varies():
     table = {"spin (rad/s)": spin, "tangential_velocity (m/s)": np.full(4, 0.3),
              "normal_speed (m/s)": np.ones(4),
              "rebound_spin (rad/s)": rebounds.rebound_spin}  # fmt: skip
-    axes = measured_and_laws(Figure().subplots(), {"a": fit(table, BODIES)}, "rebound_spin")
+    axes = draw_measurements(Figure().subplots(), {"a": fit(table, BODIES)}, "rebound_spin")
     assert axes.get_xlabel() == "angle of incidence from the normal (°)"
     del table["tangential_velocity (m/s)"], table["normal_speed (m/s)"]
     table["rebound_spin (rad/s)"] = (
         Simulation().sweep(Scene(BALL, BALL, 0.1, normal_speed=np.ones(4), spin=spin)).rebound_spin
     )
-    axes = measured_and_laws(Figure().subplots(), {"a": fit(table, BODIES)}, "rebound_spin")
+    axes = draw_measurements(Figure().subplots(), {"a": fit(table, BODIES)}, "rebound_spin")
     assert "rad/s" in axes.get_xlabel()
 
 

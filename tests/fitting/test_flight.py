@@ -10,7 +10,7 @@ import contactlab
 from contactlab import Encounter, HalfSpace, Material, Scene, Sphere
 from contactlab.cli.main import main
 from contactlab_fit import fit, read_flight
-from contactlab_fit.beside import as_met
+from contactlab_fit.beside import as_target_sees
 
 G, RATE, NOISE = 9.80665, 240.0, 1e-3
 FRICTION = 0.12
@@ -161,12 +161,14 @@ def without_angle(frames):
 def test_without_an_angle_spins_follow_from_the_moment_about_the_contact():
     """As those of the film with one, for a ball thrown with the spin of the scene."""
     frames, impacts = film(1, noise=0.0)
-    found = as_met(read_flight(without_angle(frames)), BODIES)
+    found = as_target_sees(read_flight(without_angle(frames)), BODIES)
     np.testing.assert_allclose(found.given["spin"], impacts[:, 0, 2], rtol=1e-8, atol=1e-8)
-    assert as_met(found, BODIES) is found or list(as_met(found, BODIES).given) == list(found.given)
+    assert as_target_sees(found, BODIES) is found or list(
+        as_target_sees(found, BODIES).given
+    ) == list(found.given)
     along = read_flight(without_angle(frames)).only(["rebound_tangential_velocity"])
-    np.testing.assert_array_equal(as_met(along, BODIES).given["spin"], found.given["spin"])
-    spun = as_met(read_flight(without_angle(frames)), attrs.evolve(BODIES, spin=3.0))
+    np.testing.assert_array_equal(as_target_sees(along, BODIES).given["spin"], found.given["spin"])
+    spun = as_target_sees(read_flight(without_angle(frames)), attrs.evolve(BODIES, spin=3.0))
     np.testing.assert_allclose(spun.given["spin"], found.given["spin"] + 3.0, atol=1e-8)
     assert "before the first bounce" in "".join(found.taken)
     assert "before the first bounce" not in "".join(spun.taken)
@@ -192,10 +194,10 @@ def test_of_a_ball_that_nobody_saw_before_its_first_bounce_the_spin_is_not_taken
         name: np.concatenate([one[name], values[seen]])
         for name, values in without_angle(frames).items()
     }
-    found = as_met(read_flight(both), BODIES)
+    found = as_target_sees(read_flight(both), BODIES)
     assert list(np.isnan(found.measured["rebound_tangential_velocity"])) == [True] * 4 + [False] * 5
     assert any("whose spin nobody saw" in note for note in found.notes)
-    assert list(as_met(read_flight(one), BODIES).measured) == ["rebound_normal_velocity"]
+    assert list(as_target_sees(read_flight(one), BODIES).measured) == ["rebound_normal_velocity"]
 
 
 def test_only_of_a_ball_on_a_floor_the_spin_follows(tmp_path):

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from contactlab import Simulation
 from contactlab.outcome.style import label
 from contactlab_fit import fit
-from contactlab_fit.figures import measured_and_laws
+from contactlab_fit.figures import draw_measurements
 from tests.fitting.impacts import ANGLES, BODIES, restitution, table
 
 
@@ -15,7 +15,7 @@ def test_impacts_at_one_angle_are_no_step_of_the_curve():
     """Twice the same angles: the curve goes through each once, the points are all there."""
     angles = np.tile(ANGLES, 2)
     found = fit(table(restitution(0.12, angles), angles), BODIES)
-    axes = measured_and_laws(Figure().add_subplot(), {"exact": found}, "tangential_restitution")
+    axes = draw_measurements(Figure().add_subplot(), {"exact": found}, "tangential_restitution")
     curve, points = axes.lines[:2]
     x, y = curve.get_data()
     assert (np.diff(x) > 0.0).all()
@@ -30,6 +30,6 @@ def test_measurements_without_an_angle_are_drawn_against_what_varied():
     measured = {"spin (rad/s)": np.zeros(4), "tangential_velocity (m/s)": slip,
                 "tangential_restitution": rebounds.tangential_restitution}  # fmt: skip
     found = fit(measured, BODIES)
-    axes = measured_and_laws(Figure().add_subplot(), {"exact": found}, "tangential_restitution")
+    axes = draw_measurements(Figure().add_subplot(), {"exact": found}, "tangential_restitution")
     assert axes.get_xlabel() == label("tangential_velocity", "m/s")
     assert sorted(axes.lines[1].get_xdata()) == slip.tolist()

@@ -58,7 +58,7 @@ def test_cosine_of_twice_the_angle():
     """A hemisphere of traction makes nu/(2 - nu) r²/4 cos 2 theta: .0441176 at nu = .3."""
     table = modes(24, 8, 0.3, 0.0, None)
     traction = table.along * np.sqrt(1.0 - table.points**2)
-    found = table.to[:2] @ table.displaced(traction)
+    found = table.to[:2] @ table.displace(traction)
     second = 0.5 * (found[0, 1] + found[1, 1])  # of order 1 + 1
     assert second == pytest.approx(0.3 / 1.7 * 0.25 * table.points**2, abs=1e-10)
     uniform = 0.5 * (found[0, 1] - found[1, 1])
@@ -69,7 +69,7 @@ def test_both_mirror_classes_have_the_displacements_of_a_hemisphere():
     """Along x, at the angles of spin about the normal, which are a right angle further."""
     table = modes(24, 8, 0.3, 0.0, None, True)
     angle = (np.arange(8)[:, None] + 0.5) * np.pi / 8 + 0.5 * np.pi
-    radial, around = table.displaced(table.along * np.sqrt(1.0 - table.points**2))
+    radial, around = table.displace(table.along * np.sqrt(1.0 - table.points**2))
     ux = radial * np.cos(angle) - around * np.sin(angle)
     uy = radial * np.sin(angle) + around * np.cos(angle)
     second = 0.3 / 1.7 * 0.25 * table.points**2
@@ -96,8 +96,8 @@ def test_traction_does_as_much_work_on_pressure_as_pressure_on_traction():
     pressed, pulled = np.zeros((2, 3, 4, table.count))
     pressed[2] = smooth * np.einsum("m,maj->aj", draw.normal(size=3), cosines * shapes)
     pulled[:2] = table.along * smooth * draw.normal()
-    by_pressure = table.work(pulled[:2], table.displaced(pressed)[:2])
-    lifted = table.displaced(pulled)[2]
+    by_pressure = table.work(pulled[:2], table.displace(pressed)[:2])
+    lifted = table.displace(pulled)[2]
     zero = table.to[2] @ lifted, table.to[2] @ pressed[2]
     weights = [1.0, *[0.5] * 3]
     by_traction = sum(weights[m] * zero[0][m] @ table.basis.work[m] @ zero[1][m] for m in range(4))
