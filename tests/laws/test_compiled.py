@@ -14,7 +14,7 @@ from contactlab_laws.fronts import compiled
 from contactlab_laws.fronts.law import SOLVED
 from tests.longer import longer
 
-needs_library = pytest.mark.skipif(library.library() is None, reason=compiled.told())
+needs_library = pytest.mark.skipif(library.library() is None, reason=compiled.tell())
 
 
 @pytest.fixture
@@ -125,7 +125,7 @@ def test_the_longest_jams_stay_in_the_library():
     found, status = compiled.follow(jams(JAMS), 5e-13)
     assert status.tolist() == [0, compiled.UNSETTLED, compiled.UNSETTLED]
     assert found[6, 1:].tolist() == [compiled.MOST_STEPS] * 2
-    out, ended, rows = compiled.kept(jams(JAMS)[:, 0].tolist(), 5e-13)
+    out, ended, rows = compiled.follow_one(jams(JAMS)[:, 0].tolist(), 5e-13)
     assert (ended, len(rows)) == (0, found[6, 0])
     assert out.tolist() == found[:, 0].tolist()
 
@@ -266,7 +266,7 @@ def test_a_library_older_than_its_sources_is_left_out(monkeypatch):
     library._library.cache_clear()
     try:
         assert library.library() is None
-        assert "older than its sources" in compiled.told()
+        assert "older than its sources" in compiled.tell()
     finally:
         library._library.cache_clear()
 
@@ -283,7 +283,7 @@ def test_a_library_without_its_sources_or_of_another_kind_is_left_out(monkeypatc
             patch.setattr(place, name, value)
             library._library.cache_clear()
             assert library.library() is None
-            assert re.search(words, compiled.told())
+            assert re.search(words, compiled.tell())
             assert rebound(1.2, 3.0) == pytest.approx(0.23537850255, abs=1e-10)
     library._library.cache_clear()
 

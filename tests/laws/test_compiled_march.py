@@ -13,7 +13,7 @@ import contactlab
 from contactlab import Scene, Simulation, Status
 from contactlab_laws import compiled
 
-needs_library = pytest.mark.skipif(compiled.library() is None, reason=compiled.told())
+needs_library = pytest.mark.skipif(compiled.library() is None, reason=compiled.tell())
 #: Equal numbers of both; of lossy scenes where a rounding of the speed moves nothing.
 EQUAL = 1e-12
 KINDS = ("sphere", "plane", "circle", "ellipse")

@@ -11,7 +11,7 @@ from contactlab_laws import compiled
 from contactlab_laws.springs import errors
 from tests.longer import longer
 
-needs_library = pytest.mark.skipif(compiled.library() is None, reason=compiled.told())
+needs_library = pytest.mark.skipif(compiled.library() is None, reason=compiled.tell())
 
 
 def simulation(springs, steps, normal="hertz", integrator="symplectic", **options):

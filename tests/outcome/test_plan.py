@@ -19,7 +19,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.whole_impact import no_force
 from contactlab.outcome.plan import PSI2_ERROR, TANGENTIAL_MOTION
-from contactlab_laws.compiled import library, told
+from contactlab_laws.compiled import library, tell
 from tests.laws.normal_laws import Damped, ForceFree, LinearSpring, in_si
 
 CHI = 1.4411764706
@@ -32,7 +32,7 @@ RESOLUTION = "resolution: up to 30 springs and 226 steps: by chi + abs(eta), in 
 if library() is None:
     RESOLUTION = (
         "resolution: up to 50 springs and 200 steps: the usual, as the march is not compiled, "
-        + told()
+        + tell()
     )
 STATED = "(bound stated by the laws)"
 #: What exists and was not needed.

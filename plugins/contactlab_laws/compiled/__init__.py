@@ -36,7 +36,7 @@ def library() -> Any:
     return _library(_wants_library())[0]
 
 
-def told() -> str:
+def tell() -> str:
     """Return in words whether the library is used, and why not."""
     return _library(_wants_library())[1]
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from contactlab.contracts import ClosedFormMotion, LostPathError, ScaledContact, Stretch
 from contactlab.numeric.types import Array
-from contactlab_laws.fronts.steps import Steps, error_of_step, kept
+from contactlab_laws.fronts.steps import Steps, error_of_step, follow_one
 from contactlab_laws.hertz.motion import velocity_factor
 
 #: Rings in which stick and slip are shown; the solution itself knows no rings.
@@ -112,7 +112,7 @@ def stretches(
     """Yield the stretches of one impact, from psi and 2.5 chi at first touch; each is a phase."""
     chi = 0.5 * inertia * motion.scaled_mass
     error = error_of_step(tolerance) * min(1.0, velocity)
-    ends, status, steps = kept((velocity, chi, 0.0, 0.0), error, MOST_STEPS)
+    ends, status, steps = follow_one((velocity, chi, 0.0, 0.0), error, MOST_STEPS)
     # rounding of a small psi1 apart, the change is one that slip can make
     changes = np.clip(np.append(steps.change, ends[1]), -2.0 * velocity, 0.0)
     works = np.append(steps.work, ends[2])

@@ -37,9 +37,9 @@ LOST = (
 )
 
 
-def told() -> str:
+def tell() -> str:
     """Return in words whether the library is used, and why not."""
-    words = compiled.told()
+    words = compiled.tell()
     return words if words == compiled.COMPILED else f"{BY_PYTHON}: {words}"
 
 
@@ -82,7 +82,7 @@ def follow(
     return out, status
 
 
-def kept(
+def follow_one(
     numbers: Sequence[float], tolerance: float, most: int = MOST_STEPS
 ) -> tuple[Array, int, Array]:
     """Return what one impact leaves, its status, and its steps as rows of ``steps.Steps``."""

@@ -25,7 +25,7 @@ from contactlab.numeric.vectors import entry, join_components
 from contactlab_laws.fronts import compiled
 from contactlab_laws.fronts.compiled import MEMORY, MOST_STEPS
 from contactlab_laws.fronts.path import Impact
-from contactlab_laws.fronts.steps import Steps, error_of_step, kept
+from contactlab_laws.fronts.steps import Steps, error_of_step, follow_one
 
 #: Parts of a step at which an instant is shown.
 INSTANTS = np.array([0.25, 0.5, 0.75, 1.0])
@@ -56,7 +56,7 @@ def motion(
     if observer is None or some(smooth) or numbers.shape[1] != 1:
         found, lost = _follow_sides(numbers, smooth, tolerance)
     else:
-        left, status, steps = kept(numbers[:, 0].tolist(), tolerance, MOST_STEPS)
+        left, status, steps = follow_one(numbers[:, 0].tolist(), tolerance, MOST_STEPS)
         found, lost = np.array(left)[:, None], np.array([status])
         _show(scene, scales, steps, observer)
     ended, detail = spread_object(Status.SUCCESS, shape), spread_object("", shape)

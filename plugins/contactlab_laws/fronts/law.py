@@ -136,7 +136,7 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
             block = WHOLE_IMPACTS
         else:
             block = FEW if accuracy is not None and accuracy < ERROR else FOLLOWED_AT_A_TIME
-        return Cost(block, compiled.told(), not known)
+        return Cost(block, compiled.tell(), not known)
 
     def errors(
         self, scene: Scene, normal: NormalMotion, steps: Real, accuracy: float | None = None

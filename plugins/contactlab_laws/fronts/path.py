@@ -102,7 +102,7 @@ class Impact:
     def follow(self) -> int:
         """Follow the impact to separation; return its status, a place of ``compiled.LOST``."""
         slips = self.margin < 0.0 or (self.margin == 0.0 and self.laws.drive <= 0.0)
-        part: Part | None = self._gross if slips else self._stuck
+        part: Part | None = self._gross if slips else self._stick
         try:
             while part is not None:
                 part = part()
@@ -119,7 +119,7 @@ class Impact:
 
     # ---------------------------------------------------------------------------- the parts
 
-    def _stuck(self) -> Part:
+    def _stick(self) -> Part:
         """All sticks; the edge begins to slip where k, or its like of the other sign, is zero."""
         event, (_, length) = self._along(STICK, (self.radius, 0.0))
         if abs(self.rate) < AT_REST:
@@ -132,7 +132,7 @@ class Impact:
         self.memory.append(Drawn(self.sign, outer, length))
         return self._slip()
 
-    def _drawn(self) -> Part:
+    def _draw_back(self) -> Part:
         """Let the front run back along a piece that was drawn while all stuck."""
         piece = self.memory[-1]
         assert isinstance(piece, Drawn)
@@ -211,14 +211,14 @@ class Impact:
             u, V, k, J = piece.outer
             outer = (u, V, 2.0 * V - k, (4.0 / 3.0) * u**3 - J)
             memory[-1] = Drawn(self.sign, outer, piece.length)
-        return self._drawn
+        return self._draw_back
 
     def _stop(self, front: float = 0.0) -> Part:
         """Slip has stopped: its zone locks. In unloading the edge slips on with the other sign."""
         self.margin = 0.0
         self.memory.append(Locked(self.sign, self.lack, front, self.radius))
         if self.rate > AT_REST:
-            return self._stuck
+            return self._stick
         self.rate = min(self.rate, 0.0)
         self._turn()
         return self._slip()

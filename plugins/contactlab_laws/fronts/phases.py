@@ -14,9 +14,9 @@ from contactlab_laws.fronts.series import (
     Laws,
     Rows,
     Series,
-    along_drawn,
     along_whole,
     follow_unlocking,
+    retrace,
     value,
 )
 
@@ -71,7 +71,7 @@ def step(
         if phase == DRAWN:
             u, _, k, _, c, _, k1, *_ = state
             fresh, back = k == 0.0 and k1 == 0.0, abs(u * k) > abs(c * k1)
-            rows = along_drawn(laws, state, fresh=fresh, back=back)
+            rows = retrace(laws, state, fresh=fresh, back=back)
             spent = rows[7]
         else:
             inmost = state[4] * state[4] < INMOST * abs(state[0] * state[2])

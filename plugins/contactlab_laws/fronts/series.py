@@ -46,7 +46,7 @@ class Laws(NamedTuple):
         return cls(press, relief, 2.0 * chi + sign * eta - press, 3.0 * chi - relief)
 
 
-def begun(state: Sequence[float]) -> Rows:
+def begin(state: Sequence[float]) -> Rows:
     """Return series that begin with the numbers of a state."""
     return [[number] + [0.0] * ORDER for number in state]
 
@@ -76,7 +76,7 @@ class Contact:
 
     def __init__(self, laws: Laws, u: Series, rate: Series, margin: Series, lack: Series) -> None:
         self.laws, self.rows = laws, (u, rate, margin, lack)
-        self.square, self.fourth, self.forces, self.pulls = begun((0.0,) * 4)
+        self.square, self.fourth, self.forces, self.pulls = begin((0.0,) * 4)
 
     def press(self, n: int) -> None:
         """Find the coefficients n of V' and k'."""
@@ -106,7 +106,7 @@ class Contact:
 
 def along_whole(laws: Laws, state: Sequence[float], *, sticks: bool) -> Rows:
     """Return u, V, k, J, c, x and T while all sticks, c = u, or all slips, J = c = 0."""
-    U, V, K, J, _, X, T = rows = begun(state)
+    U, V, K, J, _, X, T = rows = begin(state)
     X[1] = 1.0
     contact = Contact(laws, U, V, K, J)
     for n, share in enumerate(SHARES):
@@ -126,8 +126,8 @@ def follow_unlocking(laws: Laws, state: Sequence[float], *, inmost: bool) -> Row
     There m + 2c² and J - (4/3) c³ are constant, and 2 c dc = u k dx. The variable is x or, for
     ``inmost`` fronts, one in which dx = 2 c and dc = u k: as c² goes through zero, c ends.
     """
-    U, V, K, J, C, T = rows = begun(state)
-    gone, run = begun((0.0, 0.0))
+    U, V, K, J, C, T = rows = begin(state)
+    gone, run = begin((0.0, 0.0))
     contact = Contact(laws, U, V, K, J)
     for n, share in enumerate(SHARES):
         contact.press(n)
@@ -148,7 +148,7 @@ def follow_unlocking(laws: Laws, state: Sequence[float], *, inmost: bool) -> Row
     return rows
 
 
-def along_drawn(laws: Laws, state: Sequence[float], *, fresh: bool, back: bool) -> Rows:
+def retrace(laws: Laws, state: Sequence[float], *, fresh: bool, back: bool) -> Rows:
     """Return u, V, k, J; c, V_1, k_1 on the memory, what is left of it in x_1; and T.
 
     Parameters
@@ -161,12 +161,12 @@ def along_drawn(laws: Laws, state: Sequence[float], *, fresh: bool, back: bool) 
     back : bool
         True if x_1, which falls, is the variable, and not x.
     """
-    U, V, K, J, C, V1, K1, X1, T = rows = begun(state)
+    U, V, K, J, C, V1, K1, X1, T = rows = begin(state)
     way = -1.0 if back else 1.0
     motion, memory = Contact(laws, U, V, K, J), Contact(laws, C, V1, K1, J)
     lead, trail = (memory, motion) if back else (motion, memory)
     # u k of the leading contact, u k of the other or, where slip begins, that over x, and its pace
-    gone, other, run = begun((0.0,) * 3)
+    gone, other, run = begin((0.0,) * 3)
     for n, share in enumerate(SHARES):
         lead.press(n)
         trail.press(n)

@@ -55,7 +55,7 @@ class Steps(NamedTuple):
         return np.asarray(np.einsum("smn,sin->ism", powers, self.series))
 
 
-def kept(numbers: Sequence[float], tolerance: float, most: int) -> tuple[Any, int, Steps]:
+def follow_one(numbers: Sequence[float], tolerance: float, most: int) -> tuple[Any, int, Steps]:
     """Return what one impact leaves, its status and its steps.
 
     Parameters
@@ -68,7 +68,7 @@ def kept(numbers: Sequence[float], tolerance: float, most: int) -> tuple[Any, in
         Steps by Python's solver after which the impact is given up.
     """
     if library() is not None:
-        ends, status, rows = compiled.kept(numbers, tolerance)
+        ends, status, rows = compiled.follow_one(numbers, tolerance)
         if status != compiled.MEMORY:
             return ends, status, Steps.of(rows)
     shown: list[list[float]] = []

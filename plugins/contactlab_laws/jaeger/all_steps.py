@@ -64,11 +64,11 @@ def _geometry(bundle: Bundle, steps: ScaledSteps) -> tuple[Rows, Array, Array]:
     """Return the rows of the steps, and parts and weights, shape (K, touching) each."""
     if len(steps.radius) * len(bundle.squares) > LARGEST_KEPT:
         return _rows(bundle, steps.radius, steps.pressure)
-    return _kept(bundle, steps.radius.tobytes(), steps.pressure.tobytes())
+    return _keep(bundle, steps.radius.tobytes(), steps.pressure.tobytes())
 
 
 @lru_cache(maxsize=8)
-def _kept(bundle: Bundle, radius: bytes, pressure: bytes) -> tuple[Rows, Array, Array]:
+def _keep(bundle: Bundle, radius: bytes, pressure: bytes) -> tuple[Rows, Array, Array]:
     return _rows(bundle, np.frombuffer(radius), np.frombuffer(pressure))
 
 

@@ -84,7 +84,7 @@ class TouchingContacts:
 
     def _note(self, step: Array, acting: Sequence[Real], closed: Where, time: Array) -> None:
         """Note the forces of a step."""
-        impulse = step[..., None] * joined(acting, self.scene.shape)
+        impulse = step[..., None] * join(acting, self.scene.shape)
         self._impulse += impulse
         if self._pulls:
             self._moment += (self._pushed + 0.5 * step)[..., None] * impulse
@@ -120,14 +120,14 @@ class TouchingContacts:
             flight = np.where(flies, np.maximum(until, 0.0), 0.0)
         return on, flight
 
-    def told(self, late: Mask) -> str:
+    def tell(self, late: Mask) -> str:
         """Return why a gathering was given up, with the touches of each contact."""
         first = int(np.flatnonzero(late)[0]) // self.scene.shape[-1]
         times = self._touches.reshape(-1, self.scene.shape[-1])[first]
         held = self._touching.reshape(-1, self.scene.shape[-1])[first]
         return tell_still_closing(times, held, not self._free.all())
 
-    def told_of(self, dissipation: Real) -> Contacts:
+    def tell_contacts(self, dissipation: Real) -> Contacts:
         """Return what the contacts went through."""
         return Contacts(
             impulse=self._impulse,
@@ -139,7 +139,7 @@ class TouchingContacts:
             dissipation=np.broadcast_to(dissipation, self.scene.shape) + 0.0,
         )
 
-    def laid(
+    def lay(
         self,
         laws: tuple[NormalLaw, CausalTangentialLaw],
         normal: NormalMotion,
@@ -204,7 +204,7 @@ def pressing(law: NormalLaw, memory: object, approach: Array) -> Any:
     return law.respond(memory, approach, np.zeros(approach.shape))[0].force
 
 
-def joined(components: Sequence[Real], shape: tuple[int, ...]) -> Array:
+def join(components: Sequence[Real], shape: tuple[int, ...]) -> Array:
     """Return vectors along n, t1 and t2 by their components; ``np.stack`` takes longer."""
     vectors = np.empty((*shape, 3))
     for k, each in enumerate(components):

@@ -35,7 +35,7 @@ from contactlab.impact import kinetics
 from contactlab.numeric.arrays import choose, lock_arrays, spread_object
 from contactlab.numeric.types import Mask, Real
 from contactlab_laws.march import coupled_steps
-from contactlab_laws.march.contacts import TouchingContacts, joined, whole
+from contactlab_laws.march.contacts import TouchingContacts, join, whole
 from contactlab_laws.march.coupled_steps import DEEPEST, TOO_DEEP, Division, divide, tell_too_long
 
 #: Turns from parting to approach, made by tension, after which a contact is given up: adhesion
@@ -166,7 +166,7 @@ class _March:
         if self.contacts is not None:
             approach = -self.contacts.links.gap
             if np.any(self.contacts.links.loaded):
-                approach, contact, state = self.contacts.laid(
+                approach, contact, state = self.contacts.lay(
                     (alone, law), self.normal, (memory, state), self.step, shares=self.shares
                 )
         pressure, force = contact.force, [zero] * self.axes
@@ -281,7 +281,7 @@ class _March:
     def _give_up(self, late: Mask) -> None:
         """Give up impacts that last too long."""
         if self.contacts is not None:
-            self.fail(Status.NOT_SEPARATED, self.contacts.told(late), late)
+            self.fail(Status.NOT_SEPARATED, self.contacts.tell(late), late)
             self.alive = np.logical_and(self.alive, np.logical_not(late))
             return
         count = int(np.max(self.compressions, where=late, initial=1))
@@ -344,7 +344,7 @@ class _March:
         """Return W (P, F) dt, the velocities that a step takes."""
         each: list[Any] = [pressure, *force]
         if self.links is not None:
-            moved = self.links.kick(joined(each, self.shape))
+            moved = self.links.kick(join(each, self.shape))
             return [step * moved[..., k] for k in range(3)]
         return [step * sum(w * f for w, f in zip(row, each, strict=True)) for row in self.W]
 
@@ -374,5 +374,5 @@ class _March:
             status=self.status,
             detail=self.detail,
             counters={"steps": self.steps},
-            contacts=None if self.contacts is None else self.contacts.told_of(self.loss),
+            contacts=None if self.contacts is None else self.contacts.tell_contacts(self.loss),
         )

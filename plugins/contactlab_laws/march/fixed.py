@@ -137,20 +137,20 @@ class FixedSteps(CoupledIntegrator):
         """The steps of an impact whose stiffness they resolve."""
         return int(resolution_of(self))
 
-    def _taken(self, needed: Real) -> Real:
+    def _count_steps(self, needed: Real) -> Real:
         """Return how many steps each impact takes: ``steps``, or more if these are too few."""
         return refine_count(self._steps, needed) if self.refine else float(self._steps)
 
     def resolution_for(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Real:
         """Return how many steps each impact takes."""
-        steps: Real = self._taken(find_least_steps(normal, tangential, scene))
+        steps: Real = self._count_steps(find_least_steps(normal, tangential, scene))
         return steps
 
     def errors(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Errors:
         """Return the errors that the tangential law declares for as many steps."""
         if scene.inverse_mass is None:
             needed = find_least_steps(normal, tangential, scene)
-            taken = self._taken(needed)
+            taken = self._count_steps(needed)
         else:
             assert isinstance(tangential, CausalTangentialLaw)
             needed = coupled_steps.find_least_steps(scene, normal, tangential)
@@ -204,7 +204,7 @@ class FixedSteps(CoupledIntegrator):
                 needed = find_least_steps(normal, law)
             if observer is not None:
                 needed = float(np.max(needed))
-            return in_groups(normal, self._steps, needed, self._taken(needed), even)
+            return in_groups(normal, self._steps, needed, self._count_steps(needed), even)
         except faults.LawFaultError as fault:
             return TangentialMotion.nothing(scene.shape, fault.status, fault.detail)
 

@@ -93,15 +93,15 @@ def of_spheres(
         by_steps = max(even * whole, entering * entered)
         error = BY_SPRINGS * chi / count**2 + by_steps
         if restitution is not None:
-            error *= float(_left(error, chi, restitution))
+            error *= float(_leave(error, chi, restitution))
         return Errors(error * min(slip / LITTLE_SLIP, 1.0))
     error = BY_SPRINGS * chi / count**2 + _by_steps(chi, steps, even, entering)
     if restitution is not None:
-        error = error * _left(error, chi, restitution)
+        error = error * _leave(error, chi, restitution)
     return Errors(error * np.minimum(slip / LITTLE_SLIP, 1.0))
 
 
-def _left(error: Real, chi: Real, restitution: Real) -> Real:
+def _leave(error: Real, chi: Real, restitution: Real) -> Real:
     """Return what a loss leaves of an error: less of a small one, of long oscillations."""
     return np.minimum(1.0 / np.maximum((1.0 - restitution) * chi, 1.0) + error, 1.0)
 

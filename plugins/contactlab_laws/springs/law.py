@@ -32,7 +32,7 @@ from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import Rule, choice, count, flag, quantity, refuse
 from contactlab.numeric.types import Real
-from contactlab_laws.compiled import library, told
+from contactlab_laws.compiled import library, tell
 from contactlab_laws.differences import table as differences
 from contactlab_laws.jaeger.law import ProfileLaw, State
 from contactlab_laws.jaeger.partial_slip import Scales
@@ -116,7 +116,7 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
             return None
         usual = float(resolution_of(self)), float(resolution_of(integrator))
         if library() is None:
-            return Resolutions(*usual, f"the usual, as the march is not compiled, {told()}")
+            return Resolutions(*usual, f"the usual, as the march is not compiled, {tell()}")
         if scene.links is not None:  # its error was not measured over chi
             return Resolutions(*usual, "the usual, in a compiled march")
         return Resolutions(*errors.resolve(scene), "by chi + abs(eta), in a compiled march")

@@ -97,7 +97,7 @@ class Table:
             Patches(origins, (terms * scale)[order], all_needed.tolist()),
         )
 
-    def found(self, here: Places) -> NDArray[np.int16]:
+    def find(self, here: Places) -> NDArray[np.int16]:
         """Return the patches of places."""
         i, j = (SIZE * here.a.real).astype(np.int32), (SIZE * here.b.real).astype(np.int32)
         np.minimum(i, SIZE - 1, out=i)
@@ -208,7 +208,7 @@ def _full_slip(speed: Array, chi: Array) -> Array:
 
 def _partial_slip(table: Table, here: Places) -> Array:
     """Return psi2 of these places, within the bounds of ``single``."""
-    g = table.patches.values(table.found(here), here.a, here.b)
+    g = table.patches.values(table.find(here), here.a, here.b)
     g *= here.measure
     g -= 1.0
     np.maximum(g, -1.0, out=g)
@@ -232,7 +232,7 @@ def gradient(table: Table, speed: Array, chi: Array) -> tuple[Array, Array]:
         block = slice(first, first + BLOCK)
         here = places(p[block], x[block], table.cuts)
         if here.who.size:
-            g = table.exact.values(table.found(here), here.a, here.b)
+            g = table.exact.values(table.find(here), here.a, here.b)
             slopes[block][here.who] = (here.speed * (here.measure * g - 1.0)).imag
     slopes /= STEP
     return slopes[:count], slopes[count:]

@@ -215,7 +215,7 @@ def gradient(speed: Array, chi: Array, e: Array) -> tuple[Array, Array, Array]:
 
 
 @lru_cache(maxsize=64)
-def _kept(_: float, __: Path) -> dict[int, Callable[[float, float], float]]:
+def _keep(_: float, __: Path) -> dict[int, Callable[[float, float], float]]:
     """Return the patches at one restitution in plain numbers, those that were asked for."""
     return {}
 
@@ -259,7 +259,7 @@ def _single(
     (rows, columns, layers), (_, low, high) = sizes[region], REGIONS[region]
     i, j = index(u, rows), index((chi - low) / (high - low), columns)
     patch = grid[starts[region] + (i * columns + j) * layers + index(e, layers)]
-    kept = _kept(e, path)
+    kept = _keep(e, path)
     value = kept.get(patch)
     if value is None:
         patches = load_table(path).patches

@@ -172,7 +172,7 @@ def _elastic(xp: Library, constants: Mapping[str, Traced], p: Traced, x: Traced)
     tiny = xp.where(near & (delta > 0.0) & ~big, ratio, HARMLESS) ** 0.2
     wide = xp.where(delta > 0.0, delta, 1.0)
 
-    def chosen(*cases: Operand) -> Traced:
+    def choose(*cases: Operand) -> Traced:
         """Return the case of each impact: late, long, above or below a cut; then those p <= 1."""
         slip_late, slip_long, slip_on, slip_back, stuck_on, stuck_back, small_near, small_far = (
             cases
@@ -183,7 +183,7 @@ def _elastic(xp: Library, constants: Mapping[str, Traced], p: Traced, x: Traced)
         small = xp.where(near, small_near, small_far)
         return xp.where(slips, slipping, xp.where(big, sticking, small))
 
-    region = chosen(
+    region = choose(
         *(
             xp.full(p.shape, number, dtype=xp.int32)
             for number in (
@@ -197,16 +197,16 @@ def _elastic(xp: Library, constants: Mapping[str, Traced], p: Traced, x: Traced)
     seam = xp.where(seam < 1.0, seam, HARMLESS)  # below the cut b may be of any size
     on = xp.where(short < seam, 0.5 * short / seam, 0.5 + 0.5 * (short - seam) / (1.0 - seam))
     at_one = xp.where(delta > 0.0, tiny, 0.0)
-    a = chosen(ratio - 1.0, far, on, short, p, p, at_one, epsilon / wide)
-    b = chosen(height, height, b_slip, b_slip, b_stuck, b_stuck, epsilon, delta)
+    a = choose(ratio - 1.0, far, on, short, p, p, at_one, epsilon / wide)
+    b = choose(height, height, b_slip, b_slip, b_stuck, b_stuck, epsilon, delta)
     measure = xp.where(slips | big | near, epsilon, delta)
     a, b = xp.where(through, HARMLESS, a), xp.where(through, HARMLESS, b)
     size = elastic.SIZE
     i, j = (_index(xp, each, size) for each in (a, b))
     patch = xp.take(constants["grid"], _flat(xp, (region * size + i) * size + j), axis=0)
     local = [
-        each * _taken(xp, constants["scales"][k, ...], patch, p.shape)
-        - _taken(xp, constants["starts"][k, ...], patch, p.shape)
+        each * _take(xp, constants["scales"][k, ...], patch, p.shape)
+        - _take(xp, constants["starts"][k, ...], patch, p.shape)
         for k, each in enumerate((a, b))
     ]
     count = elastic.NODES
@@ -230,18 +230,18 @@ def _partial(
         region = region + xp.astype(slips & (x >= bound), xp.int32)
     region = xp.where(slips & ~(x >= 0.5), xp.ones_like(region), region)
     flat, shape = _flat(xp, region), p.shape
-    share = (x - _taken(xp, constants["low"], flat, shape)) * _taken(
+    share = (x - _take(xp, constants["low"], flat, shape)) * _take(
         xp, constants["per_width"], flat, shape
     )
     where = xp.zeros_like(region)
     for k, each in enumerate((u, share, e)):
-        size = _taken(xp, constants["sizes"][k, ...], flat, shape)
+        size = _take(xp, constants["sizes"][k, ...], flat, shape)
         place = xp.astype(each * xp.astype(size, p.dtype), xp.int32)
         where = where * size + xp.where(place < 0, 0, xp.where(place < size, place, size - 1))
-    where = where + _taken(xp, constants["starts"], flat, shape)
+    where = where + _take(xp, constants["starts"], flat, shape)
     patch = xp.take(constants["grid"], _flat(xp, where), axis=0)
     local = [
-        each - _taken(xp, constants["origins"][k, ...], patch, shape)
+        each - _take(xp, constants["origins"][k, ...], patch, shape)
         for k, each in enumerate((u, x, e))
     ]
     first = patch * (NODES[0] * NODES[1] * NODES[2])
@@ -268,7 +268,7 @@ def _sum(
         term = (
             _sum(xp, terms, start, others, local[1:], shape)
             if others
-            else _taken(xp, terms, start, shape)
+            else _take(xp, terms, start, shape)
         )
         total = term if total is None else total * local[0] + term
     assert total is not None
@@ -302,6 +302,6 @@ def _flat(xp: Library, index: Traced) -> Traced:
     return xp.reshape(index, (-1,))
 
 
-def _taken(xp: Library, values: Traced, index: Traced, shape: tuple[int, ...]) -> Traced:
+def _take(xp: Library, values: Traced, index: Traced, shape: tuple[int, ...]) -> Traced:
     """Return ``values`` at an index of one axis, in the shape of the impacts."""
     return xp.reshape(xp.take(values, index, axis=0), shape)

@@ -45,7 +45,7 @@ def cautions(scene: Scene, normal: NormalMotion, *, fitted: bool) -> tuple[str, 
         return ()
     deep = _deep(scene, normal) if name_bodies(scene) else ()
     of_bodies = (*deep, *_metal(scene)) if name_bodies(scene) else ()
-    trusted = _trusted(np.asarray(scene.chi), e, grips, small=_solid(scene) and not deep)
+    trusted = _trust(np.asarray(scene.chi), e, grips, small=_solid(scene) and not deep)
     return (*(() if fitted else trusted), *of_bodies)
 
 
@@ -56,7 +56,7 @@ def _solid(scene: Scene) -> bool:
     return bool(np.all(np.abs(np.square(scene.sphere.gyration_ratio) - SOLID) <= NEARLY))
 
 
-def _trusted(chi: Array, e: Array, grips: Mask, *, small: bool) -> tuple[str, ...]:
+def _trust(chi: Array, e: Array, grips: Mask, *, small: bool) -> tuple[str, ...]:
     """Return how far beta0 is trusted where it was measured, and where it was not.
 
     Solid spheres whose contact is ``small`` have the size of such spheres, others that of balls.

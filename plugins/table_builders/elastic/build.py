@@ -136,7 +136,7 @@ def _batch(progress: Progress, tolerance: float, solve: Solve) -> None:
         along_b = patch.error_b > max(tolerance, MINOR * most) and cell.level_b < DEEPEST
         if along_a or along_b:
             parts = cell.split(bool(along_a), bool(along_b))
-            progress.todo.extend(part for part in parts if part.needed(progress.cuts))
+            progress.todo.extend(part for part in parts if part.needs(progress.cuts))
         else:
             if most > tolerance:
                 print(f"{cell} is left at {most:.1e}", file=sys.stderr)

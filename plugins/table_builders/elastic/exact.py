@@ -8,7 +8,7 @@ from contactlab.numeric.types import Array
 from contactlab_laws.fronts.compiled import LOST, MOST_STEPS
 from contactlab_laws.fronts.coupled import solve_impacts
 from contactlab_laws.fronts.phases import LOCKED
-from contactlab_laws.fronts.steps import Steps, kept
+from contactlab_laws.fronts.steps import Steps, follow_one
 
 #: Error of a step. Answers then come to 3e-15 (to 4e-14 at 1e-8 from psi1 = 1, chi = 1/2): what is
 #: left of 5e-13, some 3e-14, is seen in second derivatives of a patch.
@@ -37,7 +37,7 @@ def reaches_disk(psi1: float, chi: float) -> bool:
 
 def _steps(psi1: float, chi: float) -> Steps:
     """Return the steps of one impact."""
-    _, status, steps = kept((psi1, chi, 0.0, 0.0), STEP, MOST_STEPS)
+    _, status, steps = follow_one((psi1, chi, 0.0, 0.0), STEP, MOST_STEPS)
     if status:
         _refuse_lost(psi1, chi, status)
     return steps

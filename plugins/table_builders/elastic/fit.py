@@ -80,7 +80,7 @@ class Cell(NamedTuple):
             for j in range(1 + along_b)
         ]
 
-    def needed(self, cuts: Cuts) -> bool:
+    def needs(self, cuts: Cuts) -> bool:
         """Return whether chi is not above LARGEST_CHI everywhere: it is least where a and b are."""
         low = np.array([self.i * 0.5**self.level_a]), np.array([self.j * 0.5**self.level_b])
         return bool(impact(self.region, *low, cuts)[1] <= LARGEST_CHI + ROUNDING)
@@ -151,8 +151,8 @@ def fit(
         error_b = max(error_b, np.abs(misfit_b).max())
     error_a *= max(1.0, _steepness(cell, psi1, chi) / SLOPE_PER_VALUE)
     bend_a, bend_b = _bends(cell, psi1, chi, cuts)
-    error_a = max(error_a, bend_a * _left_out(misfit_a * psi1) / BEND_PER_VALUE)
-    error_b = max(error_b, bend_b * _left_out((misfit_b * psi1).T) / BEND_PER_VALUE)
+    error_a = max(error_a, bend_a * _find_tail(misfit_a * psi1) / BEND_PER_VALUE)
+    error_b = max(error_b, bend_b * _find_tail((misfit_b * psi1).T) / BEND_PER_VALUE)
     return Fit(np.ascontiguousarray(terms), float(error_a), float(error_b))
 
 
@@ -203,7 +203,7 @@ def _sizes(values: Array) -> Array:
     return np.abs(matrix @ values @ matrix.T)
 
 
-def _left_out(misfit: Array) -> float:
+def _find_tail(misfit: Array) -> float:
     """Return the largest term left out along the first axis, 0 if it is rounding."""
     largest = float(_sizes(misfit)[NODES:].max())
     return largest if largest > LEAST else 0.0
