@@ -382,7 +382,7 @@ def _seconds(text: str) -> float:
     return seconds
 
 
-def chosen_laws(arguments: argparse.Namespace) -> list[str] | None:
+def choose_laws(arguments: argparse.Namespace) -> list[str] | None:
     """Return the laws named for a report over all laws, each with its kind; None if none is."""
     chosen = {kind: getattr(arguments, kind) or [] for kind in KINDS}
     return [full_name(kind, name) for kind in KINDS for name in chosen[kind]] or None

@@ -47,7 +47,7 @@ def execute(arguments: argparse.Namespace) -> int:
         if getattr(arguments, name) and arguments.markdown:
             raise ValueError(f"--{name}, --markdown: cannot be combined; leave out one")
     asked = questions(
-        shared.chosen_laws(arguments), arguments.question, restitution=arguments.restitution
+        shared.choose_laws(arguments), arguments.question, restitution=arguments.restitution
     )
     with shared.progress(arguments.progress, "bench") as progress:
         benchmark = bench(
@@ -117,7 +117,7 @@ def markdown(benchmark: Benchmark) -> str:
         errors = (row.error_rms, row.error_worst, row.books_worst)
         numbers = [f"{value:.1e}" if value == value else "-" for value in errors]
         lines.append([row.question, name, row.options, *numbers, *_times(row)])
-    return _ended("\n".join(f"| {' | '.join(line)} |" for line in lines), benchmark)
+    return _end("\n".join(f"| {' | '.join(line)} |" for line in lines), benchmark)
 
 
 def _times(row: Row) -> list[str]:
@@ -146,7 +146,7 @@ def _report(benchmark: Benchmark) -> str:
     orders = [[name, order] for name, order in benchmark.orders.items()]
     if orders:
         parts.append(table(["method", "order observed"], orders, digits=3))
-    return _ended("\n\n".join(parts), benchmark)
+    return _end("\n\n".join(parts), benchmark)
 
 
 def _peers(benchmark: Benchmark) -> list[str]:
@@ -168,7 +168,7 @@ def _peers(benchmark: Benchmark) -> list[str]:
     return parts
 
 
-def _ended(text: str, benchmark: Benchmark) -> str:
+def _end(text: str, benchmark: Benchmark) -> str:
     """Return a report, and why it is not complete if it is not."""
     if benchmark.complete:
         return text

@@ -34,7 +34,7 @@ KEPT = ("|", "#", "![", INDENT, "```")
 def readable(page: str, width: int) -> str:
     """Return a page of Markdown with its formulas in letters, and its prose in lines of a width."""
     parts = CODE.split(page)
-    parts[::2] = (FORMULA.sub(_shown, part) for part in parts[::2])
+    parts[::2] = (FORMULA.sub(_show, part) for part in parts[::2])
     parts[1::2] = (part if part[:3] == "```" else _unbroken(part) for part in parts[1::2])
     told = LINK.sub(r"\1", "".join(parts))
     parts = re.split(r"(^```.*?^```$)", told, flags=re.DOTALL | re.MULTILINE)
@@ -43,7 +43,7 @@ def readable(page: str, width: int) -> str:
     return "".join(parts).replace(UNBROKEN, " ")
 
 
-def _shown(found: re.Match[str]) -> str:
+def _show(found: re.Match[str]) -> str:
     """Return a formula that was found."""
     return _unbroken(inline(found[2])) if found[2] else block(found[1])
 

@@ -46,7 +46,7 @@ def execute(arguments: argparse.Namespace) -> int:
     """Run the report; the status is 1 if any answer is silently wrong or a law raised."""
     if arguments.width == "one":
         raise ValueError("--width one: the map needs two columns; use --width two")
-    laws = shared.chosen_laws(arguments)
+    laws = shared.choose_laws(arguments)
     chosen = methods(laws, restitution=arguments.restitution)
     told = arguments.progress is not False
     if told:

@@ -96,7 +96,7 @@ def execute(arguments: argparse.Namespace) -> int:
     scene = file.scene if file else grid(arguments.psi1, arguments.chi)
     simulation = compose_laws(arguments, file.laws if file else LawChoice())
     keep = _folder(arguments.out) if arguments.resume else None
-    before = 0 if keep is None else _done(keep)
+    before = 0 if keep is None else _count_before(keep)
     with (
         shared.progress(arguments.progress, "impacts") as progress,
         contextlib.redirect_stdout(sys.stderr),  # plug-ins may print
@@ -121,7 +121,7 @@ def execute(arguments: argparse.Namespace) -> int:
         progress_wanted=arguments.progress,
         interrupted=was_interrupted(result),
     )
-    if keep is not None and saved == shared.OK and _done(keep) == len(result):
+    if keep is not None and saved == shared.OK and _count_before(keep) == len(result):
         _clear(keep)
         keep = None
     if arguments.csv:
@@ -136,7 +136,7 @@ def execute(arguments: argparse.Namespace) -> int:
             print(f"all {len(result)} impacts; {arguments.out} is not written")
     failed = report(result, as_json=arguments.json, varied=varied)
     if keep is not None:
-        words = f"{_done(keep)} impacts are kept in {keep}; repeat the command to continue"
+        words = f"{_count_before(keep)} impacts are kept in {keep}; repeat the command to continue"
         print(f"contactlab sweep: {words}", file=sys.stderr)
     return max(saved, failed)
 
@@ -208,7 +208,7 @@ def _print_table(result: ImpactResult, varied: Mapping[str, Real], out: Path | N
     else:
         print(table(*_rows(result, evenly(len(result), most))))
     if most is not None and len(result) > most:
-        done = _count_done(result)
+        done = _count_new(result)
         which = "all of them" if done == len(result) else f"the {done} finished ones"
         print(f"{most} of {len(result)} impacts; {which} are in {out}")
 
@@ -229,7 +229,7 @@ def _folder(out: Path | None) -> Path:
     return out.with_name(f"{out.name}.kept")
 
 
-def _done(folder: Path) -> int:
+def _count_before(folder: Path) -> int:
     """Return the number of impacts that an earlier run finished."""
     from contactlab.runs.target import count
 
@@ -243,7 +243,7 @@ def _clear(folder: Path) -> None:
     remove(folder)
 
 
-def _count_done(result: ImpactResult) -> int:
+def _count_new(result: ImpactResult) -> int:
     """Return the number of impacts that were computed."""
     if succeeded(result.status):
         return len(result)

@@ -108,7 +108,7 @@ def save(
         room = max(1.0, 0.55 * columns)  # type shrinks where panels stand side by side
         size = (room * SLIDE[0], room * SLIDE[1])
     with styled(look, width):
-        figure = _drawn(draw, rows=rows, columns=columns, heights=heights, size=size)
+        figure = _draw(draw, rows=rows, columns=columns, heights=heights, size=size)
         save_figure(figure, path, look=look)
     return Picture(Path(path))
 
@@ -118,7 +118,7 @@ def as_svg(draw: Draw, *, rows: int = 1, heights: tuple[float, ...] = (1.0,)) ->
     text = io.StringIO()
     with styled(), mpl.rc_context({"svg.hashsalt": "contactlab"}):
         size = _size(columns=1, heights=heights, wide=False, width=None)
-        figure = _drawn(draw, rows=rows, columns=1, heights=heights, size=size)
+        figure = _draw(draw, rows=rows, columns=1, heights=heights, size=size)
         figure.savefig(text, format="svg", metadata=METADATA["svg"])
     content = text.getvalue()
     return content[content.index("<svg") :]
@@ -139,7 +139,7 @@ def _size(
     return across, up
 
 
-def _drawn(
+def _draw(
     draw: Draw,
     *,
     rows: int,

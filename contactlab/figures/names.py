@@ -115,7 +115,7 @@ def _write(
         others = [points for other, points in dots.items() if other not in name.group]
         curves = [*dots.values(), *straight]
         room = _Room(dots[name.line], others, curves, boxes, frame, name.size, unit)
-        found = room.beside() or room.led()
+        found = room.beside() or room.lead()
         if found is None:
             for leader in leaders:
                 leader.remove()
@@ -242,7 +242,7 @@ class _Room(NamedTuple):
         best = int(np.argmax(score))
         return (centres[best], None) if score[best] > -np.inf else None
 
-    def led(self) -> tuple[Array, Array | None] | None:
+    def lead(self) -> tuple[Array, Array | None] | None:
         """Return the best centre of the name away from its curve, and where its line begins."""
         best, place = np.inf, None
         size, unit, pad = self.size, self.unit, LEAST * self.unit

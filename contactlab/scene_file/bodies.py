@@ -62,7 +62,7 @@ def rigid_body(
     tilt = real(table.at(TILT), table.content.get(TILT, 0.0), remedy="in degrees, about y")
     upright = options.pop(shape.oriented, UPRIGHT if shape.oriented == "axis" else np.eye(3))
 
-    def made(**numbers: object) -> tuple[Any, ...]:
+    def make(**numbers: object) -> tuple[Any, ...]:
         try:
             turned = _about_y(tilt) @ np.asarray(upright, dtype=float)
         except ValueError:
@@ -71,7 +71,7 @@ def rigid_body(
 
     for key in shape.needed:
         table.require(key, f"a {name} needs {', '.join(shape.needed)} in m")
-    return table.make(made, **options)
+    return table.make(make, **options)
 
 
 def _about_y(degrees: Real) -> Array:

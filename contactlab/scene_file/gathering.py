@@ -57,7 +57,7 @@ def read_gathering(document: Mapping[str, object], varied: Mapping[str, Numbers]
     return Gathering(bodies, touches)
 
 
-def swept_path(name: str, *, where: str = "") -> str:
+def read_path(name: str, *, where: str = "") -> str:
     """Return the name of an entry that a sweep of a gathering may vary, or refuse it."""
     parts = name.split(".")
     if len(parts) == 3 and parts[0] == "bodies" and parts[2] == SPEED:
@@ -83,7 +83,7 @@ def _body(content: object, path: str) -> tuple[Body | HalfSpace, list[dict[str, 
     if kind == "sphere":
         shape = read_sphere(Table(content, path, known=("kind", *SPHERE_KEYS, *MOTION)))
     elif "shape" in given:
-        shape, contacts = _shaped(content, given, path)
+        shape, contacts = _shape(content, given, path)
     else:
         shape, _ = rigid_body(content, path, np.zeros(3), read_material, beside=MOTION)
     table = Table(content, path, known=given)
@@ -91,7 +91,7 @@ def _body(content: object, path: str) -> tuple[Body | HalfSpace, list[dict[str, 
     return table.make(Body, shape=shape, **vectors), contacts
 
 
-def _shaped(
+def _shape(
     content: object, given: Mapping[str, object], path: str
 ) -> tuple[RigidBody, list[dict[str, object]]]:
     """Return the body of a shape, and normal, contact and gap of each of its contacts."""

@@ -129,20 +129,20 @@ class LawChoice:
             if name not in KINDS:  # check options of laws that are not chosen too
                 REGISTRY.create(name, **options)
         named = frozenset(kind for kind in KINDS if getattr(self, kind) or kind in self.options)
-        laws = composition.Laws(*(choice.made(kind) for kind in KINDS)).change(named=named)
+        laws = composition.Laws(*(choice.make(kind) for kind in KINDS)).change(named=named)
         composition.check(laws)
         return Simulation.of(laws)
 
     def resolve(self) -> LawChoice:
         """Return the choice with every law named."""
         choice = attrs.evolve(self, normal=self.normal or composition.DEFAULT_NORMAL)
-        made = [choice.made("normal")]
-        named = () if self.integrator is None else (choice.made("integrator"),)
+        made = [choice.make("normal")]
+        named = () if self.integrator is None else (choice.make("integrator"),)
         for kind in ("tangential", "integrator"):
             if getattr(choice, kind) is None:
                 name = composition.prefer_law(kind, *made, after=named)
                 choice = choice.choose(**{kind: name})
-            made.append(choice.made(kind))
+            made.append(choice.make(kind))
         return choice
 
     def suit_to(self, scene: Scene) -> LawChoice:
@@ -164,16 +164,16 @@ class LawChoice:
             options={key: value for key, value in self.options.items() if key != "integrator"},
         ).resolve()
         own = attrs.evolve(default, integrator=self.integrator, options=self.options)
-        laws = (own.made("normal"), own.made("tangential"), own.made("integrator"))
+        laws = (own.make("normal"), own.make("tangential"), own.make("integrator"))
         return default if composition.misfit(*laws) else own
 
     def _list_options(self) -> list[str]:
         """Return the options of the three laws: ``"tangential.annuli"``."""
         choice = self.resolve()
-        laws = {kind: type(choice.made(kind)) for kind in KINDS}
+        laws = {kind: type(choice.make(kind)) for kind in KINDS}
         return [f"{kind}.{name}" for kind in KINDS for name in signature(laws[kind]).parameters]
 
-    def made(self, kind: str) -> Any:
+    def make(self, kind: str) -> Any:
         """Return the law of one kind with its options."""
         name = full_name(kind, getattr(self, kind))
         options = dict(self.options.get(kind, {}))

@@ -60,7 +60,7 @@ class Measured:
         return {self.against: self.x, **beside}
 
 
-def read_measured(content: object) -> tuple[Measured, ...]:
+def read_series(content: object) -> tuple[Measured, ...]:
     """Return the series of a file's ``[[measured]]`` tables, in order."""
     rule = "must be a list of tables"
     tables = of_kind("measured", content, list, rule=rule, remedy="write [[measured]]")

@@ -83,7 +83,7 @@ def of_bodies(
 
     about: dict[str, Any] = dict(contacts)
 
-    def met() -> Encounter:
+    def meet() -> Encounter:
         return Encounter(
             body=bodies[0],
             target=bodies[1],
@@ -96,7 +96,7 @@ def of_bodies(
             **about,
         )
 
-    encounter = table.make(met)
+    encounter = table.make(meet)
     x, y, z = t.tolist()
     return table.make(lambda: attrs.evolve(encounter.scene, along=(x, y, z))), encounter
 

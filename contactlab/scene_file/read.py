@@ -32,7 +32,7 @@ from contactlab.scene_file.entries import (
     without_rivals,
 )
 from contactlab.scene_file.laws import LawChoice, read_laws
-from contactlab.scene_file.measured import Measured, read_measured
+from contactlab.scene_file.measured import Measured, read_series
 from contactlab.scene_file.quantities import read_units
 from contactlab.scene_file.sweep import Sweep, read_sweep
 from contactlab.scene_file.table import Table
@@ -112,9 +112,9 @@ class SceneFile:
         together. A dotted entry is written ``**{"sphere.radius": [...]}``.
         """
         if self.gathering is not None:
-            from contactlab.scene_file.gathering import read_gathering, swept_path
+            from contactlab.scene_file.gathering import read_gathering, read_path
 
-            varied = {swept_path(name): real(name, values) for name, values in entries.items()}
+            varied = {read_path(name): real(name, values) for name, values in entries.items()}
             return read_gathering(self.tables, varied).scene
         return _scene_with(self.tables, entries)[0]
 
@@ -181,7 +181,7 @@ def read_scene(
             encounter=encounter,
             varied=sweep.varied,
             laws=laws,
-            measured=read_measured(document.get("measured", [])),
+            measured=read_series(document.get("measured", [])),
             materials=list_materials(document),
             defaulted=tuple(
                 name
@@ -203,12 +203,12 @@ def _of_gathering(
     allow_code: bool,
 ) -> SceneFile:
     """Return the file of several contacts at once."""
-    from contactlab.scene_file.gathering import read_gathering, swept_path  # few files need it
+    from contactlab.scene_file.gathering import read_gathering, read_path  # few files need it
 
     document = root.content
-    varied: Any = read_sweep(document.get("sweep", {}), swept_path).varied
+    varied: Any = read_sweep(document.get("sweep", {}), read_path).varied
     if entries:
-        varied = {swept_path(name): real(name, values) for name, values in entries.items()}
+        varied = {read_path(name): real(name, values) for name, values in entries.items()}
     gathering = read_gathering(document, varied)
     bodies: Any = document["bodies"]
     texts: dict[str, Any] = {key: about.text(key, default="") for key in ABOUT_KEYS}
@@ -219,7 +219,7 @@ def _of_gathering(
         gathering=gathering,
         varied=varied,
         laws=read_laws(document.get("simulation", {}), file.parent, allow_code=allow_code),
-        measured=read_measured(document.get("measured", [])),
+        measured=read_series(document.get("measured", [])),
         materials=list_materials(bodies, of=bodies),
         tables=document,
     )
@@ -293,7 +293,7 @@ def _document(file: Path) -> dict[str, Any]:
         if file.suffix.lower() in (".csv", ".txt", ".dat"):
             rule = "holds no scene; measured impacts go to contactlab fit"
             raise ValueError(f"{file}: {rule} {file.name} bodies.toml") from None
-        raise ValueError(f"{file}, {_place(str(error), text)}{_written(text)}") from None
+        raise ValueError(f"{file}, {_place(str(error), text)}{_rewrite(text)}") from None
     except ValueError as error:  # an integer with thousands of digits
         raise ValueError(f"{file}: {error}") from None
     except RecursionError:
@@ -327,7 +327,7 @@ def _deep(document: Mapping[str, object]) -> bool:
     return bool(level)
 
 
-def _written(text: str) -> str:
+def _rewrite(text: str) -> str:
     """Return what to write in place of the first value that is not TOML; empty if none is known."""
     for line in text.splitlines():
         key, equals, value = (part.strip() for part in line.partition("#")[0].partition("="))

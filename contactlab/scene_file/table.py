@@ -49,7 +49,7 @@ class Table:
         self.content: Mapping[str, Any] = table
         for key in table:
             if key not in self.known:
-                raise self._unknown(key)
+                raise self._refuse_key(key)
 
     def at(self, key: str) -> str:
         """Return the dotted path of ``key``."""
@@ -119,7 +119,7 @@ class Table:
             rule = f"the numbers are too large or too small to compute with ({error})"
             raise ValueError(f"{self.path}: {rule}; check the units") from error
 
-    def _unknown(self, key: str) -> ValueError:
+    def _refuse_key(self, key: str) -> ValueError:
         """Return the error of an unknown key."""
         remedy = nearest_of(key, self.known)
         if key in ELSEWHERE and key not in self.known:

@@ -110,10 +110,10 @@ class Benchmark:
         One is the quickest row with an error up to ``GOOD``, or ``ALIKE`` times the least of its
         law. Before it stands the most accurate row, if its error is smaller by ``FINER``.
         """
-        return [row for rows in self.by_question().values() for row in _shortened(rows)]
+        return [row for rows in self.by_question().values() for row in _shorten(rows)]
 
 
-def _shortened(of_question: list[Row]) -> list[Row]:
+def _shorten(of_question: list[Row]) -> list[Row]:
     """Return one or two rows of each law of a question."""
     by_law: dict[str, list[Row]] = {}
     for row in of_question:

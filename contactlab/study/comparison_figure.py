@@ -97,11 +97,11 @@ def laws_over_sweep(
     several = len(comparison.varied) > 1 or not np.ptp(x)
     rows = agreement is not None and several and not _axes(comparison)
 
-    def drawn(values: Array, at: Array) -> Array:
+    def draw(values: Array, at: Array) -> Array:
         return values if words is None else values - at
 
     for number, name in enumerate(comparison.names):
-        values = drawn(ordered(comparison.values(quantity, name)), x)
+        values = draw(ordered(comparison.values(quantity, name)), x)
         look = law_style(number) | (_point_look(number) if rows else {})
         axes.plot(x, values, label=verbatim(describe_law(comparison, name)), **look)
         half = ordered(comparison.band(quantity, name))
@@ -110,7 +110,7 @@ def laws_over_sweep(
         measured = agreement.measured
         axes.errorbar(
             measured.x,
-            drawn(measured.values, measured.x),
+            draw(measured.values, measured.x),
             xerr=_bars(measured.x_error),
             yerr=_bars(measured.error),
             label=verbatim(measured.label),
@@ -219,11 +219,11 @@ def find_abscissa(
         return name, x, np.asarray
     sizes, along = [len(values) for values in several.values()], list(several).index(name)
 
-    def ordered(values: Array) -> Array:
+    def order(values: Array) -> Array:
         curves = np.moveaxis(np.reshape(values, sizes), along, -1).reshape(-1, sizes[along])
         return np.pad(curves, ((0, 0), (0, 1)), constant_values=np.nan).ravel()
 
-    return name, ordered(x), ordered
+    return name, order(x), order
 
 
 def describe_law(comparison: Drawn, name: str) -> str:

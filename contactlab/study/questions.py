@@ -189,7 +189,7 @@ def _of_normal(normal: str, own: list[Method]) -> list[Question]:
     ]
 
 
-def swept_scenes(size: int = MANY) -> Scene:
+def sweep_scenes(size: int = MANY) -> Scene:
     """Return impacts of solid spheres without slip throughout, one batch."""
     chi = 1.17 + 0.58 * (np.arange(size) * GOLDEN % 1.0)  # all chi beside all psi1
     psi1 = 0.01 + np.linspace(0.0, 1.0, size) * (4.0 * chi - 1.02)
@@ -224,7 +224,7 @@ def _sphere(chosen: Sequence[Method], quick: bool, *, alone: bool) -> Posed:
     ]  # fmt: skip
     return Posed(
         impacts=impacts,
-        batch=swept_scenes,
+        batch=sweep_scenes,
         truths=[np.ravel(exact.run(each).check().psi2) for each in impacts],
         doors=[*others, *_ladders(chosen, quick)],
     )
@@ -235,7 +235,7 @@ def _sphere_with_loss(restitution: float, quick: bool) -> Posed:
     impacts = scenes(quick=quick)[: 3 if quick else None]
     return Posed(
         impacts=impacts,
-        batch=swept_scenes,
+        batch=sweep_scenes,
         truths=_by_fine_springs(impacts, restitution, quick),
         doors=[
             doors.by_rebound(restitution),
@@ -318,7 +318,7 @@ def _normal_spin(quick: bool) -> Posed:
     steel = Material.named("steel")
     ball = Sphere(0.01, steel)
 
-    def met(slip: Real, spin: Real) -> Encounter:
+    def meet(slip: Real, spin: Real) -> Encounter:
         along, turning = np.broadcast_arrays(slip, spin)
         zero = np.zeros(along.shape)
         return Encounter(
@@ -327,7 +327,9 @@ def _normal_spin(quick: bool) -> Posed:
             spin=np.stack([zero, zero, turning], axis=-1),
         )  # fmt: skip
 
-    impacts = [met(0.4, 600.0)] if quick else [met(0.2, 300.0), met(0.4, 600.0), met(0.8, 300.0)]
+    impacts = (
+        [meet(0.4, 600.0)] if quick else [meet(0.2, 300.0), meet(0.4, 600.0), meet(0.8, 300.0)]
+    )
 
     def law(rings: int) -> Simulation:
         return Simulation(tangential=REGISTRY.create(SPINNING, rings=rings))
@@ -336,7 +338,7 @@ def _normal_spin(quick: bool) -> Posed:
     ladder = [doors.by_run("halfspace", f"rings={rings}", law(rings)) for rings in (4, 8, 16)]
     return Posed(
         impacts=impacts,
-        batch=lambda size: met(np.linspace(0.1, 1.0, size), 300.0),
+        batch=lambda size: meet(np.linspace(0.1, 1.0, size), 300.0),
         most=MANY_BODIES,
         truths=[np.ravel(finest.run(each.scene).check().psi2) for each in impacts],
         doors=[attrs.evolve(doors.by_collide(), name="collide(), without"), *ladder],
@@ -351,7 +353,7 @@ def _two_contacts(quick: bool) -> Posed:
         for young, poisson in ((5e6, 0.48), (5e7, 0.4))
     )
 
-    def met(along: Real) -> Gathering:
+    def meet(along: Real) -> Gathering:
         first = np.asarray(along, dtype=float)
         one = np.ones(first.shape)
         return Gathering(
@@ -371,7 +373,7 @@ def _two_contacts(quick: bool) -> Posed:
             bind=lambda gathering: lambda: collide(gathering, simulation),
         )  # fmt: skip
 
-    impacts = [met(each) for each in ((0.3,) if quick else (0.1, 0.3, 0.6, 1.0, 2.0))]
+    impacts = [meet(each) for each in ((0.3,) if quick else (0.1, 0.3, 0.6, 1.0, 2.0))]
     fine = TRUE_OF_TWO_QUICK if quick else TRUE_OF_TWO
     half, whole = (
         [read(collide(each, doors.springs_of(count))).numbers for each in impacts]
@@ -379,7 +381,7 @@ def _two_contacts(quick: bool) -> Posed:
     )
     return Posed(
         impacts=impacts,
-        batch=lambda size: met(np.linspace(0.1, 2.0, size)),
+        batch=lambda size: meet(np.linspace(0.1, 2.0, size)),
         most=MANY_BODIES,
         truths=[fine + (fine - coarse) / 3.0 for coarse, fine in zip(half, whole, strict=True)],
         doors=[
@@ -419,7 +421,7 @@ def _by_methods(chosen: Sequence[Method], quick: bool) -> Posed:
         truths.append(np.array([psi2]))
     return Posed(
         impacts=impacts,
-        batch=swept_scenes,
+        batch=sweep_scenes,
         truths=truths,
         doors=_ladders(chosen, quick),
     )
@@ -439,7 +441,7 @@ def _course(chosen: Sequence[Method], quick: bool) -> Posed:
         forces = _forces(result)
         return Answer(forces, "SUCCESS" if np.isfinite(forces).all() else NO_COURSE)
 
-    def followed(door: Door, method: Method, options: Options) -> Door:
+    def follow(door: Door, method: Method, options: Options) -> Door:
         simulation = method.simulation(options)
         return attrs.evolve(
             door, read=read, together=False,
@@ -450,7 +452,7 @@ def _course(chosen: Sequence[Method], quick: bool) -> Posed:
         impacts=impacts,
         truths=[_forces(exact.run(each, history=True).check()) for each in impacts],
         doors=[
-            followed(doors.by_method(method, options), method, options)
+            follow(doors.by_method(method, options), method, options)
             for method, options in _resolutions(chosen, quick)
         ],
     )

@@ -81,7 +81,7 @@ def candidates(laws: LawChoice) -> Candidates:
     The first is the preferred law: the exact solution under elastic Hertz contact. A simulation
     has the integrator chosen if that runs the law, else the preferred one.
     """
-    normal = attrs.evolve(laws, normal=laws.normal or composition.DEFAULT_NORMAL).made("normal")
+    normal = attrs.evolve(laws, normal=laws.normal or composition.DEFAULT_NORMAL).make("normal")
     first = composition.prefer_law("tangential", normal)
     names = [short_name(name) for name in REGISTRY.names("tangential")]
     simulations: dict[str, Simulation] = {}
@@ -96,7 +96,7 @@ def candidates(laws: LawChoice) -> Candidates:
             chosen = laws.choose(tangential=name)
             chosen = chosen.set({f"tangential.{key}": word for key, word in words.items()})
             label = " ".join([name, *words.values()])
-            if complaint := composition.misfit(normal, chosen.made("tangential")):
+            if complaint := composition.misfit(normal, chosen.make("tangential")):
                 left_out[label] = complaint
             else:
                 simulations[label] = chosen.suit().simulation()

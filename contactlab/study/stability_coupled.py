@@ -72,7 +72,7 @@ def in_space(scene: Scene) -> bool:
 
 
 @lru_cache(maxsize=64)
-def refined(law: TangentialLaw, scene: Scene) -> Any:
+def refine_in_space(law: TangentialLaw, scene: Scene) -> Any:
     """Return psi2 in space by the same law in many steps; None if it cannot be marched so.
 
     Springs are then within 0.001 of psi1 of twice as many steps.

@@ -23,7 +23,13 @@ from contactlab.solve.error_estimate import estimate_errors
 from contactlab.solve.solved_motion import ACCURACY
 from contactlab.study.posed import pose
 from contactlab.study.stability_cases import Cell
-from contactlab.study.stability_coupled import RIGID_DISTANCE, STIFF, distance, in_space, refined
+from contactlab.study.stability_coupled import (
+    RIGID_DISTANCE,
+    STIFF,
+    distance,
+    in_space,
+    refine_in_space,
+)
 from contactlab.study.stability_references import (
     SETTLED,
     Reference,
@@ -231,7 +237,7 @@ def _of_space(
     simulation: Simulation, result: ImpactResult, wrong: list[str]
 ) -> tuple[float, float, list[str]]:
     """Return error and bound over 2 |psi1| of a slip that turns, and what breaks."""
-    expected = refined(simulation.tangential, result.scene)
+    expected = refine_in_space(simulation.tangential, result.scene)
     if expected is None:
         return np.nan, UNDECLARED, wrong
     width = 2.0 * float(np.linalg.norm(result.scene.psi1))
@@ -247,7 +253,7 @@ def _wrong(simulation: Simulation, result: ImpactResult, error: float, bound: fl
     """Return sentences on what exceeds ``bound``; ``error`` is without its uncertainty."""
     normal, tangential = simulation.normal, simulation.tangential
     elastic = "elastic_hertz" in claims(normal)
-    wrong = broken_invariants(
+    wrong = find_breaches(
         result,
         bound,
         passive="books" not in tangential.expected_failures,
@@ -265,7 +271,7 @@ def _wrong(simulation: Simulation, result: ImpactResult, error: float, bound: fl
     return wrong
 
 
-def broken_invariants(
+def find_breaches(
     result: ImpactResult,
     bound: float,
     *,

@@ -26,7 +26,7 @@ PART = 128
 SEEDS = tuple(range(21, 27))
 
 
-def given_work(path: Path, force: Array) -> Array:
+def sum_work(path: Path, force: Array) -> Array:
     """Return the work done on the contact up to each step, scaled, shape (K,)."""
     mean = force + np.concatenate(([0.0], force[:-1]))
     return np.cumsum(0.5 * mean * np.diff(path.slip, prepend=0.0))
@@ -40,7 +40,7 @@ def closed_cycles(law: SteppedTangentialLaw) -> None:
         for size in (0.15, 0.5, 2.0):
             cycle = [(size, low), (size, high), (-size, high), (-size, low)]
             path = straight((0.0, low), *(3 * cycle), steps=24)
-            work = given_work(path, drive(law, bench, path).force)
+            work = sum_work(path, drive(law, bench, path).force)
             # State and force repeat from the second cycle on.
             gain = work[24 * 5 - 1] - work[24 * 13 - 1]
             within(
@@ -57,7 +57,7 @@ def random_paths(law: SteppedTangentialLaw) -> None:
     for fixed in (True, False):
         for seed in SEEDS:
             path = wandering(seed, fixed=fixed)
-            least = given_work(path, drive(law, bench, path).force).min()
+            least = sum_work(path, drive(law, bench, path).force).min()
             load = "fixed" if fixed else "varying"
             hold(
                 least >= -QUADRATURE,
@@ -72,7 +72,7 @@ def partial_unloading(law: SteppedTangentialLaw) -> None:
     for first, then in ((1.0, 0.4), (1.0, 0.1), (0.4, 1.0), (0.1, 0.8)):
         for size in (0.05, 0.15, 0.4):
             path = straight((0.0, first), (size, first), (size, then), (-2.0 * size, then))
-            work = given_work(path, drive(law, bench, path).force)
+            work = sum_work(path, drive(law, bench, path).force)
             hold(
                 work.min() >= -max(0.01 * work.max(), 1e-12),
                 f"Sheared by {size} at zeta = {first}, let go at {then}: {work.max():.3g} put in, "
@@ -100,7 +100,7 @@ def books(law: SteppedTangentialLaw) -> None:
             np.concatenate([course.level, np.linspace(course.level[-1], 0.0, PART + 1)[1:]]),
         )
         driven = drive(law, bench, path)
-        work, lost = float(given_work(path, driven.force)[-1]), float(np.sum(driven.work))
+        work, lost = float(sum_work(path, driven.force)[-1]), float(np.sum(driven.work))
         missing = abs(work - lost) / max(abs(work), lost, 1e-300)
         within(
             missing,

@@ -54,7 +54,7 @@ PROMISED: tuple[tuple[str, Any, str], ...] = (
 )
 
 
-def known_words(contract: type[Law]) -> frozenset[str]:
+def list_words(contract: type[Law]) -> frozenset[str]:
     """Return the words that laws of ``contract`` may offer: the claims that checks test."""
     checked = [each for each in CHECKS if any(issubclass(one, contract) for one in each.contracts)]
     own = {word for word, base in UNTESTED.items() if base is contract}
@@ -71,7 +71,7 @@ def contract(law: Law) -> None:
     hold(not law.needs or base is not NormalLaw, "A normal law needs nothing.")
     words = frozenset(each for each in law.needs if isinstance(each, str))
     for name, contract, own in (("needs", NormalLaw, words), ("offers", base, law.offers)):
-        known = known_words(contract)
+        known = list_words(contract)
         for word in sorted(own - known):
             listed = ", ".join(sorted(known)) or "none"
             hold(False, f"{name}: {word!r} is a word that no check knows; there are: {listed}.")

@@ -46,7 +46,9 @@ REFERENCE = {
 }
 
 
-def met(law: TangentialLaw | Integrator) -> Iterator[tuple[Way, float, float, Any, Any]]:
+def iterate_impacts(
+    law: TangentialLaw | Integrator,
+) -> Iterator[tuple[Way, float, float, Any, Any]]:
     """Iterate over ways, psi1 and chi, with change of psi and friction work of each impact."""
     for way in ways_of_bodies(law):
         for chi, psi1 in itertools.product(CHI, PSI1):
@@ -57,7 +59,7 @@ def met(law: TangentialLaw | Integrator) -> Iterator[tuple[Way, float, float, An
 @check(TangentialLaw, Integrator)
 def impact_odd(law: TangentialLaw | Integrator) -> None:
     """An impact from the other side is the mirror image (theory §7)."""
-    for way, psi1, chi, change, work in met(law):
+    for way, psi1, chi, change, work in iterate_impacts(law):
         mirrored, _, work_back = meet(way, -psi1, chi)
         gap = max(abs(change + mirrored), abs(work - work_back)) / max(1.0, psi1)
         within(
@@ -87,7 +89,7 @@ def impact_units(law: TangentialLaw) -> None:
 @check(TangentialLaw, nature=GROWS)
 def impact_bounds(law: TangentialLaw) -> None:
     """|psi2| is at most |psi1|, and psi changes by at most 4 chi (theory §7)."""
-    for way, psi1, chi, change, _ in met(law):
+    for way, psi1, chi, change, _ in iterate_impacts(law):
         room = bound_error(way)
         after = psi1 + change
         within(
@@ -104,7 +106,7 @@ def impact_bounds(law: TangentialLaw) -> None:
 @check(TangentialLaw, nature=CHANGES)
 def impact_books(law: TangentialLaw) -> None:
     """The energy lost in an impact is the friction work, at any angle (theory §7)."""
-    for way, psi1, chi, change, work in met(law):
+    for way, psi1, chi, change, work in iterate_impacts(law):
         loss = -change * (psi1 + 0.5 * change)
         # The loss is over the energy of psi = 1 at least: no grid resolves a very small slip.
         missing = abs(loss - work) / (0.5 * max(psi1, 1.0) ** 2)

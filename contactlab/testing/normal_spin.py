@@ -27,7 +27,7 @@ ROUNDING, HARDLY = 1e-9, 1e-9
 LEAST = 1e-6
 
 
-def spun(psi1: float, w1: float) -> Scene:
+def add_spin(psi1: float, w1: float) -> Scene:
     """Return the impact of the other checks with spin about the normal."""
     still = scene(psi1, CHI)
     unit = attrs.evolve(still, pair=attrs.evolve(still.pair, inverse_spin_mass=1.0))
@@ -39,7 +39,7 @@ def run(way: Way, psi1: float, w1: float) -> ImpactResult:
     """Return the result of an impact under a law, of its whole-impact answers if it has any."""
     limits.begin(f"an impact, psi1 = {psi1}, w = {w1} ({way})")
     simulation = Simulation(normal=way.normal, tangential=way.law, integrator=way.integrator)
-    result = simulation.run(spun(psi1, w1))
+    result = simulation.run(add_spin(psi1, w1))
     hold_success(result.motion, f"psi1 = {psi1}, w = {w1}: {{}} ({way})")
     return result
 

@@ -58,7 +58,7 @@ class ConformanceError(AssertionError):
 
 def checks_for(law: Law | str) -> list[Check]:
     """Return the checks of the contracts of ``law``, an object or a name, in order."""
-    made = made_law(law)
+    made = make_law(law)
     return [check for check in CHECKS if check.applies_to(made)]
 
 
@@ -129,7 +129,7 @@ def examine(
     """
     try:
         with limit_time("loading", law, seconds):
-            made = made_law(law)
+            made = make_law(law)
     except OutOfTimeError:
         rule = f"its module or its class did not return within {seconds:g} s of computing"
         raise TimeoutError(f"{law}: {rule}; it is imported and made before it is checked") from None
@@ -166,13 +166,13 @@ def check_law(law: Law | str, *, seconds: float = SECONDS) -> list[Outcome]:
     if bad:
         lines = [f"{entry.check}: {entry.verdict.value}: {entry.sentence}" for entry in bad]
         raise ConformanceError(
-            f"{REGISTRY.describe(made_law(law))}: {len(bad)} of {len(outcomes)} checks\n"
+            f"{REGISTRY.describe(make_law(law))}: {len(bad)} of {len(outcomes)} checks\n"
             + "\n".join([*lines, REMEDY])
         )
     return outcomes
 
 
-def made_law(law: Law | str) -> Law:
+def make_law(law: Law | str) -> Law:
     """Return the law that a name stands for, or the law itself."""
     made: Law = REGISTRY.create(law) if isinstance(law, str) else law
     return made

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from contactlab.contracts import Law
-from contactlab.testing.outcomes import applies, checks_for, expects_to_fail, made_law
+from contactlab.testing.outcomes import applies, checks_for, expects_to_fail, make_law
 
 
 def parametrize_with_checks(laws: Sequence[Law | str]) -> Any:
@@ -29,7 +29,7 @@ def parametrize_with_checks(laws: Sequence[Law | str]) -> Any:
 
     parameters = []
     for law_or_name in laws:
-        law = made_law(law_or_name)
+        law = make_law(law_or_name)
         name = law_or_name if isinstance(law_or_name, str) else type(law).__name__
         for check in checks_for(law):
             if not applies(law, check):

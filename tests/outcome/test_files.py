@@ -50,7 +50,7 @@ def test_a_file_that_cannot_be_written_to_its_end_leaves_the_old_one(old):
         import resource
         resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))
         try:
-            with written({str(old)!r}) as stream:
+            with replace_file({str(old)!r}) as stream:
                 stream.write("x" * 1_000_000)
         except OSError as error:
             print("refused:", error)
@@ -66,7 +66,7 @@ def test_a_file_that_cannot_be_written_to_its_end_leaves_the_old_one(old):
 def test_killed_in_the_middle_leaves_the_old_file(old):
     done = python(
         f"""
-        with written({str(old)!r}) as stream:
+        with replace_file({str(old)!r}) as stream:
             stream.write("x" * 1_000_000)
             stream.flush()
             os.kill(os.getpid(), {int(signal.SIGKILL)})
@@ -77,7 +77,7 @@ def test_killed_in_the_middle_leaves_the_old_file(old):
 
 
 def python(code):
-    head = "import os\nfrom contactlab.outcome.files import written\n"
+    head = "import os\nfrom contactlab.outcome.files import replace_file\n"
     program = head + textwrap.dedent(code)
     return subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, check=False

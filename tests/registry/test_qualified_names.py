@@ -127,9 +127,9 @@ def test_a_scene_file_takes_them(tmp_path, capsys, name, options, expected):
 def test_options_are_those_of_the_law_that_is_meant_however_it_is_written():
     """Options of ``contactlab:tangential.springs`` are those of ``springs``."""
     choice = LawChoice(tangential="springs").set({"contactlab:tangential.springs.springs": 7})
-    assert choice.made("tangential").springs == 7
+    assert choice.make("tangential").springs == 7
     choice = LawChoice(tangential="contactlab:springs").set({"tangential.springs.springs": 8})
-    assert choice.made("tangential").springs == 8
+    assert choice.make("tangential").springs == 8
 
 
 @pytest.mark.usefixtures("usurper")

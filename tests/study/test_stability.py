@@ -29,14 +29,14 @@ from contactlab.study.stability_cases import (
     extreme_scenes,
     normal_scenes,
 )  # fmt: skip
-from contactlab.study.stability_coupled import refined, rod
+from contactlab.study.stability_coupled import refine_in_space, rod
 from contactlab.study.stability_judge import (
     ANSWERED,
     REFUSED,
     SKIPPED,
     WRONG,
     Outcome,
-    broken_invariants,
+    find_breaches,
     judge,
     judge_run,
 )
@@ -280,15 +280,15 @@ def test_a_law_that_is_judged_by_itself_is_judged_by_its_limit(psi1, chi):
 def test_exact_answers_break_no_invariant():
     for psi1 in (0.0, 1e-300, 0.5, -1.2, 3.0, 1e16):
         result = Simulation().run(Scene.nondimensional(psi1=psi1, chi=CHI)).check()
-        assert broken_invariants(result, 1e-9) == []
+        assert find_breaches(result, 1e-9) == []
 
 
 def test_books_that_miss_a_little_are_told_unless_the_law_declares_it():
     result = Simulation(tangential="coulomb").run(Scene.nondimensional(psi1=0.5, chi=CHI)).check()
     work = 1.2 * result.motion.friction_work
     result = attrs.evolve(result, motion=attrs.evolve(result.motion, friction_work=work))
-    assert broken_invariants(result, 1e-9) == ["energy books do not close"]
-    assert broken_invariants(result, 1e-9, books_bound=0.1) == []
+    assert find_breaches(result, 1e-9) == ["energy books do not close"]
+    assert find_breaches(result, 1e-9, books_bound=0.1) == []
 
 
 def test_a_law_whose_model_makes_energy_may_do_so_as_far_as_friction_goes():
@@ -297,7 +297,7 @@ def test_a_law_whose_model_makes_energy_may_do_so_as_far_as_friction_goes():
     def broken(psi1, change, **kind):
         result = Simulation().run(Scene.nondimensional(psi1=psi1, chi=CHI)).check()
         motion = attrs.evolve(result.motion, slip_velocity_change=change)
-        return broken_invariants(attrs.evolve(result, motion=motion), 1e-9, **kind)
+        return find_breaches(attrs.evolve(result, motion=motion), 1e-9, **kind)
 
     assert broken(0.5, -1.5) == ["|psi2| > |psi1|", "energy books do not close"]
     assert broken(0.5, -1.5, passive=False) == []
@@ -453,4 +453,4 @@ def test_the_reference_in_space_is_the_exact_law_where_the_slip_keeps_its_line(c
     scene = Scene.nondimensional(psi1=[0.72, 0.54], chi=chi * np.eye(2), lam=[0.0, 0.0], rho=1.0)
     along = contactlab.Simulation().run(Scene.nondimensional(psi1=0.9, chi=chi)).check().psi2
     springs = contactlab.create("tangential.springs", springs=200)
-    assert refined(springs, scene) == pytest.approx([0.8 * along, 0.6 * along], abs=2e-3)
+    assert refine_in_space(springs, scene) == pytest.approx([0.8 * along, 0.6 * along], abs=2e-3)

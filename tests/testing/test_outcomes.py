@@ -24,7 +24,7 @@ from contactlab.testing.check import (
     apply_if,
     hold,
 )
-from contactlab.testing.every_law import known_words
+from contactlab.testing.every_law import list_words
 from tests.testing.broken_laws import Sound
 
 
@@ -210,7 +210,7 @@ def test_tests_of_pytest_are_those_that_a_law_claims(few):
 
 def test_words_that_a_law_may_offer_are_those_that_checks_test():
     contracts = contactlab.contracts
-    assert known_words(contracts.NormalLaw) == {
+    assert list_words(contracts.NormalLaw) == {
         "radius",
         "hertzian_pressure",
         "elastic_hertz",
@@ -220,7 +220,7 @@ def test_words_that_a_law_may_offer_are_those_that_checks_test():
         "plastic",
         "elliptic",
     }
-    assert known_words(contracts.TangentialLaw) == {
+    assert list_words(contracts.TangentialLaw) == {
         "partial_slip",
         "rigid",
         "slip_speed",
@@ -230,4 +230,4 @@ def test_words_that_a_law_may_offer_are_those_that_checks_test():
         "normal_spin",
         "shares_loss",
     }
-    assert known_words(contracts.Integrator) == {"several_contacts", "controls_error"}
+    assert list_words(contracts.Integrator) == {"several_contacts", "controls_error"}
