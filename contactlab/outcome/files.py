@@ -1,6 +1,6 @@
 """Files are written to a temporary file, then renamed: a file is complete or absent.
 
-Every file that contactlab writes goes through ``written``. A full disk, an error or a killed
+Every file that contactlab writes goes through ``replace_file``. A full disk, an error or a killed
 process leaves the old file unchanged; only a killed process leaves a file
 ``.contactlab-*.part`` behind. In the folder of a sweep the next sweep deletes it.
 """

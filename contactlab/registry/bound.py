@@ -48,7 +48,7 @@ def bind(laws: Laws, scene: Scene) -> tuple[Laws, Scene]:
 
 
 def bind_laws(laws: Iterable[Law], scene: Scene) -> tuple[list[Any], Scene]:
-    """Return some laws and the scene as ``bound`` does."""
+    """Return some laws and the scene as ``bind`` does."""
     used: list[Any] = []
     numbers = dict(scene._options)
     for law in laws:

@@ -74,7 +74,7 @@ def gathering_plan(
 ) -> GatheringPlan:
     """Return the plan of a gathering that is answered in a ``way``; ``motion`` is that of a run.
 
-    ``widened`` returns ``per_micron``.
+    ``widen`` returns ``per_micron``.
     """
     scene, shape = way.scene, gathering.shape
     prepared = way.prepare(False)

@@ -38,7 +38,7 @@ SPACE_CHIS, QUICK_SPACE_CHIS = (0.05, 0.5, 3.0, 30.0, 1e3), (0.05, 3.0, 1e3)
 SPACE_PSI1 = ((0.9, 0.5), (0.3, -0.1))
 #: chi, over its first entry, and lam and rho of the impacts in space.
 SPACE_CHI, SPACE_LAM, SPACE_RHO = np.array([[1.0, 0.2], [0.2, 1.6]]), (0.1, -0.05), 1.0
-#: Steps of the reference in space, over the root of chi, and the fewest: see ``refined``.
+#: Steps of the reference in space, over the root of chi, and the fewest: see ``refine_in_space``.
 SPACE_FINE, SPACE_FEWEST = 150.0, 1600
 
 
