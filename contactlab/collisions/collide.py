@@ -136,7 +136,7 @@ def collide(
     if callable(restitution):
         restitution = _at_speeds(restitution, encounter)
     e = real("restitution", restitution, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
-    if not isinstance(e, float):
+    if np.ndim(e):
         e = spread_over("restitution", e, encounter.shape)
     if simulation is not None:
         _alone(given, e, simulation)
@@ -177,7 +177,7 @@ def _solve_gathering(
 
     if simulation is not None:
         of_kind("simulation", simulation, Simulation, remedy="or leave it out", meant=INSTEAD)
-    if not (isinstance(restitution, float) and restitution == 1.0):
+    if np.any(restitution != 1.0):
         remedy = "give it to each contact: Touch(..., restitution=...)"
         raise refuse("restitution", restitution, "belongs to each contact of a gathering", remedy)
     if separating != "refuse":

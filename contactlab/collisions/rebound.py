@@ -31,7 +31,8 @@ TABULATED = 1e-9
 #: Tolerance of every solution: an answer in an array then equals a single one to 1e-10.
 EXACT = 1e-9
 TOLERANCE = Rule(
-    lambda value: (value >= 1e-9) & (value < 1.0), "must lie between 1e-9 and 1, of max(1, |psi1|)"
+    lambda value: np.ndim(value) == 0 and 1e-9 <= value < 1.0,
+    "must be one number between 1e-9 and 1, of max(1, |psi1|)",
 )
 LARGEST_CHI = 1e4
 CHI = Rule(
@@ -247,7 +248,7 @@ def rebound(
     velocity, ratio = pair_up("psi1", "chi", (incidence, inertia))
     if type(psi1) in (float, int) and type(chi) in (float, int):  # typed, not out of an array
         _warn_of_exchange(float(incidence), float(inertia))
-    one = isinstance(e, float)  # one restitution for all
+    one = not np.ndim(e)  # one restitution for all
     if not one:
         velocity, each = pair_up("psi1", "restitution", (velocity, e))
         velocity, ratio = pair_up("psi1", "chi", (velocity, ratio))
@@ -279,10 +280,7 @@ def _warn_of_exchange(psi1: float, chi: float) -> None:
 
 def _tolerance(value: object) -> float:
     """Return a checked tolerance."""
-    aim = real("tolerance", value, rule=TOLERANCE, remedy="leave it out for 1e-5")
-    if not isinstance(aim, float):
-        raise refuse("tolerance", value, "must be one number", "leave it out for 1e-5")
-    return aim
+    return float(real("tolerance", value, rule=TOLERANCE, remedy="leave it out for 1e-5"))
 
 
 def _restitution(value: object) -> Real:

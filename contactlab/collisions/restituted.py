@@ -11,7 +11,7 @@ import numpy as np
 from contactlab.collisions.collision_plan import by_rebound
 from contactlab.collisions.rebound import laws_of
 from contactlab.impact.scene import Scene
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Real
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.normal_spin_words import with_normal_spin
 from contactlab.outcome.plan import Plan
@@ -30,8 +30,8 @@ def run_in_blocks(simulation: Simulation, scene: Scene) -> ImpactResult:
 
 def run_by_restitution(scene: Scene, restitution: Real) -> ImpactResult:
     """Return the result of impacts under a restitution, one number or one for each."""
-    if isinstance(restitution, float):
-        return _run(scene, restitution)
+    if not scene.shape:
+        return _run(scene, float(restitution))
     groups = _alike(restitution)
     if len(groups) == 1:
         return _run(scene, groups[0][1])
@@ -58,9 +58,10 @@ def plan_rebounds(scene: Scene, restitution: Real) -> Plan:
 
 def _of_groups(scene: Scene, restitution: Real) -> Plan:
     """Return the plan of impacts, with the words of each restitution."""
-    if isinstance(restitution, float):
-        return _plan_of_each(scene, restitution, restitution)
     groups = _alike(restitution)
+    if len(groups) == 1:
+        return _plan_of_each(scene, groups[0][1], restitution)
+    restitution = np.asarray(restitution)
     if len(groups) > MOST_STATEMENTS:
         masks = [mask for mask in (restitution == 1.0, restitution < 1.0) if mask.any()]
         groups = [(mask, float(restitution[mask].min())) for mask in masks]
@@ -82,6 +83,6 @@ def _simulation(restitution: float) -> Simulation:
     return Simulation() if restitution == 1.0 else laws_of(restitution)
 
 
-def _alike(restitution: Array) -> list[tuple[Any, float]]:
+def _alike(restitution: Real) -> list[tuple[Any, float]]:
     """Return masks of equal restitutions, and the restitution of each mask."""
     return [(restitution == value, value) for value in np.unique(restitution).tolist()]

@@ -69,7 +69,7 @@ class Integrator(Law, kind="integrator"):
         """
 
 
-class CoupledIntegrator(Integrator):
+class CoupledIntegrator(Integrator, way="marcher"):
     """Base of integrators that also march a normal and a causal tangential law at once."""
 
     @abstractmethod

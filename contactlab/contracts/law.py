@@ -72,6 +72,8 @@ class Law(ABC):
     #: An option of a law is one number, for all impacts.
     _plain_options: ClassVar[bool] = True
     _kind: ClassVar[str]
+    #: How laws of the class are run: the words of its contracts.
+    _ways: ClassVar[frozenset[str]] = frozenset()
     #: Version of the contracts that the law was written for.
     api_version: ClassVar[int]
     #: Words that the law claims.
@@ -84,11 +86,19 @@ class Law(ABC):
     #: Checks that it fails by its nature, with the reasons.
     expected_failures: ClassVar[Any] = MappingProxyType({})
 
-    def __init_subclass__(cls, *, kind: str | None = None, **options: Any) -> None:
-        """Set the kind of the laws of a contract."""
+    def __init_subclass__(
+        cls, *, kind: str | None = None, way: str | None = None, **options: Any
+    ) -> None:
+        """Set the kind of the laws of a contract, and how they are run."""
         super().__init_subclass__(**options)
         if kind is not None:
             cls._kind = kind
+        inherited = (base._ways for base in cls.__bases__ if issubclass(base, Law))
+        cls._ways = frozenset(() if way is None else {way}).union(*inherited)
+
+    @classmethod
+    def _own_class(cls) -> type[Law]:
+        return cls
 
     def waives(self) -> frozenset[str]:
         """Return the words of ``offers`` and ``needs`` that these parameters take away; none here.
@@ -115,6 +125,11 @@ def law_kind(law: Law | type[Law]) -> str:
     law : Law or type
     """
     return law._kind
+
+
+def class_of(law: Law | type[Law]) -> type[Law]:
+    """Return the class of a law, or a class as it is."""
+    return law._own_class()
 
 
 def claims(law: Law) -> frozenset[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Hashable
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,6 +113,8 @@ class NormalMotion(ABC):
     accuracy: float = math.nan
     #: True if the motions of all impacts are one but for their scale.
     alike: bool = False
+    #: What is known of the motion: "course", "ends" (final rate and load impulse), or "nothing".
+    _known: ClassVar[str] = "course"
 
     @property
     def shared(self) -> dict[Any, Any] | None:

@@ -65,7 +65,7 @@ class NormalLaw(Law, kind="normal"):
         return (*cautions, *large_contact(size_of_contact(scene, motion.maximum_radius)))
 
 
-class ClosedFormNormalLaw(NormalLaw):
+class ClosedFormNormalLaw(NormalLaw, way="closed"):
     """Base of normal laws that return their motion in closed form, without integration."""
 
     @abstractmethod
@@ -73,7 +73,7 @@ class ClosedFormNormalLaw(NormalLaw):
         """Return the motion from first touch to separation, of this very ``scene``."""
 
 
-class UnfollowedNormalLaw(NormalLaw):
+class UnfollowedNormalLaw(NormalLaw, way="unfollowed"):
     """Base of normal laws some of whose motions no step can follow, as of clay.
 
     The friction load of such a motion does not pull. Tangential laws may answer it as a whole;

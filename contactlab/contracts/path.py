@@ -100,7 +100,7 @@ class Stretch(ABC):
         return {}
 
 
-class PathTangentialLaw(TangentialLaw):
+class PathTangentialLaw(TangentialLaw, way="path"):
     """A tangential law that knows the path of its state from event to event.
 
     Contract

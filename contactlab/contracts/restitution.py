@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from contactlab.contracts.law import Law
 from contactlab.numeric.checks import Rule, quantity
 from contactlab.numeric.taken import Taken
 
@@ -18,6 +19,11 @@ RESTITUTIONS = Rule(
     lambda value: (value >= 0.0) & (value <= 1.0),
     "must be from 0 to 1: rebound over approach velocity",
 )
+
+
+def restitution_of(law: Law) -> Any:
+    """Return the option ``restitution`` of a law, a number or one of each; None without it."""
+    return getattr(law, "restitution", None)
 
 
 def _from(least: float, per_impact: bool) -> Rule:

@@ -207,7 +207,7 @@ class TangentialLaw(Law, kind="tangential"):
         return coupling(scene)
 
 
-class WholeImpactTangentialLaw(TangentialLaw):
+class WholeImpactTangentialLaw(TangentialLaw, way="whole"):
     """Base of tangential laws whose whole-impact answers together hold for every impact."""
 
     @abstractmethod
@@ -216,7 +216,7 @@ class WholeImpactTangentialLaw(TangentialLaw):
         return super().whole_impacts(scene, normal)
 
 
-class CoupledTangentialLaw(TangentialLaw):
+class CoupledTangentialLaw(TangentialLaw, way="coupled"):
     """Base of tangential laws that find normal and tangential motion together, themselves."""
 
     @abstractmethod
@@ -242,7 +242,7 @@ class CoupledTangentialLaw(TangentialLaw):
         """
 
 
-class ResolvingTangentialLaw(TangentialLaw):
+class ResolvingTangentialLaw(TangentialLaw, way="resolving"):
     """Base of tangential laws that choose their resolution and the integrator's by the scene."""
 
     @abstractmethod
@@ -309,7 +309,7 @@ class AllStepsResponse(NamedTuple):
     shear_loss: Real = 0.0
 
 
-class SteppedTangentialLaw(TangentialLaw):
+class SteppedTangentialLaw(TangentialLaw, way="stepped"):
     """Base of tangential laws that answer to a step, as in the return mapping of plasticity.
 
     Contract
@@ -364,7 +364,7 @@ class SteppedTangentialLaw(TangentialLaw):
         return ()
 
 
-class CausalTangentialLaw(SteppedTangentialLaw):
+class CausalTangentialLaw(SteppedTangentialLaw, way="causal"):
     """Base of stepped laws that take nothing of the motion to come, which friction may change.
 
     From ``begin`` on ``advance`` depends on its arguments only: the motion may have a larger

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from contactlab.contracts.integrator import CoupledIntegrator, Integrator, accuracy_of
 from contactlab.contracts.law import Law, claims, resolution_of
@@ -12,6 +12,7 @@ from contactlab.contracts.tangential import (
     CausalTangentialLaw,
     CoupledTangentialLaw,
     ResolvingTangentialLaw,
+    SteppedTangentialLaw,
     TangentialLaw,
     WholeImpactTangentialLaw,
     shares_loss,
@@ -25,8 +26,6 @@ class Capability(NamedTuple):
 
     Attributes
     ----------
-    closed, unfollowed, whole, path, causal, coupled, resolving, marcher : law or None
-        The law, if it is derived from that class.
     accuracy : float or None
         Error of psi2 over max(1, abs(psi1)) that the integrator controls.
     normal_claims, tangential_claims : frozenset of str
@@ -39,16 +38,10 @@ class Capability(NamedTuple):
         The laws that have a resolution, and nobody named it.
     reads : bool
         True if a law has options that materials give, or that each impact has its own of.
+    closed, unfollowed, whole, path, stepped, causal, coupled, resolving, marcher : law or None
+        The law, if it is derived from that class.
     """
 
-    closed: ClosedFormNormalLaw | None
-    unfollowed: UnfollowedNormalLaw | None
-    whole: WholeImpactTangentialLaw | None
-    path: PathTangentialLaw | None
-    causal: CausalTangentialLaw | None
-    coupled: CoupledTangentialLaw | None
-    resolving: ResolvingTangentialLaw | None
-    marcher: CoupledIntegrator | None
     accuracy: float | None
     normal_claims: frozenset[str]
     tangential_claims: frozenset[str]
@@ -56,20 +49,22 @@ class Capability(NamedTuple):
     refusing: tuple[Law, ...]
     unnamed: tuple[Law, ...]
     reads: bool
+    closed: ClosedFormNormalLaw | None = None
+    unfollowed: UnfollowedNormalLaw | None = None
+    whole: WholeImpactTangentialLaw | None = None
+    path: PathTangentialLaw | None = None
+    stepped: SteppedTangentialLaw | None = None
+    causal: CausalTangentialLaw | None = None
+    coupled: CoupledTangentialLaw | None = None
+    resolving: ResolvingTangentialLaw | None = None
+    marcher: CoupledIntegrator | None = None
 
     @classmethod
     def of(cls, normal: NormalLaw, tangential: TangentialLaw, integrator: Integrator) -> Capability:
         """Return what three laws can do."""
         laws: tuple[Law, ...] = normal, tangential, integrator
+        by_way: dict[str, Any] = {way: law for law in laws for way in law._ways}
         return cls(
-            closed=normal if isinstance(normal, ClosedFormNormalLaw) else None,
-            unfollowed=normal if isinstance(normal, UnfollowedNormalLaw) else None,
-            whole=tangential if isinstance(tangential, WholeImpactTangentialLaw) else None,
-            path=tangential if isinstance(tangential, PathTangentialLaw) else None,
-            causal=tangential if isinstance(tangential, CausalTangentialLaw) else None,
-            coupled=tangential if isinstance(tangential, CoupledTangentialLaw) else None,
-            resolving=tangential if isinstance(tangential, ResolvingTangentialLaw) else None,
-            marcher=integrator if isinstance(integrator, CoupledIntegrator) else None,
             accuracy=accuracy_of(integrator),
             normal_claims=claims(normal),
             tangential_claims=claims(tangential),
@@ -77,6 +72,7 @@ class Capability(NamedTuple):
             refusing=tuple(filter(may_refuse, laws)),
             unnamed=tuple(filter(_leaves_resolution, laws)),
             reads=any(options_read(type(law)) for law in laws),
+            **by_way,
         )
 
 

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable
 from importlib import metadata, resources
 
+from contactlab.contracts.law import Law, class_of
 from contactlab.registry.options import section
 
 DOI = re.compile(r"10\.\d{4,9}/[^\s,;}\"'`]+[^\s,;.}\"'`]")
@@ -13,9 +14,9 @@ DOI = re.compile(r"10\.\d{4,9}/[^\s,;}\"'`]+[^\s,;.}\"'`]")
 YEAR = re.compile(r"\b(?:19|20)\d\d(?=\)|\.?$)")
 
 
-def references(law: object) -> list[str]:
+def references(law: Law | type[Law]) -> list[str]:
     """Return the sources in the section References of a law, or of a class of laws."""
-    text = section(law if isinstance(law, type) else type(law), "References").strip()
+    text = section(class_of(law), "References").strip()
     return [" ".join(entry.split()) for entry in re.split(r"\n\n+", text) if entry]
 
 

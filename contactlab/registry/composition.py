@@ -11,7 +11,7 @@ import attrs
 
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.law import Law, claims, law_kind, requirements
-from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw
+from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.path import PathTangentialLaw
 from contactlab.contracts.tangential import (
     SteppedTangentialLaw,
@@ -22,7 +22,7 @@ from contactlab.numeric.checks import refuse
 from contactlab.registration.bring import state
 from contactlab.registration.names import KINDS, full_name, is_place, short_name
 from contactlab.registry.capability import Capability
-from contactlab.registry.law_classes import unfit
+from contactlab.registry.law_classes import is_law_class, unfit
 from contactlab.registry.registry import REGISTRY, PluginError
 
 #: Defaults are plug-in names: of a list the first that is installed and fits. Coulomb's law at
@@ -52,8 +52,9 @@ FOR_COUPLED = (EXACT, {"tangential": ON_A_PATH, "integrator": FIXED_STEPS})
 RESTITUTION = {"normal": "viscoelastic", "tangential": "springs"}
 #: Contracts of tangential laws that can be run; every law must be derived from one of them.
 WAYS = (SteppedTangentialLaw, PathTangentialLaw, WholeImpactTangentialLaw)
-#: The contract of laws that answer to steps, and in no other way.
-STEPS = {SteppedTangentialLaw}
+#: Their words; of laws that answer to steps, and in no other way.
+RUN = frozenset({"stepped", "path", "whole"})
+STEPS = {"stepped"}
 
 
 @attrs.frozen
@@ -129,7 +130,7 @@ def law(kind: str, value: object, **options: object) -> Law:
             raise ValueError(f"{kind} = {complaint}")
         return value
     remedy = "names: contactlab plugins list"
-    if isinstance(value, type) and issubclass(value, Law):
+    if is_law_class(value):
         remedy = f"this is the class; make one: {value.__name__}()"
     raise refuse(kind, value, f"must be a name or a {kind} law", remedy)
 
@@ -209,7 +210,7 @@ def _prefer(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> tuple[str, 
         which = "elastic"
     elif kind == "tangential" and "viscous" in claims(before[0]):
         which = "viscous"
-    elif kind == "integrator" and {way for way in WAYS if isinstance(before[-1], way)} == STEPS:
+    elif kind == "integrator" and before[-1]._ways & RUN == STEPS:
         which = "steps"  # no other integrator is imported
     for name in PREFERRED[which]:
         try:
@@ -250,17 +251,17 @@ def _fits(*parts: Law) -> bool:
 
 def misfit(normal: Law, tangential: Any, integrator: Any = None) -> str | None:
     """Return why laws do not fit, with the names of both; None if they fit."""
-    if "elastic_hertz" in claims(normal) and not isinstance(normal, ClosedFormNormalLaw):
+    if "elastic_hertz" in claims(normal) and "closed" not in normal._ways:
         return (
             f"normal = {_name(normal)}: offers 'elastic_hertz', but is no ClosedFormNormalLaw; "
             "derive the law from that class, or do not offer the word"
         )
-    if not isinstance(tangential, WAYS):
+    if not tangential._ways & RUN:
         ways = ", ".join(way.__name__ for way in WAYS)
         return f"tangential = {_name(tangential)}: must be derived from one of {ways}"
     if (complaint := _lacking(tangential, normal)) is not None or integrator is None:
         return complaint
-    if isinstance(tangential, WholeImpactTangentialLaw):
+    if "whole" in tangential._ways:
         return None
     return _lacking(integrator, tangential) or _lacking(integrator, normal)
 

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import inspect
 from functools import lru_cache
+from typing import TypeGuard
 
-from contactlab.contracts.integrator import CoupledIntegrator, Integrator
-from contactlab.contracts.law import API_VERSION, Law
+from contactlab.contracts.integrator import Integrator
+from contactlab.contracts.law import API_VERSION, Law, law_kind
+from contactlab.contracts.normal import NormalLaw
+from contactlab.contracts.tangential import TangentialLaw
 
 #: Methods of integrators that are called with the impact, its normal motion and the law, and their
 #: first arguments. One in another order would be run with arguments exchanged.
@@ -35,7 +38,7 @@ def unfit(law: type[Law]) -> str | None:
             return f"{law.__name__}.{name} = {words!r}: must be {entries}"
     if "controls_error" in law.offers and law.resolution != "tolerance":
         return f"{law.__name__} offers 'controls_error': its resolution must be 'tolerance'"
-    return _find_exchange(law) if issubclass(law, Integrator) else None
+    return _find_exchange(law) if law_kind(law) == "integrator" else None
 
 
 def _word(value: object) -> bool:
@@ -43,13 +46,18 @@ def _word(value: object) -> bool:
 
 
 def _word_or_law(value: object) -> bool:
-    return _word(value) or (isinstance(value, type) and issubclass(value, Law))
+    return _word(value) or is_law_class(value)
 
 
-def _find_exchange(law: type[Integrator]) -> str | None:
+def is_law_class(value: object) -> TypeGuard[type[Law]]:
+    """Return True for the class of a law of one of the three kinds."""
+    return isinstance(value, type) and issubclass(value, NormalLaw | TangentialLaw | Integrator)
+
+
+def _find_exchange(law: type[Law]) -> str | None:
     """Return which method of an integrator has other first arguments than those of the contract."""
     for name in ORDERED:
-        if name == "integrate_coupled" and not issubclass(law, CoupledIntegrator):
+        if name == "integrate_coupled" and "marcher" not in law._ways:
             continue
         names = [*inspect.signature(getattr(law, name)).parameters][1:]  # without self
         if tuple(names[: len(ARGUMENTS)]) != ARGUMENTS:

@@ -9,7 +9,7 @@ import os
 import sys
 from pathlib import Path
 from types import ModuleType
-from typing import Any, TypeGuard
+from typing import Any
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from contactlab.numeric.names import nearest
 from contactlab.registration.hooks import PluginError, guard
 from contactlab.registration.manager import MANAGER
 from contactlab.registration.names import FILE, PluginInfo, Untrusted
-from contactlab.registry.law_classes import unfit
+from contactlab.registry.law_classes import is_law_class, unfit
 
 #: Laws that were loaded from files.
 IN_FILES: dict[type[Law], PluginInfo] = {}
@@ -76,7 +76,7 @@ def law_at(place: str) -> type[Law]:
         ):
             module = import_module(where)
     law = getattr(module, title, None)
-    if not _is_law(law):
+    if not is_law_class(law):
         laws = [name for name, each in _laws(module).items() if not each.__abstractmethods__]
         remedy = f"{nearest(title, laws)}{where} has {', '.join(laws) or 'no law'}"
         rule = f"{title} is no law" if title else "the class is missing"
@@ -137,13 +137,8 @@ def _mistaken(module: ModuleType, content: bytes, folder: str) -> str | None:
 
 def _laws(module: ModuleType) -> dict[str, type[Law]]:
     """Return the laws that a module defines, by name."""
-    own = (each for each in vars(module).values() if _is_law(each))
+    own = (each for each in vars(module).values() if is_law_class(each))
     return {law.__name__: law for law in own if law.__module__ == module.__name__}
-
-
-def _is_law(value: object) -> TypeGuard[type[Law]]:
-    """Return True for the class of a law of one of the three kinds."""
-    return isinstance(value, type) and issubclass(value, Law) and hasattr(value, "_kind")
 
 
 def _reduce(law: Law) -> tuple[Any, ...]:
@@ -159,7 +154,7 @@ def _blank(place: str) -> Law:
 
 def check_class(law: object, kind: str, source: str) -> type[Law]:
     """Return ``law``, or raise PluginError unless it is a law's class of right kind and version."""
-    if not _is_law(law):
+    if not is_law_class(law):
         raise PluginError(f"{source} returned {law!r}, which is not the class of a law")
     if (own := law_kind(law)) != kind:
         raise PluginError(

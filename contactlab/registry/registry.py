@@ -7,7 +7,7 @@ import os
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, overload
 
-from contactlab.contracts.law import Law, law_kind
+from contactlab.contracts.law import Law, class_of, law_kind
 from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import nearest
 from contactlab.registration.hooks import PluginError
@@ -202,13 +202,13 @@ class Registry:
 
         A law in a file has the name of the file and of the class.
         """
-        law_class = law if isinstance(law, type) else type(law)
+        law_class = class_of(law)
         info = self._origin(law_class)
         return law_class.__name__ if info is None else info.name.partition(".")[2]
 
     def describe(self, law: Law | type[Law]) -> str:
         """Return a law's name, distribution and version; its class if no distribution offers it."""
-        law_class = law if isinstance(law, type) else type(law)
+        law_class = class_of(law)
         info = self._origin(law_class)
         if info is None:
             return f"{law_class.__module__}.{law_class.__qualname__} (not registered)"

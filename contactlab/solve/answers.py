@@ -185,7 +185,7 @@ def check_motion(
         raise TypeError(f"gave {quote(motion)}, not a TangentialMotion")
     for name, own in ("slip_velocity_change", axes), ("friction_work", ()), ("shear_loss", ()):
         value, whole = getattr(motion, name), (*shape, *own)
-        if not (type(value) is float and not whole) and faults.is_malformed(value, whole):
+        if faults.is_malformed(value, whole):
             raise TypeError(f"{name} = {quote(value)}: must be real, of shape {whole}")
     if not _of_each(motion.status, shape):
         raise TypeError(f"status = {quote(motion.status)}: must be a Status for each impact")

@@ -12,6 +12,7 @@ from contactlab.contracts import faults, judges
 from contactlab.contracts.law import resolution_of
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
+from contactlab.contracts.restitution import restitution_of
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential import Errors, TangentialLaw
 from contactlab.contracts.tangential_motion import Observer
@@ -26,7 +27,6 @@ from contactlab.outcome.plan import ENDLESS, MARCHED, Clause, PlanColumns
 from contactlab.registry import stand_ins
 from contactlab.registry.composition import Laws
 from contactlab.solve.answers import Mask, check_motion, separates
-from contactlab.solve.failed_motion import FailedMotion
 from contactlab.solve.normal_motion import try_normal
 from contactlab.solve.way import ONE_BY_ONE, WHOLE, Masks, Prepared, Way, ask, halves
 
@@ -82,7 +82,7 @@ class Coupled(Way):
         law = law if scene.links is None else None
         code = choose(separates(normal), MARCHED if law is None else 0, ENDLESS)
         errors: object
-        if type(normal) is FailedMotion:  # no law is asked about an approach that is not known
+        if normal._known == "nothing":  # no law is asked about an approach that is not known
             errors = Errors()
         elif scene.links is not None:  # what laws declare is of one contact
             code, errors = np.full(scene.shape, MARCHED), Errors()
@@ -97,7 +97,7 @@ class Coupled(Way):
     def solve(self, prepared: Prepared, recorder: Recorder | None) -> Motion:
         """Return the motion, of a batch with the impacts solved again that failed beside others."""
         scene, normal = self.scene, prepared.normal
-        if type(normal) is FailedMotion:  # isinstance of an abstract class is slow
+        if normal._known == "nothing":
             return Motion.nothing(
                 scene.shape, normal.status, normal.detail, axes=kinetics.slip_axes(scene)
             )
@@ -213,7 +213,7 @@ class Coupled(Way):
         affected = bool(np.any(self.scene.lam))
         why = "friction affects the approach" if affected else "the slip changes its direction"
         said = [BOTH_MOTIONS.format(why)]
-        e = getattr(self.laws.normal, "restitution", None)
+        e = restitution_of(self.laws.normal)
         if e is not None and np.any(e != 1.0):
             said.append(OF_CONTACT)
         return [Clause(text, masks.known) for text in said]

@@ -23,7 +23,6 @@ from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import ENDLESS, MARCHED, PlanColumns, Reason
 from contactlab.solve.answers import Answered, answers, check_motion, separates, show
-from contactlab.solve.failed_motion import UnfollowedMotion
 from contactlab.solve.normal_motion import try_normal
 from contactlab.solve.way import ONE_BY_ONE, Prepared, Way, halves
 
@@ -130,7 +129,7 @@ class Decoupled(Way):
 
     def _declare(self, normal: NormalMotion) -> Real:
         """Return the error of psi2 that the integrator declares of marched impacts."""
-        if type(normal) is UnfollowedMotion or math.isnan(normal.accuracy):
+        if normal._known == "ends" or math.isnan(normal.accuracy):
             return math.nan  # no better known than the motion, nor asked of one without a course
         laws, scene = self.laws, normal.scene
         with np.errstate(all="ignore"):

@@ -82,7 +82,9 @@ def _finer(law: Law, errors: Array) -> Law:
         return law
     value: Any = getattr(law, law.resolution)
     finer: Any = value / times
-    if isinstance(value, int):  # errors fall as its square; a doubling grid needs an even one
+    if (
+        law.resolution != "tolerance"
+    ):  # errors fall as its square; a doubling grid needs an even one
         finer = 2 * math.ceil(0.5 * math.sqrt(times) * value)
     return attrs.evolve(law, **{law.resolution: finer})  # type: ignore[misc]
 

@@ -9,6 +9,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.contracts.law import Law
 from contactlab.contracts.status import Status, Statuses
 from contactlab.impact import kinetics
 from contactlab.impact.error_model import psi_magnitude
@@ -97,7 +98,7 @@ def _distance(
 ) -> Any:
     """Return the estimated errors, shape (2, ...); 0 where no finer run is possible."""
     options = _options(laws, resolution)
-    counts = {kind: value for kind, value in options.items() if isinstance(value, int)}
+    counts = {kind: value for kind, value in options.items() if _counts(getattr(laws, kind))}
     factor = SINGLE_COUNT if len(options) == len(counts) == 1 else SEVERAL_COUNTS
     if _finer(laws, options, factor**2) is None:  # a law may refuse what is much finer
         factor = SEVERAL_COUNTS
@@ -161,12 +162,17 @@ def _finer(laws: Laws, options: Mapping[str, float], times: int) -> Laws | None:
     changed = {}
     for kind, value in options.items():
         law: Any = getattr(laws, kind)
-        finer = value * times if isinstance(value, int) else value / (TOLERANCE * times**2)
+        finer = value * times if _counts(law) else value / (TOLERANCE * times**2)
         try:
             changed[kind] = attrs.evolve(law, **{law.resolution: finer})
         except ValueError:  # beyond what the law allows
             return None
     return laws.change(**changed) if changed else None
+
+
+def _counts(law: Law) -> bool:
+    """Return whether the resolution of a law is a count, finer the greater."""
+    return law.resolution != "tolerance"
 
 
 def _successes(status: Statuses) -> Any:

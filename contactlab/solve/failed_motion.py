@@ -39,6 +39,7 @@ class FailedMotion(_UnknownMotion):
     """The normal motion of impacts whose normal law failed."""
 
     accuracy = math.nan
+    _known = "nothing"
 
     def __init__(self, law: Law, scene: Scene, status: Status, detail: str) -> None:
         super().__init__(law, scene)
@@ -60,6 +61,7 @@ class UnfollowedMotion(_UnknownMotion):
     """A normal motion of which the rate at separation and the load impulse alone are known."""
 
     accuracy = 0.0
+    _known = "ends"
 
     def __init__(self, law: Law, scene: Scene, rate: Real) -> None:
         super().__init__(law, scene)

@@ -11,6 +11,7 @@ import numpy as np
 
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
+from contactlab.contracts.restitution import restitution_of
 from contactlab.impact.body_cautions import tell_radii
 from contactlab.impact.body_contact import spin_about
 from contactlab.impact.gathering import Gathering
@@ -180,8 +181,8 @@ class _Words:
 
     def _normal(self) -> str:
         """Return the normal law in words; of contacts with losses of their own the range of e."""
-        e = getattr(self.laws.normal, "restitution", None)
-        if not isinstance(e, np.ndarray):
+        e = restitution_of(self.laws.normal)
+        if not np.ndim(e):
             return in_words(self.laws.normal)
         low, high = e.min(), e.max()
         told = f"{low:g}" if low == high else f"{low:g} to {high:g}"

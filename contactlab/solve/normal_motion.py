@@ -13,6 +13,7 @@ from contactlab.contracts.law import claims
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import ClosedFormNormalLaw, NormalLaw, unfollowed_rate
 from contactlab.contracts.parameters import number_in
+from contactlab.contracts.restitution import restitution_of
 from contactlab.contracts.status import Status
 from contactlab.impact import batches
 from contactlab.impact.batches import NoIndexError
@@ -111,7 +112,7 @@ def _of_restitutions(law: NormalLaw, scene: Scene) -> MotionTable | None:
     """Return the table of impacts that are similar to those of a few restitutions, or None."""
     from contactlab.solve.solved_motion import MotionTable
 
-    if not isinstance(getattr(law, "restitution", None), np.ndarray):
+    if not np.ndim(restitution_of(law)):
         return None
     few, which = np.unique(number_in(law, "restitution", scene), return_inverse=True)
     if few.size > MOST_KEPT // 2:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, TypeGuard
 
 import numpy as np
 
-from contactlab.contracts.law import Law, claims
+from contactlab.contracts.law import claims
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
@@ -118,8 +118,8 @@ def _words(
     if some(elliptic := masks.known & (elongation > 1.0)):
         text = "contact: an ellipse of semi-axes {:.3g} : 1, replaced by a circle as stiff"
         computed.append(Clause(text, elliptic, (spread(elongation, scene.shape),)))
-    if any(type(new) is not type(old) for old, new in zip(laws, used, strict=True)):
-        computed.append(Clause(_in_place(laws, used), masks.known))
+    if in_place := _in_place(laws, used):
+        computed.append(Clause(in_place, masks.known))
     if some(masks.marched):
         text = f"friction: {in_words(used.tangential)}, followed by {in_words(used.integrator)}"
         computed.append(Clause(text, masks.marched, code=TANGENTIAL_MOTION))
@@ -162,13 +162,13 @@ def _loses_in_pressure_alone(way: Way) -> bool:
 
 
 def _in_place(laws: Laws, used: Laws) -> str:
-    """Return which laws stand in for those that nobody named, and why."""
+    """Return which laws stand in for those that nobody named, and why; empty if none does."""
     pairs = [
         f"{name_of(new)} for {name_of(old)}"
         for old, new in zip(laws, used, strict=True)
         if type(new) is not type(old)
     ]
-    return f"laws: {', '.join(pairs)}, which cannot follow this impact"
+    return f"laws: {', '.join(pairs)}, which cannot follow this impact" if pairs else ""
 
 
 class _Asked(NamedTuple):
@@ -178,11 +178,9 @@ class _Asked(NamedTuple):
     estimate: bool
 
 
-def _has_fields(law: Law) -> TypeGuard[SteppedTangentialLaw]:
-    """Return whether a law has arrays for a history."""
-    if not isinstance(law, SteppedTangentialLaw):
-        return False
-    return type(law).fields is not SteppedTangentialLaw.fields
+def _has_fields(law: SteppedTangentialLaw | None) -> TypeGuard[SteppedTangentialLaw]:
+    """Return whether a law is stepped and has arrays for a history."""
+    return law is not None and type(law).fields is not SteppedTangentialLaw.fields
 
 
 def _cautions(
@@ -205,8 +203,9 @@ def _cautions(
             normal = _motion_of(laws, central, moved, masks.marched)
         remarks = laws.integrator.cautions
         of_laws += ask(laws.integrator, remarks, marched, normal, laws.tangential)
-        if history == "fields" and _has_fields(laws.tangential):
-            of_laws += ask(laws.tangential, laws.tangential.path_cautions)
+        stepped = laws.capability.stepped
+        if history == "fields" and _has_fields(stepped):
+            of_laws += ask(stepped, stepped.path_cautions)
     able = laws.capability
     for law, words in (
         (laws.normal, able.normal_claims),

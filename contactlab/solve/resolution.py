@@ -31,8 +31,8 @@ def with_resolutions(way: Way, *, as_one: bool) -> list[Way]:
     if found is None:
         return [way._replace(laws=_usual(laws))]
     parts, steps, _ = found
-    if isinstance(parts, float) and isinstance(steps, float):
-        return [way._replace(laws=_choose(laws, parts, steps, found.reason))]
+    if not scene.shape:
+        return [way._replace(laws=_choose(laws, float(parts), float(steps), found.reason))]
     both = np.stack([spread(each, scene.shape) for each in (parts, steps)])
     most = both.reshape(2, -1).max(axis=1)
     same = (both == most.reshape(2, *(1,) * len(scene.shape))).all(axis=0)

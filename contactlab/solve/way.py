@@ -29,7 +29,6 @@ from contactlab.outcome.plan import ENDLESS, MARCHED, UNKNOWN, Clause, PlanColum
 from contactlab.registry.composition import Laws
 from contactlab.registry.law_words import in_words, name_of
 from contactlab.solve.answers import Answered, Mask
-from contactlab.solve.failed_motion import FailedMotion, UnfollowedMotion
 
 #: Friction work over the energy at the start is this many times less accurate than psi2.
 WORK_ACCURACY = 10.0
@@ -150,7 +149,7 @@ class Way(Entries, ABC):
             return self.solve_parts(blocks(scene.shape[0], int(most)))
         try:
             prepared = self.prepare(history)
-            if divisible and isinstance(prepared.normal, FailedMotion):
+            if divisible and prepared.normal._known == "nothing":
                 return self.solve_parts(halves(*batch, most=1))
             motion = self.solve(prepared, recorder)
         except faults.LawFaultError as fault:
@@ -163,7 +162,7 @@ class Way(Entries, ABC):
         # Bound of the imbalance of the energy books: the law's own, and the integrator's share.
         normal, _, columns, own = prepared
         bound = own + WORK_ACCURACY * (laws.capability.accuracy or 0.0)
-        bare = self.both or type(normal) is UnfollowedMotion  # isinstance is slow
+        bare = self.both or normal._known == "ends"
         error = columns.restitution_error
         if not scene.shape and passes(
             motion, normal, bound, error, scene=scene, coupled=self.both, bare=bare

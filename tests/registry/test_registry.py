@@ -9,6 +9,7 @@ import pytest
 import contactlab
 from contactlab import PluginError
 from contactlab.contracts.law import law_kind
+from contactlab.contracts.normal import NormalLaw
 from contactlab.registry.registry import KINDS, REGISTRY, PluginWarning
 
 MINE, KNOWN = "tangential.mine", "normal.hertz"
@@ -154,7 +155,7 @@ def test_laws_are_listed_by_kind_and_name_and_described_by_their_distribution(
     made = registry.create(MINE)
     assert registry.at_hand(law)  # imported
     assert registry.describe(made) == registry.describe(type(made)) == "mine (theirs 1.5)"
-    assert registry.describe(type(law)).endswith(".PluginInfo (not registered)")
+    assert registry.describe(NormalLaw).endswith(".NormalLaw (not registered)")
 
 
 def test_an_entry_point_names_a_class_or_a_module_with_a_hook(registry, install, law_source):

@@ -72,15 +72,15 @@ REFUSED = [
     ),
     (
         lambda: rebound(1.0, 1.0, tolerance=1.0),
-        f"tolerance = 1.0: must lie between 1e-9 and 1, of max(1, |psi1|); {OUT}",
+        f"tolerance = 1.0: must be one number between 1e-9 and 1, of max(1, |psi1|); {OUT}",
     ),
     (
         lambda: rebound(1.0, 1.0, tolerance=9.9e-10),
-        f"tolerance = 9.9e-10: must lie between 1e-9 and 1, of max(1, |psi1|); {OUT}",
+        f"tolerance = 9.9e-10: must be one number between 1e-9 and 1, of max(1, |psi1|); {OUT}",
     ),
     (
         lambda: rebound(1.0, 1.0, tolerance=[1e-5]),
-        f"tolerance = [1e-05]: must be one number; {OUT}",
+        f"tolerance = [1e-05]: must be one number between 1e-9 and 1, of max(1, |psi1|); {OUT}",
     ),
     (lambda: rebound(1.0, 1.0, restitution=-0.009), f"restitution = -0.009: {E_RULE}"),
     (lambda: rebound(1.0, 1.0, restitution=1.001), f"restitution = 1.001: {E_RULE}"),
