@@ -136,7 +136,7 @@ def collide(
     if callable(restitution):
         restitution = _at_speeds(restitution, encounter)
     e = real("restitution", restitution, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
-    if np.ndim(e):
+    if not isinstance(e, float):
         e = spread_over("restitution", e, encounter.shape)
     if simulation is not None:
         _alone(given, e, simulation)
