@@ -30,6 +30,8 @@ from contactlab.outcome.result import ImpactResult
 Cells: TypeAlias = "str | AnyArray"
 #: Rows of a CSV file from which pyarrow is worth its import, and that are made at once.
 MANY = 50_000
+#: Rows that one format writes.
+AT_ONCE = 500
 #: A column of an npz is compressed if so many numbers of it shrink to this share.
 SAMPLE, WORTH_WHILE = 8192, 0.5
 
@@ -61,7 +63,7 @@ def print_csv(result: ImpactResult, stream: TextIO) -> None:
     lines = _lines_of_many if rows >= MANY and find_spec("pyarrow") else _lines
     for first in range(0, rows, MANY):
         part = [each if isinstance(each, str) else each[first : first + MANY] for each in cells]
-        stream.writelines(f"{line}\n" for line in lines(part, min(MANY, rows - first)))
+        stream.writelines(lines(part, min(MANY, rows - first)))
 
 
 def _cells(value: object, shape: tuple[int, ...]) -> Cells:
@@ -84,19 +86,27 @@ def _quote(word: str) -> str:
 
 
 def _lines(cells: Sequence[Cells], rows: int) -> Iterator[str]:
-    """Return the lines of a CSV file, each number with the shortest digits that give it back."""
-    texts: list[Iterable[str]] = [
-        itertools.repeat(each, rows) if isinstance(each, str)
-        else each.tolist() if each.dtype.kind == "U" else map(repr, each.tolist())
-        for each in cells
-    ]  # fmt: skip
-    return map(",".join, zip(*texts, strict=True))
+    """Yield the lines of a CSV file, each number with the shortest digits that give it back."""
+    # One format for many rows: joining texts of cells takes a fifth of the time of their digits.
+    columns = [each for each in cells if not isinstance(each, str)]
+    form = ",".join(_form(each) for each in cells) + "\n"
+    for first in range(0, rows, AT_ONCE):
+        last = min(first + AT_ONCE, rows)
+        parts = zip(*(column[first:last].tolist() for column in columns), strict=True)
+        yield form * (last - first) % tuple(itertools.chain.from_iterable(parts))
 
 
-def _lines_of_many(cells: Sequence[Cells], rows: int) -> list[str]:
+def _form(cell: Cells) -> str:
+    """Return how a cell stands in the format of a row."""
+    if isinstance(cell, str):
+        return cell.replace("%", "%%")
+    return "%s" if cell.dtype.kind == "U" else "%r"
+
+
+def _lines_of_many(cells: Sequence[Cells], rows: int) -> Iterable[str]:
     """Return the same numbers by pyarrow, which writes 1 for 1.0, and them twice as fast."""
     if all(isinstance(each, str) for each in cells):  # no column tells how many rows there are
-        return list(_lines(cells, rows))
+        return _lines(cells, rows)
     pyarrow, compute = map(importlib.import_module, ("pyarrow", "pyarrow.compute"))
     texts = [
         pyarrow.scalar(each) if isinstance(each, str)
@@ -104,7 +114,7 @@ def _lines_of_many(cells: Sequence[Cells], rows: int) -> list[str]:
         for each in cells
     ]  # fmt: skip
     lines: list[str] = compute.binary_join_element_wise(*texts, ",").to_pylist()
-    return lines
+    return (f"{line}\n" for line in lines)
 
 
 def write_history_csv(result: ImpactResult, path: str | Path) -> None:
