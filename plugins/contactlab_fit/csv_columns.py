@@ -39,6 +39,8 @@ UNITS = {unit for pair in CONVERSIONS for unit in pair} | set(SAME_UNITS) | {"%"
 #: Other names of the entry ``angle_deg``.
 ANGLES = ("angle", "incidence_angle", "incidence_angle_deg")
 ERROR = "_error"
+#: Other words for it, as endings.
+DEVIATION = re.compile(r"_(e?rror|err|std|sd|se|sem|sigma|uncertainty)$")
 #: Angles from the surface, by the name of that from the normal.
 FROM_SURFACE = {"angle_from_surface": "angle", "rebound_angle_from_surface": "rebound_angle"}
 #: What to write for a table without headings.
@@ -109,14 +111,26 @@ def read_heading(text: str, columns: Mapping[str, str]) -> Heading:
         name = f"{name}_deg"
     if name.strip("|") in measurable():
         role = "error" if error else "measured"
-        return Heading(role, name, _factor(text, name, unit, QUANTITIES[name].unit))
+        own = QUANTITIES[name].unit
+        return Heading(role, name, _factor(text, name, unit, own, ERROR * error))
     if name in QUANTITIES or name == "status":
         return Heading("unused", text)
+    heading = f"heading {text!r}: " + ("" if alias is text else f"{alias} ")
     raise UnknownHeadingError(
-        f"heading {text!r}: is no known name; {nearest(name, [*ENTRIES, *measurable()])}"
-        f"{list_names()}name the column: --column '{text.strip()}=...' (columns= in Python), or "
+        f"{heading}is no known name; {_meant(name, error)}{known_names()}"
+        f"name the column: --column '{text.strip()}=...' (columns= in Python), or "
         "put # before the heading to skip the column"
     )
+
+
+def _meant(name: str, error: bool) -> str:
+    """Return which name is nearest to an unknown one; of an error, which has no sign, its name."""
+    plain = DEVIATION.sub("", name)
+    hint = nearest(plain, [*ENTRIES, *measurable()])
+    found = re.findall(r"'(\w+)'", hint)
+    if (not error and plain == name) or not set(found).issubset(measurable()):
+        return hint
+    return re.sub(r"'(\w+)'(, which[^?]*)?", rf"'\1{ERROR}'", hint)
 
 
 def unit_of(name: str, text: str) -> str:
@@ -164,7 +178,7 @@ def name_and_unit(text: str) -> tuple[bool, str, str]:
     return error or name.endswith(ERROR), name.removesuffix(ERROR), unit
 
 
-def _factor(text: str, name: str, unit: str, own: str) -> float:
+def _factor(text: str, name: str, unit: str, own: str, ending: str = "") -> float:
     """Return the factor from the unit of a heading to the unit of the named quantity."""
     if not unit and (own == "1" or name.endswith("_deg")):
         return 1.0
@@ -172,7 +186,7 @@ def _factor(text: str, name: str, unit: str, own: str) -> float:
         return times
     convertible = "".join(f", or ({unit})" for unit, to in CONVERSIONS if to == own)
     reason = "has no unit" if not unit else f"is in {unit}, which is not known here"
-    raise ValueError(f"heading {text!r}: {reason}; write '{name} ({own})'{convertible}")
+    raise ValueError(f"heading {text!r}: {reason}; write '{name}{ending} ({own})'{convertible}")
 
 
 def read_text(path: Path) -> str:

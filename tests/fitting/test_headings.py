@@ -185,6 +185,24 @@ def test_a_file_that_is_no_text_is_refused(tmp_path):
     assert read_measurements(path).measured["psi2"].tolist() == [0.5]
 
 
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("slip_restitution_error", "'x': slip_restitution_error .* mean 'beta0_error'[?]"),
+        ("-slip_restitution_error (1)", "slip_restitution_error .* mean 'beta0_error'[?]"),
+        ("slip_restitution", "mean 'beta0', which is -slip_restitution"),
+        ("et_error", "mean 'tangential_restitution_error' or 'beta0_error'[?]"),
+        ("beta0_std", "mean 'beta0_error'[?]"),
+        ("rebound_speed_error", "write 'rebound_speed_error [(]m/s[)]'"),
+    ],
+)
+def test_a_wrong_name_of_a_column_is_told_with_the_right_one(name, told):
+    """The name of an error is that of an error, and the name that was written is told."""
+    table = {"angle_deg": [10.0, 20.0], "x": [0.1, 0.1], "psi2": [0.5, 0.4]}
+    with pytest.raises(ValueError, match=told):
+        read_measurements(table, columns={"x": name})
+
+
 def test_columns_are_named_in_their_order_with_headings_or_without(tmp_path):
     path = tmp_path / "plain.txt"
     expected = {"angle_deg": [10.0, 20.0], "speed": [1.0, 1.5], "rebound_spin": [-3.0, -4.0]}
