@@ -344,7 +344,21 @@ def add_one_restitution(parser: argparse.ArgumentParser) -> None:
 
 def _number_or_words(text: str) -> Any:
     """Return a number; or the text as it is, if v or a colon shows a formula or a table."""
-    return text if re.search("[v:]", text) else finite(text)
+    if re.search("[v:]", text):
+        return text
+    try:
+        return finite(text)
+    except argparse.ArgumentTypeError as error:
+        forms = "e as in 0.9, '1 - 0.02 v^(1/5)' or 0.5:0.95,2:0.9"
+        raise argparse.ArgumentTypeError(f"{error}; write {forms}") from None
+
+
+def one_restitution(text: str) -> float:
+    """Return a coefficient of restitution that scenes of every speed have."""
+    try:
+        return finite(text)
+    except argparse.ArgumentTypeError as error:
+        raise argparse.ArgumentTypeError(f"{error}; write one for all scenes, as 0.9") from None
 
 
 def add_progress(parser: argparse.ArgumentParser, default: str = "only on a terminal") -> None:

@@ -81,6 +81,10 @@ MISSING = "must be given too (chi is 1.4412 for a solid sphere)"
         (["compare", "SWEEP", "--tangential", "annulus", "--set", "tangential.anuli=5"], "--set "
          "tangential.anuli: no chosen law has this option; did you mean "
          "'tangential.annuli'? known: tangential.annuli, tangential.displacement"),
+        (["run", "BALL", "--restitution", "big"], "argument --restitution: 'big' is not a number; "
+         "write e as in 0.9, '1 - 0.02 v^(1/5)' or 0.5:0.95,2:0.9 (see contactlab run --help)"),
+        (["stability", "--restitution", "1:0.9,2:0.8"], "argument --restitution: '1:0.9,2:0.8' is "
+         "not a number; write one for all scenes, as 0.9 (see contactlab stability --help)"),
         (["validate", "--out", "no/such/dir"],
          "--out no/such/dir: there is no folder no/such"),
         (["guide", "qqq"], None),
