@@ -71,7 +71,8 @@ class Law(ABC):
 
     #: An option of a law is one number, for all impacts.
     _plain_options: ClassVar[bool] = True
-    _kind: ClassVar[str]
+    #: Of the base itself there is none.
+    _kind: ClassVar[str] = ""
     #: How laws of the class are run: the words of its contracts.
     _ways: ClassVar[frozenset[str]] = frozenset()
     #: Version of the contracts that the law was written for.
@@ -93,7 +94,7 @@ class Law(ABC):
         super().__init_subclass__(**options)
         if kind is not None:
             cls._kind = kind
-        inherited = (base._ways for base in cls.__bases__ if issubclass(base, Law))
+        inherited = [getattr(base, "_ways", frozenset()) for base in cls.__bases__]
         cls._ways = frozenset(() if way is None else {way}).union(*inherited)
 
     @classmethod

@@ -6,10 +6,7 @@ import inspect
 from functools import lru_cache
 from typing import TypeGuard
 
-from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.law import API_VERSION, Law, law_kind
-from contactlab.contracts.normal import NormalLaw
-from contactlab.contracts.tangential import TangentialLaw
 
 #: Methods of integrators that are called with the impact, its normal motion and the law, and their
 #: first arguments. One in another order would be run with arguments exchanged.
@@ -51,7 +48,7 @@ def _word_or_law(value: object) -> bool:
 
 def is_law_class(value: object) -> TypeGuard[type[Law]]:
     """Return True for the class of a law of one of the three kinds."""
-    return isinstance(value, type) and issubclass(value, NormalLaw | TangentialLaw | Integrator)
+    return isinstance(value, type) and issubclass(value, Law) and value._kind != ""
 
 
 def _find_exchange(law: type[Law]) -> str | None:
