@@ -94,8 +94,9 @@ class Law(ABC):
         super().__init_subclass__(**options)
         if kind is not None:
             cls._kind = kind
-        inherited = [getattr(base, "_ways", frozenset()) for base in cls.__bases__]
-        cls._ways = frozenset(() if way is None else {way}).union(*inherited)
+        none = frozenset[str]()
+        inherited = [getattr(base, "_ways", none) for base in cls.__bases__]
+        cls._ways = none.union(*inherited, () if way is None else {way})
 
     @classmethod
     def _own_class(cls) -> type[Law]:

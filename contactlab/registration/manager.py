@@ -181,7 +181,8 @@ class Manager(pluggy.PluginManager):
         started = time.perf_counter()
         with guard(info.source, "could not be imported"):
             plugin = metadata.EntryPoint(info.name, info.module, PROJECT).load()
-        if (took := time.perf_counter() - started) > SLOW:
+        took = time.perf_counter() - started
+        if took > SLOW and info.distribution != PROJECT:  # of ours no user can mend it
             rule = f"took {took:.0f} s to import, and every command that asks for its kind waits"
             remedy = "import what takes long where it is used, in the function"
             warnings.warn(f"{info.source} {rule}; {remedy}", PluginWarning, stacklevel=4)

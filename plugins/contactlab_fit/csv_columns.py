@@ -115,9 +115,9 @@ def read_heading(text: str, columns: Mapping[str, str]) -> Heading:
         return Heading(role, name, _factor(text, name, unit, own, ERROR * error))
     if name in QUANTITIES or name == "status":
         return Heading("unused", text)
-    heading = f"heading {text!r}: " + ("" if alias is text else f"{alias} ")
+    said = f"heading {text!r}: " + ("" if alias is text else f"{alias} ")
     raise UnknownHeadingError(
-        f"{heading}is no known name; {_meant(name, error)}{known_names()}"
+        f"{said}is no known name; {_meant(name, error)}{known_names()}"
         f"name the column: --column '{text.strip()}=...' (columns= in Python), or "
         "put # before the heading to skip the column"
     )
