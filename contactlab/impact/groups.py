@@ -19,6 +19,8 @@ MODULUS = 15.0 / 16.0
 OF_ELLIPSES = Rule(
     lambda ratio: (ratio >= 0.5) & (ratio <= 2.0), "must lie in [0.5, 2], the range of ellipses"
 )
+#: Words for arrays that do not fit.
+SHAPES, EQUAL = "Scene.nondimensional: the shapes", "give arrays of equal length"
 #: Relative difference of two values of rho from which they contradict each other.
 ALIKE = 1e-9
 
@@ -69,6 +71,23 @@ def entries(
     cross = real("cross_stiffness_ratio", cross_stiffness_ratio, rule=OF_ELLIPSES, remedy=remedy)
     rim = real("spin", spin, remedy="w1 = kappa omega_n a/(mu v1) of theory §17")
     turning = real("spin_inertia", spin_inertia, rule=NON_NEGATIVE, remedy="chi_w of theory §17")
+    numbers = {
+        "eta": None if eta is None else real("eta", eta),
+        "rho": None if rho is None else real("rho", rho),
+        "poisson_ratio": given,
+        "coupling_number": coupled,
+        "friction_coefficient": friction,
+        "cross_stiffness_ratio": cross,
+        "spin": rim,
+        "spin_inertia": turning,
+    }
+    if not in_space:  # else they end with axes of the tangent plane
+        numbers = {"psi1": incidence, "chi": inertia, "lam": drag, **numbers}
+    batch.common_shape(
+        {name: np.shape(each) for name, each in numbers.items() if type(each) is not float},
+        what=SHAPES,
+        remedy=EQUAL,
+    )
     squared = _rho(inertia, drag, eta, rho, given, friction, in_space)
     mu, kappa = _friction_and_stiffness(squared, given, friction)
     pair = {
@@ -178,9 +197,7 @@ def _scale(
         shapes[name] = whole[: -len(trailing)]
     shapes |= {"rho": np.broadcast_shapes(np.shape(mu), np.shape(kappa))}
     shapes |= {"cross_stiffness_ratio": np.shape(cross)}
-    shape = batch.common_shape(
-        shapes, what="Scene.nondimensional: the shapes", remedy="give arrays of equal length"
-    )
+    shape = batch.common_shape(shapes, what=SHAPES, remedy=EQUAL)
     mu, kappa = np.broadcast_to(mu, shape), np.broadcast_to(kappa, shape)
     W = np.zeros((*shape, 3, 3))
     W[..., 0, 0] = 1.0

@@ -130,7 +130,7 @@ def law(kind: str, value: object, **options: object) -> Law:
             raise ValueError(f"{kind} = {complaint}")
         return value
     remedy = "names: contactlab plugins list"
-    if is_law_class(value):
+    if is_law_class(value) and not value.__abstractmethods__:
         remedy = f"this is the class; make one: {value.__name__}()"
     raise refuse(kind, value, f"must be a name or a {kind} law", remedy)
 

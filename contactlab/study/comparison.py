@@ -10,8 +10,8 @@ import numpy as np
 
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import refuse
-from contactlab.numeric.names import tell_attributes
+from contactlab.numeric.checks import of_kind, refuse
+from contactlab.numeric.names import attributes_told, nearest
 from contactlab.numeric.progress import Count, follow
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.result import ImpactResult
@@ -85,11 +85,19 @@ class Comparison(Tabled):
 
     def result(self, law: str) -> ImpactResult:
         """Return the result of one law."""
-        return next(run.result for run in self.runs if run.name == law)
+        return self._run(law).result
 
     def model(self, law: str) -> str:
         """Return what one law takes the bodies for: see ``LawRun.model``."""
-        return next(run.model for run in self.runs if run.name == law)
+        return self._run(law).model
+
+    def _run(self, law: str) -> LawRun:
+        """Return the run of a law, or refuse a name that none has."""
+        for run in self.runs:
+            if run.name == law:
+                return run
+        remedy = f"{nearest(str(law), self.names)}known: {', '.join(self.names)}"
+        raise refuse("law", law, "is not in the comparison", remedy)
 
     def values(self, quantity: str, law: str) -> Array:
         """Return a quantity of one law over the scene or sweep; NaN where an impact failed."""
@@ -223,12 +231,13 @@ def compare(
     Raises
     ------
     ValueError
-        If ``scene`` is neither a scene nor a scene file.
+        If ``scene`` is neither a scene nor a scene file, or if there are no simulations by name.
     """
     file = scene if isinstance(scene, SceneFile) else None
     single = file.scene if file else scene
     if not isinstance(single, Scene):
         raise refuse("scene", scene, "must be a Scene or a SceneFile")
+    _check_simulations(simulations)
     series = file.measured if file else ()
     total, done = len(simulations) * (1 + len(series)), 0
     runs: list[LawRun] = []
@@ -266,6 +275,15 @@ def compare(
         agreements=agreements,
         interrupted=interrupted,
     )
+
+
+def _check_simulations(simulations: object) -> None:
+    """Refuse what is no mapping of names to simulations."""
+    example = "such as {'exact': Simulation(), 'rigid': Simulation(tangential='coulomb')}"
+    if not isinstance(simulations, Mapping) or not simulations:
+        raise refuse("simulations", simulations, "must be simulations by name", example)
+    for name, simulation in simulations.items():
+        of_kind(f"simulations[{name!r}]", simulation, Simulation, remedy=example)
 
 
 def _find_entries(scene: Scene) -> dict[str, Array]:

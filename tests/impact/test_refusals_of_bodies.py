@@ -104,6 +104,19 @@ REFUSED = [
         "Scene: the shapes of normal_speed (2,), tangential_velocity (3,) must broadcast to one; "
         "give numbers, or arrays of equal length",
     ),
+    *(
+        (
+            lambda each=each: Scene.nondimensional(psi1=[1.0, 2.0, 3.0], chi=1.4, **each),
+            f"Scene.nondimensional: the shapes of psi1 (3,), {next(iter(each))} (2,) must "
+            "broadcast to one; give arrays of equal length",
+        )
+        for each in (
+            {"poisson_ratio": [0.1, 0.2]},
+            {"friction_coefficient": [0.1, 0.2]},
+            {"lam": [0.1, 0.2], "rho": 0.1},
+            {"eta": [0.1, 0.2], "lam": 0.1},
+        )
+    ),
     (
         lambda: Scene(Sphere([], STEEL), PLATE, 0.2, 1.0),
         "shape = (0,): a scene must hold at least one impact",

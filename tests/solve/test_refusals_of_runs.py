@@ -233,6 +233,8 @@ def test_a_class_in_place_of_a_law_and_a_law_of_another_kind():
     assert str(caught.value).endswith(
         f": {rule} tangential law; this is the class; make one: Springs()"
     )
+    with pytest.raises(ValueError, match=f"tangential law; {installed}$"):
+        law("tangential", contactlab.SteppedTangentialLaw)  # which nobody can make
     with pytest.raises(ValueError, match=r"^normal = Springs\(") as caught:
         law("normal", springs())
     assert str(caught.value).endswith(f": {rule} normal law; {installed}")

@@ -200,6 +200,29 @@ def test_a_single_impact_varies_nothing_and_a_grid_its_axes():
     np.testing.assert_array_equal(varied["chi"], [1.0, 1.5, 2.0] * 2)
 
 
+@pytest.mark.parametrize(
+    ("simulations", "told"),
+    [
+        ([Simulation()], "simulations = .*must be simulations by name; such as"),
+        ({}, "simulations = {}: must be simulations by name"),
+        ({"a": "coulomb"}, r"simulations\['a'\] = 'coulomb': must be a Simulation; such as"),
+    ],
+)
+def test_what_are_no_simulations_by_name_is_refused(simulations, told):
+    with pytest.raises(ValueError, match=told):
+        compare(Scene.nondimensional(psi1=1.0, chi=1.4), simulations)
+
+
+def test_a_law_that_is_not_compared_is_refused():
+    found = compare(
+        Scene.nondimensional(psi1=1.0, chi=1.4), {"rigid": Simulation(tangential="coulomb")}
+    )
+    told = "law = 'rigd': is not in the comparison; did you mean 'rigid'[?] known: rigid"
+    for asked in (found.result, found.model, lambda law: found.values("psi2", law)):
+        with pytest.raises(ValueError, match=told):
+            asked("rigd")
+
+
 def test_what_is_no_scene_is_refused():
     with pytest.raises(ValueError, match="scene = 3: must be a Scene or a SceneFile"):
         compare(3, LAWS)
