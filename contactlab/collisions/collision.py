@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Generic
+from typing import TYPE_CHECKING, Any, ClassVar, Generic
 
 import attrs
 import numpy as np
@@ -95,6 +95,8 @@ class Collision(Answer, Generic[Each]):
         The result of the encounters that collided; None where ``contactlab.rebound`` answered.
     """
 
+    #: Where attributes are that a collision has not itself.
+    _within: ClassVar[Mapping[str, type]] = {"result": ImpactResult}
     encounter: Encounter
     velocity: Array
     spin: Array

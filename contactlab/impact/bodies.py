@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Generic, overload
 import attrs
 import numpy as np
 
-from contactlab.impact.material import Material
+from contactlab.impact.material import A_MATERIAL, Material
 from contactlab.numeric.arrays import common_shape
 from contactlab.numeric.checks import (
     GYRATION,
@@ -38,9 +38,7 @@ RADIUS = Rule(
 
 def _material() -> Any:
     """Return the attrs field for the material of a body."""
-    return instance(
-        Material, remedy="make one, Material(...), or by its name: Material.named('steel')"
-    )
+    return instance(Material, remedy=A_MATERIAL)
 
 
 class _SphereArguments:

@@ -20,6 +20,8 @@ from contactlab.numeric.types import Array, Each, Number, Numbers
 from contactlab.registration.bring import by_name, own_first
 from contactlab.registration.hooks import hookimpl
 
+#: Remedy for what is no material.
+A_MATERIAL = "make one, Material(...), or by its name: Material.named('steel')"
 #: Arguments of a material, which are no properties.
 OWN_NUMBERS = ("shear_modulus", "young_modulus", "poisson_ratio", "density", "yield_stress")
 OWN = "or give your own: Material(young_modulus=..., poisson_ratio=..., density=...)"

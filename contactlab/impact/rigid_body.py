@@ -10,8 +10,8 @@ import attrs
 import numpy as np
 
 from contactlab.impact.bodies import MOST_RADIUS
-from contactlab.impact.material import Material
-from contactlab.numeric.arrays import choose, common_shape, none_for_nan, some, take
+from contactlab.impact.material import A_MATERIAL, Material
+from contactlab.numeric.arrays import choose, common_shape, known, some, taken
 from contactlab.numeric.checks import (
     POSITIVE,
     Rule,
@@ -57,9 +57,12 @@ def _tensor(value: Numbers | None, field: attrs.Attribute[object]) -> Array | No
     remedy = f"give an array of shape (..., {str(trailing)[1:-1].rstrip(',')})" + (
         f" in {unit}" if unit != "1" else ""
     )
-    array = np.array(real(field.name, value, remedy=remedy, empty=True))
+    name = field.alias or field.name
+    array = np.array(real(name, value, remedy=remedy, empty=True))
     if array.shape[-len(trailing) :] != trailing:
-        raise refuse(f"{field.name}.shape", array.shape, f"must end with {trailing}", remedy)
+        if name == "inertia" and array.shape[-1:] == (3,):
+            remedy = f"{remedy}; three moments are principal=[...]"
+        raise refuse(f"{name}.shape", array.shape, f"must end with {trailing}", remedy)
     array.flags.writeable = False
     return array
 
@@ -155,9 +158,7 @@ class RigidBody:
 
     mass: Either = quantity("kg", rule=POSITIVE)
     _inertia: Any = _array("kg m²", (3, 3))
-    material: Material = instance(
-        Material, remedy="make one, Material(...), or by its name: Material.named('steel')"
-    )
+    material: Material = instance(Material, remedy=A_MATERIAL)
     curvature_radius: Either = _curvature_field(default=None)
     principal: Any = _array("kg m²", (3,))
     axes: Any = _array("1", (3, 3))

@@ -16,11 +16,11 @@ from typing import Any, TypeVar
 import attrs
 import numpy as np
 
-from contactlab.impact.material import Material
+from contactlab.impact.material import A_MATERIAL, Material
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.arrays import lock_arrays
-from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, real, refuse
-from contactlab.numeric.names import SHAPES, tell_function
+from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, of_kind, real, refuse
+from contactlab.numeric.names import SHAPES, function_told
 from contactlab.numeric.taken import Taken
 from contactlab.numeric.types import Array, Numbers, Real
 from contactlab.registration.bring import by_name
@@ -621,6 +621,7 @@ def _axes(value: Numbers | None) -> Array:
 
 def _mass(mass: Numbers | None, material: Material, volume: float) -> float:
     """Return the mass in kg, by default from the density."""
+    of_kind("material", material, Material, remedy=A_MATERIAL)
     if mass is None and material.density is None:
         rule = "is needed where the material has no density"
         raise refuse("mass", mass, rule, "give mass= in kg or Material(density=...) in kg/m³")

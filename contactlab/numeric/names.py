@@ -43,7 +43,8 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
     "ball": ("sphere", "body"), "sphere": ("body",), "wall": ("target",), "plane": ("target",),
     "half_space": ("target",),
     "laws": ("simulation", "tangential"), "tangential": ("law",), "normal": ("law",),
-    "output": ("out",), "plot": ("figure",), "jobs": ("workers",),
+    "to_csv": ("to_dataframe",), "save": ("to_dataframe",), "write": ("to_dataframe",),
+    "to_pandas": ("to_dataframe",), "output": ("out",), "plot": ("figure",), "jobs": ("workers",),
     "angle": ("angle_deg", "rebound_angle"), "psi": ("psi1",), "dt": ("steps",), "n": ("steps",),
 }  # fmt: skip
 #: Shapes of bodies by the names that users try, and what makes them.
@@ -58,6 +59,7 @@ SHAPES = {
 }  # fmt: skip
 #: Remarks on a suggested name whose quantity is another.
 REMARKS = {
+    **dict.fromkeys(("to_csv", "save", "write"), ", which has .to_csv(path)"),
     "diameter": ", half the diameter", "d": ", half the diameter",
     "slip_restitution": ", which is -slip_restitution in results, and the same number in walton",
     "e_T": ", which is -psi2/psi1",
@@ -142,6 +144,9 @@ def tell_attributes(made: Class) -> Class:
             return object.__getattribute__(self, name)  # an error in a property is its own
         public = [each for each in dir(self) if not each.startswith("_")]
         remedy = nearest(name, public).strip() or f"it has {', '.join(public)}"
+        for place, kind in getattr(made, "_within", {}).items():
+            if hasattr(kind, name):
+                remedy = f"it is in .{place}: write .{place}.{name}"
         text = f"{made.__name__} has no attribute {name!r}; {remedy}"
         raise AttributeError(text, name=name, obj=self)
 

@@ -378,3 +378,11 @@ def test_scenes_by_speed_and_angle():
     for wrong in ({"angle_deg": 90.0}, {"speed": 0.0}, {"speed": "fast"}):
         with pytest.raises(ValueError, match=next(iter(wrong))):
             Scene.at_angle(BALL, PLATE, 0.2, **({"speed": 1.0, "angle_deg": 3.0} | wrong))
+
+
+def test_what_a_collision_has_not_itself_is_found_in_its_result():
+    ball = Sphere(0.0286, Material(young_modulus=5e9, poisson_ratio=0.34, density=1700.0))
+    done = collide(Encounter(ball, ball, 0.1, normal=[1, 0, 0], velocity=[2, 0, 0]))
+    with pytest.raises(AttributeError, match=r"it is in \.result: write \.result\.psi2"):
+        _ = done.psi2
+    assert done.result.psi2 == 0.0

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from contactlab import Encounter, HalfSpace, Material, RigidBody, Scene, Simulation, Sphere
+from contactlab import Encounter, HalfSpace, Material, RigidBody, Scene, Simulation, Sphere, shapes
 from contactlab.impact import grid
 from contactlab.impact import material as materials
 
@@ -38,6 +38,34 @@ REFUSED = [
         lambda: Sphere(0.01, "steel"),
         "material = 'steel': must be a Material; make one, Material(...), or by its name: "
         "Material.named('steel')",
+    ),
+    *(
+        (
+            make,
+            "material = 'steel': must be a Material; make one, Material(...), or by its name: "
+            "Material.named('steel')",
+        )
+        for make in (
+            lambda: shapes.rod(
+                length=0.1, radius=0.01, material="steel", normal=[0, 0, -1], axis=[1, 0, 1]
+            ),
+            lambda: shapes.disc(
+                radius=0.1,
+                thickness=0.05,
+                rim_radius=0.01,
+                material="steel",
+                normal=[0, 0, -1],
+                axis=[1, 0, 1],
+            ),
+            lambda: shapes.ellipsoid(
+                semi_axes=(0.1, 0.1, 0.1), material="steel", normal=[0, 0, -1]
+            ),
+        )
+    ),
+    (
+        lambda: RigidBody(mass=1.0, inertia=[1.0, 1.0, 1.0], material=STEEL),
+        "inertia.shape = (3,): must end with (3, 3); give an array of shape (..., 3, 3) in kg m²; "
+        "three moments are principal=[...]",
     ),
     (
         lambda: Sphere(0.01, Material(young_modulus=1e9, poisson_ratio=0.3)),
