@@ -16,6 +16,7 @@ from contactlab.contracts.status import Status, succeeded
 from contactlab.contracts.tangential_motion import Sample
 from contactlab.impact.gathering import Body, Gathering
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import shape_as
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import tell_attributes
 from contactlab.numeric.types import Array, Real
@@ -238,7 +239,7 @@ class GatheringResult(Answer):
         ledger = gathering_ledger(self._scene, self._motion)
         shape = self.gathering.shape
         entries = {
-            field.name: np.asarray(getattr(ledger, field.name)).reshape(shape)[()]
+            field.name: shape_as(np.asarray(getattr(ledger, field.name)), shape)
             for field in attrs.fields(EnergyLedger)
         }
         return EnergyLedger(**entries)

@@ -19,7 +19,7 @@ SYMBOLS: dict[str, tuple[str, ...]] = {
     "nu": ("poisson_ratio",), "E": ("young_modulus",), "G": ("shear_modulus",),
     "rho": ("density",), "R": ("radius",), "r": ("radius",), "diameter": ("radius",),
     "d": ("radius",), "Y": ("yield_stress",),
-    "law": ("tangential",), "theta": ("angle_deg",), "alpha": ("angle_deg",),
+    "law": ("tangential", "simulation"), "theta": ("angle_deg",), "alpha": ("angle_deg",),
     "m": ("mass",), "M": ("mass",), "K": ("gyration_ratio",),
     "I": ("inertia",), "J": ("inertia",), "moments": ("principal",),
     "v": ("tangential_velocity", "speed", "velocity"), "vx": ("tangential_velocity",),

@@ -118,7 +118,7 @@ class NoHistory:
 
     def __repr__(self) -> str:
         """Return what to write to have a history."""
-        return "NoHistory(run(scene, history=True) keeps one)"
+        return "NoHistory(history=True keeps one)"
 
     def __getattr__(self, name: str) -> Any:
         """Raise an ``AttributeError`` that says what to write."""
@@ -126,7 +126,8 @@ class NoHistory:
             raise AttributeError(name)
         raise AttributeError(
             f"history.{name}: this run kept no history; write run(scene, history=True), or "
-            "history='fields' for traction, stick and slip too"
+            "history='fields' for traction, stick and slip too; of several contacts "
+            "collide(gathering, history=True)"
         )
 
 

@@ -11,6 +11,8 @@ from contactlab.scene_file.entries import BODY_SECTIONS, UNITS
 
 #: A number and what follows it.
 QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S.*?)?\s*")
+#: A range as on the command line.
+RANGE = re.compile(r"\s*([-+.\de]+)\s*:\s*([-+.\de]+)\s*(?::\s*(\d+)\s*)?")
 #: Sections of a file with numbers that have units.
 SECTIONS = (*BODY_SECTIONS, "nondimensional", "sweep")
 #: Ends of a range, in the unit of its entry.
@@ -40,6 +42,10 @@ def _read(value: object, path: str, own: str, table: object) -> object:
         }
     if isinstance(value, list):
         return [_read(each, f"{path}[{place}]", own, table) for place, each in enumerate(value)]
+    if isinstance(value, str) and (ends := RANGE.fullmatch(value)) is not None:
+        start, stop, count = ends.groups()
+        remedy = f"under [sweep] write {{start = {start}, stop = {stop}, count = {count or 7}}}"
+        raise refuse(path, value, "is a range as on the command line", remedy)
     written = QUANTITY.fullmatch(value) if own and isinstance(value, str) else None
     if written is None:
         return value

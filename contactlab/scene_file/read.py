@@ -293,7 +293,8 @@ def _document(file: Path) -> dict[str, Any]:
         if file.suffix.lower() in (".csv", ".txt", ".dat"):
             rule = "holds no scene; measured impacts go to contactlab fit"
             raise ValueError(f"{file}: {rule} {file.name} bodies.toml") from None
-        raise ValueError(f"{file}, {_place(str(error), text)}{_rewrite(text)}") from None
+        twice = "; is a key or a table written twice?" * ("overwrite" in str(error))
+        raise ValueError(f"{file}, {_place(str(error), text)}{_written(text) or twice}") from None
     except ValueError as error:  # an integer with thousands of digits
         raise ValueError(f"{file}: {error}") from None
     except RecursionError:
@@ -313,7 +314,7 @@ def _text(file: Path) -> str:
         text = content(file, kind="a scene", remedy=remedy).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise ValueError(
-            f"{file}: is not UTF-8 text ({error.reason} at byte {error.start})"
+            f"{file}: is not UTF-8 text ({error.reason} at byte {error.start}); save it as UTF-8"
         ) from None
     return text.replace("\r\n", "\n").replace("\r", "\n")
 

@@ -219,3 +219,10 @@ def test_a_wave_in_a_chain_is_that_of_nesterenko():
     assert speed / long_wave == pytest.approx(1.01246, abs=3e-4)
     above = times[forces[:, 50] > 0.5 * peak[0], 50]
     assert (above[-1] - above[0]) * speed / 0.02 == pytest.approx(1.412, abs=0.01)
+
+
+def test_a_gathering_tells_its_own_way_to_a_history_and_plain_numbers_of_energy():
+    done = collide(three_balls())
+    with pytest.raises(AttributeError, match=r"several contacts collide\(gathering, history=True"):
+        _ = done.history.time
+    assert "float64" not in repr(done.energy)

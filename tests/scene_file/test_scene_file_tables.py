@@ -113,7 +113,7 @@ def test_text_of_other_encodings_and_line_ends(tmp_path):
     with pytest.raises(ValueError, match="UTF-8") as caught:
         contactlab.read_scene(path)
     reason = "invalid continuation byte at byte 2"
-    assert str(caught.value) == f"{path}: is not UTF-8 text ({reason})"
+    assert str(caught.value) == f"{path}: is not UTF-8 text ({reason}); save it as UTF-8"
 
 
 def test_a_maker_that_overflows_names_its_table():
@@ -149,3 +149,22 @@ def test_lists_of_numbers_from_a_file_or_from_code():
     for bad in (np.array(1.0), (1.0, 2.0), [1.0, True], "12"):
         with pytest.raises(ValueError, match=r": must be a list of numbers; do$"):
             number_list("x", bad, remedy="do")
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (
+            "[nondimensional]\nchi = 1.4\n[sweep]\npsi1 = '0:6:7'\n",
+            "sweep.psi1 = '0:6:7': is a range as on the command line; under [sweep] write "
+            "{start = 0, stop = 6, count = 7}",
+        ),
+        ("[nondimensional]\nchi = 1.4\nchi = 1.5\n", "is a key or a table written twice?"),
+        ("[law]\nnormal = 'hertz'\n", "law: unknown table; did you mean 'simulation'? known: "),
+    ],
+)
+def test_what_stands_elsewhere_or_twice_is_told_with_its_place(tmp_path, text, told):
+    path = tmp_path / "scene.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ValueError, match=re.escape(told)):
+        contactlab.read_scene(path)
