@@ -339,7 +339,7 @@ def add_restitution(parser: argparse.ArgumentParser) -> None:
 def add_one_restitution(parser: argparse.ArgumentParser) -> None:
     """Add ``--restitution``, one number."""
     words = "coefficient of restitution, in place of a normal law"
-    parser.add_argument("--restitution", type=finite, metavar="E", help=words)
+    parser.add_argument("--restitution", type=_one_number, metavar="E", help=words)
 
 
 def _number_or_words(text: str) -> Any:
@@ -353,7 +353,7 @@ def _number_or_words(text: str) -> Any:
         raise argparse.ArgumentTypeError(f"{error}; write {forms}") from None
 
 
-def one_restitution(text: str) -> float:
+def _one_number(text: str) -> float:
     """Return a coefficient of restitution that scenes of every speed have."""
     try:
         return finite(text)

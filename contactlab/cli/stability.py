@@ -38,8 +38,7 @@ WORDS = ("answered", "coarse", NO_REFERENCE, "refused", SKIPPED, RAISED, WRONG)
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the laws, the size, and the outputs."""
     shared.add_report(parser, progress="yes")
-    words = "coefficient of restitution, in place of a normal law"
-    parser.add_argument("--restitution", type=shared.one_restitution, metavar="E", help=words)
+    shared.add_one_restitution(parser)
     return shared.check_outputs_first(execute)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from contactlab.impact.bodies import MOST_RADIUS
 from contactlab.impact.material import A_MATERIAL, Material
-from contactlab.numeric.arrays import choose, common_shape, known, some, taken
+from contactlab.numeric.arrays import choose, common_shape, none_for_nan, some, take
 from contactlab.numeric.checks import (
     POSITIVE,
     Rule,

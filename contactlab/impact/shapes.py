@@ -20,7 +20,7 @@ from contactlab.impact.material import A_MATERIAL, Material
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.arrays import lock_arrays
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, of_kind, real, refuse
-from contactlab.numeric.names import SHAPES, function_told
+from contactlab.numeric.names import SHAPES, tell_function
 from contactlab.numeric.taken import Taken
 from contactlab.numeric.types import Array, Numbers, Real
 from contactlab.registration.bring import by_name

@@ -294,7 +294,7 @@ def _document(file: Path) -> dict[str, Any]:
             rule = "holds no scene; measured impacts go to contactlab fit"
             raise ValueError(f"{file}: {rule} {file.name} bodies.toml") from None
         twice = "; is a key or a table written twice?" * ("overwrite" in str(error))
-        raise ValueError(f"{file}, {_place(str(error), text)}{_written(text) or twice}") from None
+        raise ValueError(f"{file}, {_place(str(error), text)}{_rewrite(text) or twice}") from None
     except ValueError as error:  # an integer with thousands of digits
         raise ValueError(f"{file}: {error}") from None
     except RecursionError:

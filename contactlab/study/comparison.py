@@ -11,7 +11,7 @@ import numpy as np
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import of_kind, refuse
-from contactlab.numeric.names import attributes_told, nearest
+from contactlab.numeric.names import nearest, tell_attributes
 from contactlab.numeric.progress import Count, follow
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.result import ImpactResult

@@ -117,13 +117,13 @@ def read_heading(text: str, columns: Mapping[str, str]) -> Heading:
         return Heading("unused", text)
     said = f"heading {text!r}: " + ("" if alias is text else f"{alias} ")
     raise UnknownHeadingError(
-        f"{said}is no known name; {_meant(name, error)}{known_names()}"
+        f"{said}is no known name; {_nearest(name, error)}{list_names()}"
         f"name the column: --column '{text.strip()}=...' (columns= in Python), or "
         "put # before the heading to skip the column"
     )
 
 
-def _meant(name: str, error: bool) -> str:
+def _nearest(name: str, error: bool) -> str:
     """Return which name is nearest to an unknown one; of an error, which has no sign, its name."""
     plain = DEVIATION.sub("", name)
     hint = nearest(plain, [*ENTRIES, *measurable()])
