@@ -230,7 +230,7 @@ def test_an_interruption_keeps_what_is_done(run, impacts, monkeypatch, tmp_path)
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(estimation, "_solved_again", interrupted)
+    monkeypatch.setattr(estimation, "_solve_again", interrupted)
     ran = run("fit", impacts, KHARAZ, "--residuals", tmp_path / "r.csv")
     assert ran.status == 130
     assert "friction_coefficient" in ran.out

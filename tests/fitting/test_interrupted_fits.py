@@ -27,7 +27,7 @@ def test_a_fit_keeps_the_laws_that_are_done(run, monkeypatch, tmp_path):
 def test_a_bootstrap_keeps_its_samples_if_they_are_enough(run, monkeypatch, after, kept):
     monkeypatch.setattr(estimation, "FEWEST", 10)
     again = interrupting(estimation._solve_again, after)
-    monkeypatch.setattr(estimation, "_solved_again", again)
+    monkeypatch.setattr(estimation, "_solve_again", again)
     words = ("fit", KHARAZ, *E_T[:2], "--bootstrap", 150)
     ran = run(*words, "--json")
     assert ran.status == 130
