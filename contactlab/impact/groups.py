@@ -84,7 +84,7 @@ def entries(
     if not in_space:  # else they end with axes of the tangent plane
         numbers = {"psi1": incidence, "chi": inertia, "lam": drag, **numbers}
     batch.common_shape(
-        {name: np.shape(each) for name, each in numbers.items() if type(each) is not float},
+        {name: each.shape for name, each in numbers.items() if isinstance(each, np.ndarray)},
         what=SHAPES,
         remedy=EQUAL,
     )
