@@ -143,10 +143,11 @@ def tell_attributes(made: Class) -> Class:
         if name.startswith("_") or hasattr(made, name):
             return object.__getattribute__(self, name)  # an error in a property is its own
         public = [each for each in dir(self) if not each.startswith("_")]
-        remedy = nearest(name, public).strip() or f"it has {', '.join(public)}"
+        near = nearest(name, public).strip()
+        remedy = near or f"it has {', '.join(public)}"
         for place, kind in getattr(made, "_within", {}).items():
             if hasattr(kind, name):
-                remedy = f"it is in .{place}: write .{place}.{name}"
+                remedy = f"it is in .{place}: write .{place}.{name}{near and '; ' + near}"
         text = f"{made.__name__} has no attribute {name!r}; {remedy}"
         raise AttributeError(text, name=name, obj=self)
 
