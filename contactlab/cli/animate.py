@@ -11,7 +11,6 @@ Examples
 from __future__ import annotations
 
 import argparse
-from typing import Any
 
 from contactlab.cli import arguments as shared
 from contactlab.cli.scene import add_scene, inputs
@@ -73,7 +72,8 @@ def _bodies(arguments: argparse.Namespace, encounter: Encounter, simulation: Sim
         from contactlab.figures.body_animation import animate_bodies  # matplotlib only here
 
         whole = Collision.of(encounter, result)
-        axes: Any = result.scene.frame
+        axes = result.scene.frame
+        assert axes is not None  # of bodies that are no spheres
         animate_bodies(arguments.out, whole, axes, ghosts=collisions, progress=progress)
     print(arguments.out)
     return shared.OK

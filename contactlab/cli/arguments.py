@@ -342,7 +342,7 @@ def add_one_restitution(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--restitution", type=_one_number, metavar="E", help=words)
 
 
-def _number_or_words(text: str) -> Any:
+def _number_or_words(text: str) -> float | str:
     """Return a number; or the text as it is, if v or a colon shows a formula or a table."""
     if re.search("[v:]", text):
         return text

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import warnings
 from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -16,6 +16,11 @@ from contactlab.registration.hooks import PluginError, guard
 from contactlab.registration.installed import PluginWarning
 from contactlab.registration.manager import MANAGER, Told
 from contactlab.registration.names import COMMAND, PluginInfo
+
+if TYPE_CHECKING:
+    from contactlab.study.validation import Finding
+
+T = TypeVar("T")
 
 #: Kinds whose hooks may have nothing to say of the reference impacts.
 SILENT = ("cautions", "options")
@@ -65,7 +70,7 @@ def items(info: PluginInfo) -> list[Told]:
     return [each for each in told if each.info.module == info.module]
 
 
-def title(item: Any) -> str:
+def title(item: object) -> str:
     """Return the name of a thing."""
     for attribute in ("name", "label", "__name__"):
         if isinstance(name := getattr(item, attribute, None), str):
@@ -90,7 +95,7 @@ def check(info: PluginInfo) -> Iterator[Checked]:
         yield Checked(info.name, "" if silent else "brings nothing: the hook returned None or []")
 
 
-def _complaint(check: Callable[[Any], str], item: Any) -> str:
+def _complaint(check: Callable[[T], str], item: T) -> str:
     try:
         with guard(title(item), "raised"):
             return check(item)
@@ -103,14 +108,14 @@ def _command(info: PluginInfo) -> str:
     return "" if callable(found) else f"returned {found!r}, which runs no command"
 
 
-def _material(item: Any) -> str:
+def _material(item: object) -> str:
     if not isinstance(item, Entry):
         return f"is {type(item).__name__}, no materials.Entry"
     item.material()
     return "" if item.elastic_source and item.density_source else "has no sources"
 
 
-def _column(item: Any) -> str:
+def _column(item: object) -> str:
     from contactlab.outcome.columns import Column, fault_of
     from contactlab.runs.simulation import Simulation
 
@@ -120,7 +125,7 @@ def _column(item: Any) -> str:
         return fault
     alone_only = "history" in item.needs  # a batch has one only where all last equally long
 
-    def read(scene: Scene) -> Any:
+    def read(scene: Scene) -> object:
         return item.read(Simulation().run(scene, history=alone_only).check())
 
     for scene in (reference(), Scene.nondimensional(psi1=[0.5, 3.0], chi=1.44)):
@@ -141,7 +146,7 @@ def _column(item: Any) -> str:
     return ""
 
 
-def _shape(item: Any) -> str:
+def _shape(item: object) -> str:
     from contactlab.impact.rigid_body import RigidBody
     from contactlab.impact.shapes import Shape
 
@@ -170,12 +175,12 @@ def _case(item: Any) -> str:
     return "" if isinstance(made, Scene) else f"makes {type(made).__name__}, no Scene"
 
 
-def _finding(item: Any) -> str:
+def _finding(item: Callable[[], Finding]) -> str:
     found = item()
     return "" if found.ok else f"{found.what}: {found.difference:.2g}, bound {found.bound:.2g}"
 
 
-def _measured(item: Any) -> str:
+def _measured(item: object) -> str:
     from contactlab.scene_file import SceneFile
     from contactlab.study.evidence import Slopes, Source
 
@@ -187,7 +192,7 @@ def _measured(item: Any) -> str:
     return "" if file.citation else "has no citation"
 
 
-def _caution(item: Any) -> str:
+def _caution(item: object) -> str:
     return "" if isinstance(item, str) else f"is {item!r}, no sentence"
 
 

@@ -38,6 +38,7 @@ from contactlab.cli.scene import (
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.names import nearest
+from contactlab.numeric.types import Json
 from contactlab.outcome.columns import find_quantity, json_value
 from contactlab.outcome.files import replace_file
 from contactlab.registration.hooks import Execute, hookimpl
@@ -115,7 +116,7 @@ def execute(arguments: argparse.Namespace) -> int:
     quantities = arguments.quantity or side_by_side.default_quantities(comparison)
     scored = arguments.all and bool(file.scene.shape)
 
-    def content() -> dict[str, object]:
+    def content() -> dict[str, Json]:
         whole = comparison.to_dict(quantities) | {"title": file.title}
         whole["complete"] = not comparison.interrupted
         if scored:

@@ -33,7 +33,8 @@ MOST_ROWS = 25
 def run(arguments: argparse.Namespace, file: SceneFile) -> int:
     """Run a gathering, or a batch of a sweep, and report; the status is 1 if one failed."""
     _refuse(arguments)
-    gathering: Any = file.gathering
+    gathering = file.gathering
+    assert gathering is not None
     history = bool(getattr(arguments, "history", None) or arguments.figure)
     if gathering.shape and history:
         option = "--history" if getattr(arguments, "history", None) else "--figure"

@@ -12,8 +12,9 @@ import sys
 import traceback
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from importlib.machinery import PathFinder
-from typing import TYPE_CHECKING, Any, NoReturn, TextIO
+from importlib.abc import InspectLoader
+from importlib.machinery import ModuleSpec, PathFinder
+from typing import TYPE_CHECKING, NoReturn, TextIO
 
 import contactlab
 from contactlab.cli.statuses import BAD_INPUT, BROKEN_PIPE, FAILED, INTERRUPTED
@@ -243,13 +244,15 @@ def _list_commands(names: Mapping[str, PluginInfo]) -> list[str]:
 
 def _docstring(module: str) -> str:
     """Return the docstring of a module, read without an import; "" if there is none to read."""
-    spec: Any = None
+    spec: ModuleSpec | None = None
     with contextlib.suppress(Exception):  # whatever is broken is told when it is called
         parts = module.split(".")
         for count in range(1, len(parts) + 1):  # find_spec of a submodule imports the package
-            folders = spec and spec.submodule_search_locations
+            folders = spec.submodule_search_locations if spec else None
             spec = PathFinder.find_spec(".".join(parts[:count]), folders)
-        return ast.get_docstring(ast.parse(spec.loader.get_source(module))) or ""
+        loader = spec.loader if spec else None
+        assert isinstance(loader, InspectLoader)
+        return ast.get_docstring(ast.parse(loader.get_source(module) or "")) or ""
     return ""
 
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from contactlab.cli import arguments as shared
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.types import Real
+from contactlab.numeric.types import Array, Real
 from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import LawChoice, SceneFile, read_scene
 from contactlab.scene_file.laws import beside
@@ -24,7 +24,7 @@ class Inputs(NamedTuple):
     """Scene and laws of a subcommand; ``file`` is None for psi1 and chi."""
 
     file: SceneFile | None
-    scene: Any
+    scene: Scene
     simulation: Simulation
 
 
@@ -105,7 +105,7 @@ def settle_chi(arguments: argparse.Namespace) -> None:
     arguments.poisson_ratio = arguments.gyration_ratio = None  # done
 
 
-def numbers(text: str) -> Any:
+def numbers(text: str) -> Real:
     """Return one number, or an evenly spaced array from START:STOP:COUNT."""
     parts = text.split(":")
     if len(parts) < 3:
@@ -172,7 +172,7 @@ def compose_laws(arguments: argparse.Namespace, choice: LawChoice) -> Simulation
     return choice.set(settings).simulation()
 
 
-def _scene(arguments: argparse.Namespace, file: SceneFile | None) -> Any:
+def _scene(arguments: argparse.Namespace, file: SceneFile | None) -> Scene:
     """Return the scene of the file, or of psi1 and chi."""
     check_alone(arguments)
     if file is not None:
@@ -193,7 +193,9 @@ def grid(psi1: Real | None, chi: Real | None) -> Scene:
     return Scene.grid(**grid_entries(psi1, chi, most=MOST_IMPACTS, remedy=remedy))
 
 
-def grid_entries(psi1: Real | None, chi: Real | None, *, most: int, remedy: str) -> dict[str, Any]:
+def grid_entries(
+    psi1: Real | None, chi: Real | None, *, most: int, remedy: str
+) -> dict[str, Array]:
     """Return the entries of a grid, or refuse more impacts than ``most``."""
     if psi1 is None or chi is None:
         missing = " and ".join(n for n, v in (("--psi1", psi1), ("--chi", chi)) if v is None)

@@ -35,6 +35,7 @@ from contactlab.cli.scene import (
     read,
 )
 from contactlab.contracts.status import Status, succeeded
+from contactlab.impact.grid import GridParts
 from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.types import Real
 from contactlab.outcome.answer import ImpactError
@@ -171,13 +172,13 @@ def _into_folder(arguments: argparse.Namespace, file: SceneFile | None) -> int:
         if getattr(arguments, name):
             rule = f"--{name}: needs all impacts in memory; leave it out, or name a file with --out"
             raise ValueError(rule)
-    scenes = (
-        file.scene
-        if file
-        else Scene.grid_in_parts(
-            **grid_entries(arguments.psi1, arguments.chi, most=MOST_IN_A_FOLDER, remedy="vary less")
-        )
-    )
+    scenes: Scene | GridParts
+    if file:
+        scenes = file.scene
+    else:
+        psi1, chi = arguments.psi1, arguments.chi
+        entries = grid_entries(psi1, chi, most=MOST_IN_A_FOLDER, remedy="vary less")
+        scenes = Scene.grid_in_parts(chi=entries["chi"], psi1=entries["psi1"])
     simulation = compose_laws(arguments, file.laws if file else LawChoice())
     with (
         shared.progress(arguments.progress, "impacts") as progress,
@@ -254,7 +255,8 @@ def _rows(
     result: ImpactResult, shown: Sequence[int] | None = None
 ) -> tuple[list[str], list[tuple[Any, ...]]]:
     """Return names and values of the printed columns, one row for each impact, or those shown."""
-    shape, named = result.scene.shape, []
+    shape = result.scene.shape
+    named: list[tuple[str, object]] = []
     for name, values in zip(SHOWN, (result.psi1, result.scene.chi, result.psi2), strict=True):
         named += components(name, values, shape)
     places = slice(None) if shown is None else [*shown]

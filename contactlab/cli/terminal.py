@@ -13,7 +13,7 @@ import re
 import sys
 import unicodedata
 from collections.abc import Iterable, Iterator
-from typing import Any, TextIO
+from typing import TextIO
 
 #: Control characters, and characters that change the direction of text; not tab and newline.
 OBEYED = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
@@ -75,7 +75,11 @@ class Printed:
         """Return the text in characters that the stream can show."""
         return fitting(safe(text), getattr(self._stream, "encoding", None) or "utf-8")
 
-    def __getattr__(self, name: str) -> Any:
+    def flush(self) -> None:
+        """Pass on what the stream holds back."""
+        self._stream.flush()
+
+    def __getattr__(self, name: str) -> object:
         return getattr(self._stream, name)
 
 

@@ -34,6 +34,8 @@ class Status(Enum):
 
 #: The status of one impact, or those of a batch.
 Statuses: TypeAlias = "Status | NDArray[np.object_]"
+#: What failed in one impact, in a sentence, or those of a batch; empty of a success.
+Details: TypeAlias = "str | NDArray[np.object_]"
 
 
 def succeeded(statuses: Statuses) -> bool:

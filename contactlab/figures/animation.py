@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -17,6 +17,9 @@ from contactlab.numeric.types import Real
 from contactlab.outcome.files import replace_file
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.style import styled
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 #: Frames before, during and after contact, and the duration of a frame, in ms.
 ARRIVING, IN_CONTACT, LEAVING = 14, 72, 22
@@ -119,7 +122,9 @@ def write_gif(
         raise interrupt
 
 
-def _palette(frames: Callable[[Collection[int]], Iterator[NDArray[np.uint8]]], count: int) -> Any:
+def _palette(
+    frames: Callable[[Collection[int]], Iterator[NDArray[np.uint8]]], count: int
+) -> Image.Image:
     """Return one palette for all frames, from a few of them: colours do not flicker."""
     from PIL import Image
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from typing import Any
+from typing import Literal, TypedDict
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.typing import ColorType, LineStyleType
 
 from contactlab.figures.names import name_curves
 from contactlab.impact.scene import entry_unit
@@ -28,10 +29,28 @@ from contactlab.study.comparison_figure import POINTS, describe_law, find_abscis
 
 #: A law within this share of the range from the first law is named beside the first, not drawn.
 AS_GOOD_AS = 0.01
-FORM_DASHES: tuple[Any, ...] = ("-", (0, (6, 1.5)), (0, (2.5, 1.2)), (0, (1, 1)))
+FORM_DASHES: tuple[LineStyleType, ...] = ("-", (0, (6, 1.5)), (0, (2.5, 1.2)), (0, (1, 1)))
 MARKERS = "os^Dv"
+
+
+class Codes(TypedDict):
+    """Place and look of a legend of names."""
+
+    loc: Literal["upper center"]
+    bbox_to_anchor: tuple[float, float]
+    handlelength: float
+
+
+class Curve(TypedDict):
+    """Look of the curve of a law."""
+
+    color: ColorType
+    linestyle: LineStyleType
+    linewidth: float
+
+
 #: The names of the first law and of points, above the curves.
-CODES_AT: Any = {"loc": "upper center", "bbox_to_anchor": (0.56, 1.03), "handlelength": 1.0}
+CODES_AT: Codes = {"loc": "upper center", "bbox_to_anchor": (0.56, 1.03), "handlelength": 1.0}
 #: Entries of ``POINTS`` that points without error bars share.
 CODE_LOOK = ("color", "linestyle", "markersize", "markerfacecolor", "markeredgewidth", "zorder")
 
@@ -80,7 +99,7 @@ def all_laws(upper: Axes, lower: Axes, comparison: Comparison, quantity: str) ->
     for name in drawn:
         family = name.split()[0]
         number = forms[family] = forms.get(family, -1) + 1
-        look: Any = {
+        look: Curve = {
             "color": curve_colour(families.index(family)),
             "linestyle": FORM_DASHES[number % len(FORM_DASHES)],
             "linewidth": 1.6,

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias, TypedDict, Unpack
 
 import attrs
 import matplotlib as mpl
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
+from matplotlib.typing import ColorType
 from numpy.typing import NDArray
 
 from contactlab.numeric.checks import refuse
@@ -23,6 +26,7 @@ from contactlab.outcome.style import (
     SLIDE,
     SLIDE_DOTS,
     Look,
+    RcParams,
     Width,
     darken,
     figure_size,
@@ -38,7 +42,7 @@ METADATA: dict[str, dict[str, Any]] = {
     "svg": {"Date": None},
 }
 #: Constant identifiers in an SVG; TrueType in a PDF, as journals refuse matplotlib's Type 3.
-WRITING: Any = {"svg.hashsalt": "contactlab", "pdf.fonttype": 42}
+WRITING: RcParams = {"svg.hashsalt": "contactlab", "pdf.fonttype": 42}
 
 
 @attrs.frozen
@@ -161,7 +165,7 @@ def _draw(
     return figure
 
 
-def _stack(figure: Figure, *, rows: int, columns: int, heights: tuple[float, ...]) -> Any:
+def _stack(figure: Figure, *, rows: int, columns: int, heights: tuple[float, ...]) -> Panels:
     """Return axes, shape (rows, columns), with each column below the column before."""
     ratios = {"height_ratios": heights * columns}
     stack = figure.subplots(rows * columns, 1, gridspec_kw=ratios, squeeze=False)
@@ -174,7 +178,20 @@ def _stack(figure: Figure, *, rows: int, columns: int, heights: tuple[float, ...
     return axes
 
 
-def save_figure(figure: Figure, path: str | Path, *, look: Look = "print", **options: Any) -> None:
+class Saving(TypedDict, total=False):
+    """Options of ``savefig`` beside format, resolution and metadata."""
+
+    transparent: bool
+    facecolor: ColorType
+    edgecolor: ColorType
+    bbox_inches: str | Bbox | None
+    pad_inches: float | Literal["layout"]
+    bbox_extra_artists: Sequence[Artist]
+
+
+def save_figure(
+    figure: Figure, path: str | Path, *, look: Look = "print", **options: Unpack[Saving]
+) -> None:
     """Write a figure to a temporary file, then rename; options are those of ``savefig``.
 
     Parameters

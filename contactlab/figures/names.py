@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -125,8 +125,9 @@ def _write(
             end = place - [0.0, np.sign((place - start)[1]) * 0.5 * name.size[1]]
             points = axes.transData.inverted().transform([start, end])
             straight.append(np.linspace(start, place, 40))
-            look: Any = {"color": name.line.get_color(), "linewidth": 0.6}
-            leaders += axes.plot(*points.T, scalex=False, scaley=False, **look)
+            x, y = points.T
+            colour = name.line.get_color()
+            leaders += axes.plot(x, y, scalex=False, scaley=False, color=colour, linewidth=0.6)
         low = place - 0.5 * name.size
         boxes.append(np.array([low, low + name.size]))
         name.text.set_position(tuple(axes.transData.inverted().transform(place)))
@@ -178,7 +179,7 @@ def _off(boxes: Array, points: Array) -> Array:
     least = np.empty(len(boxes))
     columns = np.ascontiguousarray(points.T)
     for first in range(0, len(boxes), BOXES):
-        squared: Any = 0.0
+        squared = np.zeros(())
         for axis, column in enumerate(columns):
             low, high = boxes[first : first + BOXES, :, axis, None].swapaxes(0, 1)
             beyond = np.maximum(low - column, column - high)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -95,8 +94,8 @@ def _draw(axes: Axes, benchmark: Benchmark, question: str, rows: Sequence[Row]) 
     for word, column in TIMES.items():
         front = benchmark.front(question, word)
         alone = word == "alone"
-        line: Any = {"color": QUIET, "linewidth": 1.0, "linestyle": "-" if alone else "--"}
-        axes.plot(*_points(front, column), zorder=1, **line)
+        dashes = "-" if alone else "--"
+        axes.plot(*_points(front, column), zorder=1, color=QUIET, linewidth=1.0, linestyle=dashes)
         for row in rows:
             _mark(axes, row, column, full=alone, fronts=row in front)
 
@@ -109,11 +108,11 @@ def _mark(axes: Axes, row: Row, column: str, *, full: bool, fronts: bool) -> Non
     if not math.isfinite(row.error_rms):
         axes.axvline(time, color=colour, linewidth=0.7, linestyle="-" if full else "--", zorder=0)
         return
-    look: Any = {"marker": "x" if row.limit else "o", "linestyle": "", "color": colour}
     size, alpha = (4.5, 1.0) if fronts or row.limit else (2.5, 0.5)
     axes.plot(
         [time], [max(row.error_rms, FLOOR)], markersize=size, alpha=alpha,
-        markerfacecolor=colour if full else "white", **look,
+        markerfacecolor=colour if full else "white", marker="x" if row.limit else "o",
+        linestyle="", color=colour,
     )  # fmt: skip
 
 
@@ -133,19 +132,17 @@ def _family(row: Row) -> str:
 def _legend(axes: Axes, rows: Sequence[Row], *, outside: bool) -> None:
     """Name the colours that were drawn, and the two kinds of mark."""
     drawn = {FAMILIES.get(_family(row), QUIET) for row in rows if row.ok}
-    dot: Any = {"marker": "o", "linestyle": "", "markersize": 4.5}
-    marks = [
-        Line2D([], [], color=FAMILIES[key], label=words, **dot)
-        for key, words in WORDS.items()
-        if FAMILIES[key] in drawn
-    ]
+    dots = [(FAMILIES[key], words) for key, words in WORDS.items() if FAMILIES[key] in drawn]
     if QUIET in drawn:
-        marks.append(Line2D([], [], color=QUIET, label=OTHER, **dot))
+        dots.append((QUIET, OTHER))
+    marks = [
+        Line2D([], [], color=colour, label=words, marker="o", linestyle="", markersize=4.5)
+        for colour, words in dots
+    ]
     kinds = (("one alone", "-", GREY_WORDS), ("each of many", "--", "white"))
     for words, dashes, inside in kinds:
-        line: Any = {"linestyle": dashes, "linewidth": 1.0, "markerfacecolor": inside}
-        marks.append(
-            Line2D([], [], color=GREY_WORDS, label=words, marker="o", markersize=4.5, **line)
-        )
+        line = Line2D([], [], color=GREY_WORDS, label=words, marker="o", markersize=4.5)
+        line.set(linestyle=dashes, linewidth=1.0, markerfacecolor=inside)
+        marks.append(line)
     place = {"loc": "upper left", "bbox_to_anchor": (0.0, 1.0)} if outside else {"loc": "best"}
     axes.legend(handles=marks, fontsize="small", handlelength=1.6, labelspacing=0.35, **place)

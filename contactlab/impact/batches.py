@@ -62,7 +62,7 @@ class Batches(Motions):
         return tuple(values.size for _, values in self._axes)
 
     @classmethod
-    def stack(cls, scenes: Sequence[Self]) -> Self:
+    def stack(cls, scenes: Iterable[Self]) -> Self:
         """Return one batch scene of shape (len(scenes),) from scalar scenes.
 
         Parameters

@@ -13,7 +13,7 @@ with it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from types import EllipsisType
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar
 
@@ -31,7 +31,8 @@ Places: TypeAlias = NDArray[np.intp]
 #: The user knows which it is, and of a ``Real`` would have to say so in each line.
 Either: TypeAlias = Any
 #: What takes a part of a batch.
-Index: TypeAlias = int | slice | EllipsisType | tuple[int, ...] | Mask | Places
+_Place: TypeAlias = int | slice | EllipsisType
+Index: TypeAlias = _Place | tuple[_Place, ...] | Mask | Places
 #: Components of a vector, or of one for each impact; and the rows of a tensor.
 Vector: TypeAlias = Sequence[Real]
 Rows: TypeAlias = Sequence[Vector]
@@ -67,6 +68,9 @@ class Column(Labelled, Protocol):
 Plain: TypeAlias = Number | Many
 #: What a user may give as real numbers: those, and a column of a table.
 Numbers: TypeAlias = Plain | Column
+
+#: Numbers, words, lists and tables, as a file of JSON has them.
+Json: TypeAlias = "bool | int | float | str | Sequence[Json] | Mapping[str, Json] | None"
 
 #: A float, or an array: the same on both sides of a function.
 Kind = TypeVar("Kind", float, Array, Real)

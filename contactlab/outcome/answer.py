@@ -6,11 +6,11 @@ import itertools
 from abc import abstractmethod
 from collections import Counter
 from collections.abc import Iterator
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 
-from contactlab.contracts.status import Status, succeeded
+from contactlab.contracts.status import Details, Status, Statuses, succeeded
 from contactlab.outcome.tabled import Plotted
 
 
@@ -106,7 +106,7 @@ class Answer(Checked):
     __slots__ = ()
 
     @abstractmethod
-    def _statuses(self) -> tuple[Any, Any]:
+    def _statuses(self) -> tuple[Statuses, Details]:
         """Return statuses and details of what was run."""
 
     def _iterate_failures(self) -> Iterator[tuple[int, str]]:
@@ -120,7 +120,7 @@ class Answer(Checked):
 
     @property
     def _of_many(self) -> bool:
-        return bool(np.ndim(self._statuses()[0]))
+        return not isinstance(self._statuses()[0], Status)
 
     def _status_at(self, index: int) -> Status:
         status: Status = np.ravel(np.array(self._statuses()[0], dtype=object))[index]

@@ -11,11 +11,11 @@ import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
 
 import attrs
 
-from contactlab.outcome.chunk_forms import NPZ, About, Chunk, Form, checksum, read_notes
+from contactlab.numeric.types import AnyArray
+from contactlab.outcome.chunk_forms import NPZ, About, ByName, Chunk, Form, checksum, read_notes
 
 #: What reading a damaged file raises.
 DAMAGED = (
@@ -76,7 +76,7 @@ def columns_of(
     names: Sequence[str] = (),
     sums: Mapping[str, int] = MappingProxyType({}),
     argument: str = "path",
-) -> Iterator[Any]:
+) -> Iterator[ByName]:
     """Yield the columns of a chunk by name; a damaged file is refused.
 
     ``sums`` are the checksums of the columns, which the chunk tells.
@@ -92,10 +92,10 @@ def columns_of(
 class _Compared:
     """Columns of a chunk by name, compared with their checksums."""
 
-    content: Any
+    content: ByName
     sums: Mapping[str, int]
 
-    def __getitem__(self, name: str) -> Any:
+    def __getitem__(self, name: str) -> AnyArray:
         values = self.content[name]
         if name in self.sums and checksum(values) != self.sums[name]:
             raise ValueError("its numbers are not those that were written")

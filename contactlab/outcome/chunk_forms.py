@@ -8,11 +8,12 @@ import json
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import IO, Any, NamedTuple
+from types import ModuleType
+from typing import IO, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from contactlab.numeric.types import AnyArray
+from contactlab.numeric.types import AnyArray, Places
 from contactlab.outcome.frames import import_optional
 
 COLUMN_OF_STATUS = "status"
@@ -94,13 +95,19 @@ def read_notes(text: str) -> dict[str, Any]:
 
 def checksum(values: AnyArray) -> int:
     """Return a number that changes if a number of a column does, or most two change places."""
-    column: Any = np.ascontiguousarray(values)
+    column = np.ascontiguousarray(values)
     if column.dtype != np.float64:
-        return zlib.crc32(column)
-    numbers: Any = column.reshape(-1).view(np.uint64)
+        return zlib.crc32(column.data)
+    numbers = column.reshape(-1).view(np.uint64)
     even = numbers.size // LANES * LANES
     sums = numbers[:even].reshape(-1, LANES).sum(axis=0)
-    return zlib.crc32(numbers[even:], zlib.crc32(sums))
+    return zlib.crc32(numbers[even:].data, zlib.crc32(sums.data))
+
+
+class ByName(Protocol):
+    """Columns of a file, each read when it is asked for; ``about`` is a text."""
+
+    def __getitem__(self, name: str, /) -> AnyArray: ...
 
 
 class Form(NamedTuple):
@@ -129,8 +136,8 @@ class Form(NamedTuple):
     about: str
     finished: str
     whole: bool
-    write: Callable[[IO[bytes], Mapping[str, Any], About, Sequence[str]], None]
-    read: Callable[[Path, Sequence[str]], contextlib.AbstractContextManager[Any]]
+    write: Callable[[IO[bytes], Mapping[str, AnyArray], About, Sequence[str]], None]
+    read: Callable[[Path, Sequence[str]], contextlib.AbstractContextManager[ByName]]
 
 
 def _write_npz(
@@ -140,13 +147,13 @@ def _write_npz(
 
 
 @contextlib.contextmanager
-def _read_npz(path: Path, _: Sequence[str]) -> Iterator[Any]:
+def _read_npz(path: Path, _: Sequence[str]) -> Iterator[ByName]:
     with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as content:
         yield content
 
 
 def _write_parquet(
-    stream: IO[bytes], columns: Mapping[str, Any], about: About, names: Sequence[str]
+    stream: IO[bytes], columns: Mapping[str, AnyArray], about: About, names: Sequence[str]
 ) -> None:
     """Write statuses by name, and units as metadata of the columns."""
     pyarrow, parquet = _arrow()
@@ -171,11 +178,12 @@ def _write_parquet(
 
 
 @contextlib.contextmanager
-def _read_parquet(path: Path, names: Sequence[str]) -> Iterator[Any]:
+def _read_parquet(path: Path, names: Sequence[str]) -> Iterator[ByName]:
     pyarrow, parquet = _arrow()
     try:
-        with parquet.ParquetFile(path, page_checksum_verification=True) as file:
-            yield _ParquetColumns(file, names)
+        columns = _ParquetColumns(parquet, path, names)
+        with columns.file:
+            yield columns
     except pyarrow.ArrowException as error:
         raise ValueError(str(error)) from error
 
@@ -183,12 +191,13 @@ def _read_parquet(path: Path, names: Sequence[str]) -> Iterator[Any]:
 class _ParquetColumns:
     """The columns of a file of Parquet by name, and what the chunk tells."""
 
-    def __init__(self, file: Any, names: Sequence[str]) -> None:
-        self.file, self.names = file, names
+    def __init__(self, parquet: ModuleType, path: Path, names: Sequence[str]) -> None:
+        self.file = parquet.ParquetFile(path, page_checksum_verification=True)
+        self.names = names
 
-    def __getitem__(self, name: str) -> Any:
+    def __getitem__(self, name: str) -> AnyArray:
         if name == "about":
-            return self.file.schema_arrow.metadata[TOLD].decode()
+            return np.array(self.file.schema_arrow.metadata[TOLD].decode())
         column = self.file.read([name], use_threads=False).column(name).combine_chunks()
         place = self.file.schema_arrow.get_field_index(name)
         # Only after a column is read: pyarrow ends the process if asked for a codec it has not.
@@ -196,16 +205,17 @@ class _ParquetColumns:
         if codec != CODEC:
             raise ValueError(f"{name} is compressed by {codec}, not {CODEC}")
         if name != COLUMN_OF_STATUS:
-            values = column.to_numpy()
+            values: AnyArray = column.to_numpy()
             if values.dtype != np.float64:
                 raise ValueError(f"{name} is of {values.dtype}, not float64")
             return values
         coded = column.dictionary_encode()
         codes = [self.names.index(each) for each in coded.dictionary.to_pylist()]
-        return np.array(codes, dtype=np.uint8)[coded.indices.to_numpy()]
+        places: Places = coded.indices.to_numpy()
+        return np.array(codes, dtype=np.uint8)[places]
 
 
-def _arrow() -> tuple[Any, Any]:
+def _arrow() -> tuple[ModuleType, ModuleType]:
     """Return the modules ``pyarrow`` and ``pyarrow.parquet``."""
     return import_optional("pyarrow", "Parquet"), importlib.import_module("pyarrow.parquet")
 

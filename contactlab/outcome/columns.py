@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from operator import attrgetter
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, overload
 
 import attrs
 import numpy as np
@@ -22,6 +22,7 @@ from contactlab.impact.scene import Scene, entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.named import split_heading
 from contactlab.numeric.names import nearest
+from contactlab.numeric.types import Array, Json
 from contactlab.registration.bring import by_name, state
 from contactlab.registration.hooks import hookimpl
 
@@ -32,6 +33,12 @@ class WithScene(Protocol):
     @property
     def scene(self) -> Scene:
         """The scene, whose shape the columns have."""
+
+    @property
+    def history(self) -> object:
+        """The history, false if there is none."""
+
+    def __getitem__(self, index: int, /) -> WithScene: ...
 
 
 class Column(NamedTuple):
@@ -67,11 +74,11 @@ class Column(NamedTuple):
     factor: float = 1.0
     of_scenes: str = ""
     part: int | None = None
-    value: Callable[[Any], Any] | None = None
+    value: Callable[[Any], object] | None = None
     meaning: str = ""
     needs: tuple[str, ...] = ()
 
-    def read(self, result: WithScene) -> Any:
+    def read(self, result: WithScene) -> object:
         """Return the values with the result's own type, or None if the scene defines no value.
 
         Where the function of a plug-in fails, its number is NaN, and a warning tells it.
@@ -93,13 +100,13 @@ class Column(NamedTuple):
         A vector is told by its length, a spin by the part that makes slip along ``scene.along``.
         """
         value, scene = self.read(result), result.scene
-        number = np.nan if value is None else value
-        if np.ndim(number) > len(scene.shape):
+        number = np.asarray(np.nan if value is None else value, dtype=np.float64)
+        if number.ndim > len(scene.shape):
             if scene.along is not None and scene.frame is not None and self.unit == "rad/s":
                 number = np.sum(number * np.cross(scene.frame[..., 0, :], scene.along), axis=-1)
             else:
                 number = np.linalg.norm(number, axis=-1)
-        return np.array(np.broadcast_to(np.asarray(number, dtype=np.float64), result.scene.shape))
+        return np.array(np.broadcast_to(number, result.scene.shape))
 
     def unit_in(self, scene: Scene) -> str:
         """Return the unit of the values in ``scene``."""
@@ -179,7 +186,7 @@ COMPARISON_TABLE = (
 
 
 #: What plug-ins brought, and its columns in order.
-_SORTED: list[Any] = [None, ()]
+_SORTED: tuple[list[Mapping[str, Column]], list[Column]] = ([], [])
 
 
 @hookimpl
@@ -205,10 +212,11 @@ def fault_of(column: Column) -> str:
 def all_columns() -> Sequence[Column]:
     """Return the columns of all plug-ins, contactlab's own first; the status comes last."""
     found = by_name("columns", Column, lambda column: column.name, fault=fault_of, again=False)
-    if _SORTED[0] is not found:
+    brought, columns = _SORTED
+    if not (brought and brought[0] is found):
         named = [column._replace(name=name.replace(":", "_")) for name, column in found.items()]
-        _SORTED[:] = found, sorted(named, key=lambda column: column.name == "status")
-    columns: Sequence[Column] = _SORTED[1]
+        brought[:] = [found]
+        columns[:] = sorted(named, key=lambda column: column.name == "status")
     return columns
 
 
@@ -297,7 +305,7 @@ def columns_of(scene: Scene) -> tuple[Column, ...]:
     return tuple(column for column in all_columns() if column.of_scenes not in others)
 
 
-def columns(result: WithScene, whole: Scene | None = None) -> list[tuple[str, str, Any]]:
+def columns(result: WithScene, whole: Scene | None = None) -> list[tuple[str, str, object]]:
     """Return name, unit and values of every column; entries that vary and are none come first.
 
     A part of a ``whole`` batch has the columns of all: it may be without spin by chance.
@@ -321,7 +329,13 @@ def columns(result: WithScene, whole: Scene | None = None) -> list[tuple[str, st
     return varied + list(options.values()) + table
 
 
-def components(name: str, values: object, shape: tuple[int, ...]) -> list[tuple[str, Any]]:
+@overload
+def components(name: str, values: Array, shape: tuple[int, ...]) -> Sequence[tuple[str, Array]]: ...
+@overload
+def components(
+    name: str, values: object, shape: tuple[int, ...]
+) -> Sequence[tuple[str, object]]: ...
+def components(name: str, values: object, shape: tuple[int, ...]) -> Sequence[tuple[str, object]]:
     """Return the components of vectors and matrices, each under a name: ``"psi1_2"``."""
     array = np.asarray(values)
     trailing = array.shape[len(shape) :] if array.shape[: len(shape)] == shape else ()
@@ -343,12 +357,13 @@ def csv_heading(name: str, unit: str, scene: Scene) -> str:
     return f"{name} ({unit_in(unit, scene)})" if unit else name
 
 
-def json_value(value: Any) -> Any:
+def json_value(value: object) -> Json:
     """Return ``value`` for JSON: statuses by name, arrays as lists, None for numbers not finite."""
     if isinstance(value, Status):
         return value.name
-    if attrs.has(type(value)):
-        value = attrs.asdict(value, recurse=False)
+    kind = type(value)
+    if attrs.has(kind):
+        value = {field.name: getattr(value, field.name) for field in attrs.fields(kind)}
     if isinstance(value, Mapping):
         return {name: json_value(item) for name, item in value.items()}
     if isinstance(value, np.ndarray):
@@ -359,4 +374,6 @@ def json_value(value: Any) -> Any:
         value = value.item()
     if isinstance(value, float):
         return value if np.isfinite(value) else None
-    return value
+    if value is None or isinstance(value, str | int):
+        return value
+    raise TypeError(f"{type(value).__name__}: is no number, text, list or table")

@@ -13,9 +13,9 @@ from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import of_each, plain, some
+from contactlab.numeric.arrays import magnitude, of_each, plain, some
 from contactlab.numeric.names import tell_attributes
-from contactlab.numeric.types import Each, Mask, Real
+from contactlab.numeric.types import Each, Json, Mask, Real
 from contactlab.outcome.motion import Motion, all_finite
 from contactlab.outcome.plan import PlanColumns
 
@@ -37,11 +37,6 @@ OF_THE_RATE = 2.5
 LARGEST_SLIP = 1.1
 #: Without a declared bound an imbalance above the whole energy at the start is a failure.
 LARGEST_UNDECLARED = 1.0
-
-
-def _energy() -> Any:
-    """Return an attribute in J."""
-    return attrs.field(metadata={"unit": "J"})
 
 
 @tell_attributes
@@ -70,12 +65,12 @@ class EnergyLedger(Generic[Each]):
         False where the books close by construction and the imbalance checks nothing.
     """
 
-    start: Each = _energy()
-    end: Each = _energy()
-    normal_loss: Each = _energy()
-    friction_work: Each = _energy()
-    shear_loss: Each = _energy()
-    imbalance: Each = _energy()
+    start: Each = attrs.field(metadata={"unit": "J"})
+    end: Each = attrs.field(metadata={"unit": "J"})
+    normal_loss: Each = attrs.field(metadata={"unit": "J"})
+    friction_work: Each = attrs.field(metadata={"unit": "J"})
+    shear_loss: Each = attrs.field(metadata={"unit": "J"})
+    imbalance: Each = attrs.field(metadata={"unit": "J"})
     checked: Mask = True
 
     @property
@@ -85,7 +80,7 @@ class EnergyLedger(Generic[Each]):
             imbalance: Any = self.imbalance
             return imbalance / self.start
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Json]:
         """Return the entries and the relative imbalance as plain numbers or lists."""
         from contactlab.outcome.columns import json_value  # a run needs none of this
 
@@ -144,26 +139,26 @@ def passes(
     """
     if motion.status is not Status.SUCCESS or not all_finite(motion, bare):
         return False
-    parting: Any = abs(normal.final_rate)
+    parting = magnitude(normal.final_rate)
     if parting > scene.normal_speed and judge_energy(motion, normal) is not motion:
         return False
-    exchange: Any = motion.exchange
+    exchange: Real = motion.exchange
     alone = exchange == 0.0 and motion.normal_spin_change == 0.0 and not coupled
     if not alone and kinetics.turns(scene):
         return False
-    slip: Any = scene.slip_velocity
-    change: Any = motion.slip_velocity_change
+    slip = scene.slip_velocity
+    change: Real = motion.slip_velocity_change
     start, lost, slip_loss = kinetics.energies(scene, motion.normal_velocity, change)
     if bound == math.inf:
         bound = LARGEST_UNDECLARED
     work, shear_loss = motion.friction_work, motion.shear_loss
     least = -(min(bound, STEPS_LEAVE) + ROUNDING) * start
-    if abs(slip_loss - work - shear_loss + exchange) > bound * start:
+    if magnitude(slip_loss - work - shear_loss + exchange) > bound * start:
         return False
     if work < least or shear_loss < least:
         return False
     if alone:
-        return not abs(slip + change) > LARGEST_SLIP * abs(slip)
+        return not magnitude(slip + change) > LARGEST_SLIP * magnitude(slip)
     gain = OF_THE_RATE * restitution_error + ROUNDING
     if lost - exchange < -(STEPS_LEAVE if gain != gain else gain) * start:
         return False
@@ -177,8 +172,8 @@ def judge_energy(motion: Motion, normal: NormalMotion) -> Motion:
     """
     error = normal.accuracy
     most = LARGEST_RESTITUTION if math.isnan(error) else 1.0 + OF_THE_RATE * error + ROUNDING
-    speed: Any = normal.scene.normal_speed
-    parting: Any = abs(normal.final_rate)
+    speed: Real = normal.scene.normal_speed
+    parting = magnitude(normal.final_rate)
     faster = parting > most * speed
     if not some(faster):
         return motion
@@ -219,7 +214,7 @@ def raise_errors(
     doubted = np.asarray((off > bound) & (off <= cancels))
     if not some(doubted):
         return columns
-    speed: Any = scene.normal_speed
+    speed: Real = scene.normal_speed
     rate = BOOKS_TELL * np.asarray(off)
     with np.errstate(all="ignore"):
         slip: Real = rate * speed * np.asarray(scene.psi_scale)
@@ -240,16 +235,16 @@ def _mark_imbalance(
     """
     coupled = np.logical_not(alone)
     books = ledger(scene, motion)
-    before: Any = kinetics.slip_speed(scene)
-    after: Any = kinetics.size_of(scene, scene.slip_velocity + motion.slip_velocity_change)
-    imbalance: Any = abs(books.imbalance)
-    start: Any = books.start
+    before: Real = kinetics.slip_speed(scene)
+    after: Real = kinetics.size_of(scene, scene.slip_velocity + motion.slip_velocity_change)
+    imbalance = magnitude(books.imbalance)
+    start: Real = books.start
     if kinetics.turns(scene):  # a spin that friction left has no part in what is judged
         left = kinetics.energies(scene, motion.normal_velocity, motion.slip_velocity_change)
         start = np.where(motion.normal_spin_change == 0.0, left[0], start)[()]  # a number for one
     work, shear_loss = np.divide(books.friction_work, start), np.divide(books.shear_loss, start)
-    made: Any = -np.divide(books.normal_loss, start)
-    most: Any = np.minimum(bound, STEPS_LEAVE) + ROUNDING
+    made: Real = -np.divide(books.normal_loss, start)
+    most: Real = np.minimum(bound, STEPS_LEAVE) + ROUNDING
     undeclared = np.isnan(gain)
     for where, sentence, numbers in (
         (imbalance > bound * start,

@@ -15,10 +15,9 @@ import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
-from typing import IO, Any, TextIO, TypeAlias
+from typing import IO, TextIO, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.contracts.status import Status, succeeded
 from contactlab.numeric.types import AnyArray
@@ -137,7 +136,7 @@ def write_npz(result: ImpactResult, path: str | Path) -> None:
         _write_arrays(stream, arrays)
 
 
-def _write_arrays(stream: IO[bytes], arrays: Mapping[str, Any]) -> None:
+def _write_arrays(stream: IO[bytes], arrays: Mapping[str, AnyArray]) -> None:
     """Write arrays as npz, compressed where numbers repeat: others hardly shrink, and take long."""
     with zipfile.ZipFile(stream, "w", compresslevel=1) as archive:
         for name, values in arrays.items():
@@ -146,7 +145,7 @@ def _write_arrays(stream: IO[bytes], arrays: Mapping[str, Any]) -> None:
                 np.lib.format.write_array(file, np.asanyarray(values), allow_pickle=False)
 
 
-def _kind_of(values: NDArray[Any]) -> int:
+def _kind_of(values: AnyArray) -> int:
     """Return whether to store or to deflate an array, by numbers of its middle."""
     flat = values.reshape(-1)
     first = max(0, (flat.size - SAMPLE) // 2)
@@ -159,7 +158,7 @@ def _kind_of(values: NDArray[Any]) -> int:
 WRITERS = {".json": write_json, ".csv": write_csv, ".npz": write_npz}
 
 
-def _flat(value: object, shape: tuple[int, ...]) -> Any:
+def _flat(value: object, shape: tuple[int, ...]) -> AnyArray:
     """Return a column as a flat array of numbers, or of names of statuses."""
     array = np.asarray(math.nan if value is None else value)
     if array.dtype == object:
@@ -169,7 +168,7 @@ def _flat(value: object, shape: tuple[int, ...]) -> Any:
     return np.broadcast_to(array.astype(np.float64), shape).ravel()
 
 
-def _spread(value: object, shape: tuple[int, ...]) -> list[Any]:
+def _spread(value: object, shape: tuple[int, ...]) -> list[float | str]:
     """Return a column as a list with one item for each impact, statuses by name."""
     items = np.broadcast_to(np.asarray(value, dtype=object), shape).ravel().tolist()
     return [math.nan if item is None else getattr(item, "name", item) for item in items]

@@ -13,11 +13,22 @@ import os
 import shutil
 import stat
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Any
+from typing import BinaryIO, Literal, TextIO, TypedDict, overload
 
-#: Options of ``open`` for text; surrogates let file names that are not UTF-8 pass unchanged.
-TEXT: dict[str, Any] = {
+
+class OfText(TypedDict):
+    """Options of ``open`` for text."""
+
+    mode: Literal["x"]
+    encoding: str
+    errors: str
+    newline: str
+
+
+#: Surrogates let file names that are not UTF-8 pass unchanged.
+TEXT: OfText = {
     "mode": "x", "encoding": "utf-8", "errors": "surrogateescape", "newline": "",
 }  # fmt: skip
 #: Largest scene or table that is read, in bytes: enough for a sweep of a million numbers.
@@ -51,21 +62,31 @@ def content(path: Path, *, kind: str, remedy: str) -> bytes:
         raise ValueError(f"{path}: cannot be read: {error.strerror}") from None
 
 
-@contextlib.contextmanager
-def replace_file(path: str | Path, *, binary: bool = False) -> Iterator[Any]:
+@overload
+def written(
+    path: str | Path, *, binary: Literal[False] = ...
+) -> AbstractContextManager[TextIO]: ...
+@overload
+def written(path: str | Path, *, binary: Literal[True]) -> AbstractContextManager[BinaryIO]: ...
+def replace_file(path: str | Path, *, binary: bool = False) -> AbstractContextManager[TextIO | BinaryIO]:
     """Return a stream whose content replaces ``path`` when the block ends without an error.
 
     Text is UTF-8 without translation of line ends, as ``csv`` requires. The new file has the
     permissions of the old one; if ``path`` is a symbolic link, the file behind the link is
     replaced. An ``OSError`` names ``path``, and leaves the old file unchanged.
     """
+    return _written(path, binary)
+
+
+@contextlib.contextmanager
+def _written(path: str | Path, binary: bool) -> Iterator[TextIO | BinaryIO]:
+    """Return the stream of ``written``."""
     if why_not := unwritable(path):
         raise OSError(f"{path}: {why_not}")
     target = os.path.realpath(path)
     part = os.path.join(os.path.dirname(target), PARTS.replace("*", os.urandom(6).hex()))
-    form: Any = {"mode": "xb"} if binary else TEXT
     try:
-        with open(part, **form) as stream:
+        with open(part, "xb") if binary else open(part, **TEXT) as stream:
             yield stream
             stream.flush()
             os.fsync(stream.fileno())

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import importlib
 import math
-from typing import Any
+from types import ModuleType
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from contactlab.outcome.sheet import Sheet
 
+if TYPE_CHECKING:
+    from pandas import DataFrame
+    from xarray import Dataset
 
-def to_dataframe(sheet: Sheet) -> Any:
+
+def to_dataframe(sheet: Sheet) -> DataFrame:
     """Return a ``pandas.DataFrame``, one row for each number of a column.
 
     Its index is the axes; where none has values, the rows are counted.
@@ -30,17 +35,17 @@ def to_dataframe(sheet: Sheet) -> Any:
     columns = {
         name: np.broadcast_to(values, sheet.shape).ravel() for name, values in sheet.columns.items()
     }
-    frame = pandas.DataFrame(columns, index)
+    frame: DataFrame = pandas.DataFrame(columns, index)
     frame.attrs |= {"units": dict(sheet.units), **sheet.about}
     return frame
 
 
-def to_xarray(sheet: Sheet) -> Any:
+def to_xarray(sheet: Sheet) -> Dataset:
     """Return an ``xarray.Dataset``, one dimension for each axis."""
     xarray = import_optional("xarray", "to_xarray")
     dimensions, units = tuple(sheet.axes), sheet.units
     attributes = {name: {"units": unit} if unit else {} for name, unit in units.items()}
-    return xarray.Dataset(
+    data: Dataset = xarray.Dataset(
         {
             name: (dimensions, np.broadcast_to(values, sheet.shape), attributes.get(name, {}))
             for name, values in sheet.columns.items()
@@ -52,9 +57,10 @@ def to_xarray(sheet: Sheet) -> Any:
         },
         dict(sheet.about),
     )
+    return data
 
 
-def import_optional(module: str, method: str, *, extra: str = "") -> Any:
+def import_optional(module: str, method: str, *, extra: str = "") -> ModuleType:
     """Return an optional module, or raise ``ImportError`` with the command that installs it.
 
     ``extra`` are the extras to install, by default the one named as the module.

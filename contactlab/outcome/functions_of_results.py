@@ -6,24 +6,27 @@ import math
 import warnings
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from contactlab.registration.hooks import short, shorten
 from contactlab.registration.installed import PluginWarning
 
+if TYPE_CHECKING:
+    from contactlab.outcome.columns import WithScene
+
 HISTORY = "history"
 
 
 def values_of(
     name: str,
-    value: Callable[[Any], Any],
+    value: Callable[[Any], object],
     needs: Sequence[str],
-    result: Any,
+    result: WithScene,
     *,
     words: bool = False,
-) -> Any:
+) -> object:
     """Return the values of a function of a result, NaN and a warning for impacts where it fails.
 
     A function that needs a history has no value without.
@@ -39,11 +42,10 @@ def values_of(
     return values
 
 
-def _numbers(value: Callable[[object], object], result: object) -> Any:
+def _numbers(value: Callable[[WithScene], object], result: WithScene) -> object:
     """Return the numbers of a function of a result, or refuse what is none, or of another shape."""
-    of: Any = result
     given = value(result)
-    shape = of.scene.shape
+    shape = result.scene.shape
     if given is None or type(given) is float:
         return given
     try:
@@ -55,7 +57,7 @@ def _numbers(value: Callable[[object], object], result: object) -> Any:
     return given
 
 
-def _each(value: Callable[[Any], Any], result: Any, said: list[str]) -> Any:
+def _each(value: Callable[[WithScene], object], result: WithScene, said: list[str]) -> object:
     """Return the values of a function; where it fails for a batch it is asked for each impact."""
     shape = result.scene.shape
     try:
@@ -67,8 +69,9 @@ def _each(value: Callable[[Any], Any], result: Any, said: list[str]) -> Any:
     numbers = np.full(shape, np.nan)
     for place in range(shape[0]):
         one = _each(value, result[place], said)
-        if np.ndim(one) and np.shape(one) != shape[1:]:
-            said.append(f"it gave the shape {np.shape(one)} for one impact of a batch")
+        own = np.asarray(one).shape
+        if own and own != shape[1:]:
+            said.append(f"it gave the shape {own} for one impact of a batch")
             one = None
         numbers[place] = np.nan if one is None else one
     return numbers

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -80,7 +79,7 @@ def judge_gathering(motion: Motion, scene: Scene, bound: Real, cancels: float) -
     ):
         if np.any(where):
             each = np.broadcast_to(where[:, None], scene.shape)
-            words: Any = tell_each(sentence, numbers)
+            words = np.asarray(tell_each(sentence, numbers))
             sentences = np.broadcast_to(words[:, None], scene.shape)
             motion = motion.failing(each, Status.UNBALANCED, sentences)
     return motion

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Never, Protocol
 
 import attrs
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from contactlab.contracts.tangential_motion import Sample
 from contactlab.impact.scene import Scene
 from contactlab.numeric.names import tell_attributes
-from contactlab.numeric.types import Array, Index
+from contactlab.numeric.types import AnyArray, Array, Json, Real
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.tabled import Plotted
 
@@ -21,11 +21,6 @@ if TYPE_CHECKING:
 
     from contactlab.outcome.sheet import Sheet
     from contactlab.outcome.style import Width
-
-
-def _column(unit: str) -> Any:
-    """Return an attribute with its unit."""
-    return attrs.field(metadata={"unit": unit})
 
 
 @tell_attributes
@@ -38,13 +33,13 @@ class History(Plotted):
     axis of ``time`` counts.
     """
 
-    time: Array = _column("s")
-    approach: Array = _column("m")
-    normal_velocity: Array = _column("m/s")
-    normal_force: Array = _column("N")
-    contact_radius: Array = _column("m")
-    slip_velocity: Array = _column("m/s")
-    tangential_force: Array = _column("N")
+    time: Array = attrs.field(metadata={"unit": "s"})
+    approach: Array = attrs.field(metadata={"unit": "m"})
+    normal_velocity: Array = attrs.field(metadata={"unit": "m/s"})
+    normal_force: Array = attrs.field(metadata={"unit": "N"})
+    contact_radius: Array = attrs.field(metadata={"unit": "m"})
+    slip_velocity: Array = attrs.field(metadata={"unit": "m/s"})
+    tangential_force: Array = attrs.field(metadata={"unit": "N"})
     fields: dict[str, NDArray[Any]] = attrs.field(factory=dict)
     last_axis: str = "impact"
 
@@ -62,9 +57,9 @@ class History(Plotted):
         column = name if name in _names() else name.rpartition("_")[0]
         return str(getattr(attrs.fields(History), column).metadata["unit"])
 
-    def part(self, index: Index) -> History:
+    def part(self, index: int | slice) -> History:
         """Return the history of some impacts of a batch."""
-        columns: dict[str, Any] = {name: getattr(self, name)[:, index] for name in _names()}
+        columns = {name: getattr(self, name)[:, index] for name in _names()}
         fields = {name: field[:, index] for name, field in self.fields.items()}
         return History(**columns, fields=fields)
 
@@ -72,16 +67,17 @@ class History(Plotted):
         from contactlab.outcome.sheet import Sheet, batch_axes
 
         shape, columns = self.time.shape, self.columns()
-        axes: dict[str, Any] = batch_axes(shape[1:], self.last_axis)
+        axes: dict[str, AnyArray | None] = {"instant": None}
         if len(shape) == 1:  # instants that all columns share
             axes = {"time": columns.pop("time")}
         elif self.last_axis == "contact":
-            axes = batch_axes(shape[1:-1], "gathering") | {"contact": None}
-        axes = axes if len(shape) == 1 else {"instant": None} | axes
+            axes |= batch_axes(shape[1:-1], "gathering") | {"contact": None}
+        else:
+            axes |= batch_axes(shape[1:], self.last_axis)
         units = {name: self.unit(name) for name in ("time", *columns)}
         return Sheet(columns, units, axes, shape, row="instant")
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Json]:
         """Return columns and fields by name as plain lists, None for numbers not finite."""
         from contactlab.outcome.columns import json_value
 
@@ -120,7 +116,7 @@ class NoHistory:
         """Return what to write to have a history."""
         return "NoHistory(history=True keeps one)"
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> Never:
         """Raise an ``AttributeError`` that says what to write."""
         if name.startswith("__"):  # copying and pickling look for methods
             raise AttributeError(name)
@@ -181,8 +177,8 @@ class Recorder:
     ) -> None:
         self._shape, self._with_fields = shape, with_fields
         self.stepwise = stepwise or with_fields
-        self._rows: list[tuple[Any, ...]] = []
-        self._fields: list[dict[str, Any]] = []
+        self._rows: list[tuple[Real, ...]] = []
+        self._fields: list[dict[str, NDArray[Any]]] = []
 
     def __call__(self, sample: Sample) -> None:
         """Keep the sample of one instant."""
@@ -196,7 +192,7 @@ class Recorder:
         """Return the history of the samples; its arrays have length 0 if there are none."""
         shape, count = self._shape, len(self._rows)
         batch = (math.prod(shape),) if shape else ()  # what is recorded has one axis
-        columns: dict[str, Any] = {}
+        columns: dict[str, Array] = {}
         for index, name in enumerate(_names()):
             first = np.shape(self._rows[0][index]) if count else ()
             vectors = first[len(batch) :]  # of a slip velocity or force in space
@@ -211,4 +207,4 @@ class Recorder:
             fields = {
                 key: field.reshape(-1, *shape, *field.shape[2:]) for key, field in fields.items()
             }
-        return History(**columns, fields=fields)
+        return History(**columns, fields=fields, last_axis="impact")

@@ -140,7 +140,7 @@ def _gather_ends(
 
 def _exchange(normal: NormalMotion, own: Ends) -> Any:
     """Return the energy in J that the normal motion lost, and the normal law did not take."""
-    speed: Any = normal.scene.normal_speed
+    speed: Real = normal.scene.normal_speed
     rate = own.final_rate
     lost = 0.5 * normal.scene.pair.normal_mass * (speed * speed - rate * rate)
     return lost - own.dissipation

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.numeric.arrays import consecutive, every, merge_parts, share, some, take
-from contactlab.numeric.types import Index, Real
+from contactlab.numeric.types import Index, Json, Real
 
 Mask = NDArray[np.bool_]
 T = TypeVar("T")
@@ -61,7 +61,7 @@ class PlanColumns(NamedTuple):
         Declared bound of the numerical error of the normal restitution; NaN as before.
     """
 
-    code: Any
+    code: int | NDArray[np.integer]
     psi2_error: Real
     reasons: tuple[Reason, ...] = ()
     restitution_error: Real = math.nan
@@ -94,15 +94,16 @@ class PlanColumns(NamedTuple):
             for name in ("psi2_error", "restitution_error")
         )
         psi2_error, restitution_error = errors
-        return cls(merge_parts(codes, shape, np.int16), psi2_error, reasons, restitution_error)
+        code = np.asarray(merge_parts(codes, shape, np.int16), dtype=np.int16)
+        return cls(code, psi2_error, reasons, restitution_error)
 
     def take(self, part: Index) -> PlanColumns:
         """Return the columns of some impacts of a batch."""
         psi2, restitution = (
-            take(error, self.code.shape, part)
+            take(error, np.shape(self.code), part)
             for error in (self.psi2_error, self.restitution_error)
         )
-        return PlanColumns(self.code[part], psi2, self.reasons, restitution)
+        return PlanColumns(np.asarray(self.code)[part], psi2, self.reasons, restitution)
 
     @property
     def marched(self) -> Mask:
@@ -110,7 +111,7 @@ class PlanColumns(NamedTuple):
         return np.asarray(self.code == MARCHED)
 
     @property
-    def unchecked(self) -> Any:
+    def unchecked(self) -> bool | NDArray[np.bool_]:
         """True for impacts whose energy books close by construction; an array for a batch."""
         each = [reason.unchecked for reason in self.reasons]
         where = np.array([*each, False, False, False])[self.code]
@@ -220,7 +221,7 @@ class Plan:
         return self.columns.restitution_error
 
     @property
-    def unchecked(self) -> Any:
+    def unchecked(self) -> bool | NDArray[np.bool_]:
         """True for impacts whose energy books close by construction; an array for a batch."""
         return self.columns.unchecked
 
@@ -281,7 +282,7 @@ class Plan:
 
         return f"<pre>{html.escape(str(self))}</pre>"
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Json]:
         """Return the sentences as plain lists, and the declared error."""
         from contactlab.outcome.columns import json_value  # a run needs none of this
 
@@ -292,16 +293,18 @@ class Plan:
     def __getitem__(self, index: Index) -> Plan:
         """Return the plan of some impacts of a batch: the clauses that hold for any of them."""
         parts = (tuple(clause.take(index) for clause in kind) for kind in self.words)
-        words: Any = tuple(tuple(part for part in kind if some(part.where)) for kind in parts)
-        return Plan(self.columns.take(index), words)
+        computed, left_out, cautions = (
+            tuple(part for part in kind if some(part.where)) for kind in parts
+        )
+        return Plan(self.columns.take(index), (computed, left_out, cautions))
 
     @classmethod
     def merge(cls, parts: Parts[Plan], shape: tuple[int, ...]) -> Plan:
         """Return the plan of a batch of ``shape`` from places and the plans of parts."""
         columns = PlanColumns.merge([(where, plan.columns) for where, plan in parts], shape)
         said = ([(where, getattr(plan, kind)) for where, plan in parts] for kind in KINDS)
-        words: Any = tuple(_merge_clauses(clauses, shape) for clauses in said)
-        return cls(columns, words)
+        computed, left_out, cautions = (_merge_clauses(clauses, shape) for clauses in said)
+        return cls(columns, (computed, left_out, cautions))
 
 
 def _merge_clauses(parts: Parts[Clauses], shape: tuple[int, ...]) -> Clauses:

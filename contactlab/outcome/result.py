@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any, Generic, Self, overload
 import attrs
 import numpy as np
 
+from contactlab.contracts.status import Details, Statuses
 from contactlab.impact import kinetics
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import equal, of_each, plain, take
 from contactlab.numeric.names import tell_attributes
-from contactlab.numeric.types import Array, Each, Real
+from contactlab.numeric.types import AnyArray, Array, Each, Json, Real
 from contactlab.outcome.answer import Answer, tell_statuses
 from contactlab.outcome.energy import EnergyLedger, ledger
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory
@@ -337,7 +338,7 @@ class ImpactResult(Answer, Generic[Each]):
 
         return [repr(self), f"numerical error of psi2: {error_words(self)}"]
 
-    def _statuses(self) -> tuple[Any, Any]:
+    def _statuses(self) -> tuple[Statuses, Details]:
         return self.motion.status, self.motion.detail
 
     @property
@@ -363,14 +364,16 @@ class ImpactResult(Answer, Generic[Each]):
         from contactlab.outcome.columns import columns, unit_in
         from contactlab.outcome.sheet import Sheet, batch_axes, names_of
 
-        scene, found, units = self.scene, {}, {}
+        scene, units = self.scene, {}
+        found: dict[str, AnyArray] = {}
         axes = dict(scene.axes) or batch_axes(scene.shape)
         for name, unit, values in columns(self):
             if values is None:  # a scene without bodies
                 continue
             units[name] = unit_in(unit, scene) if unit else ""
             if name not in axes:
-                found[name] = names_of(values, scene.shape) if name == "status" else values
+                own = name == "status"
+                found[name] = names_of(self.status, scene.shape) if own else np.asarray(values)
         shape = tuple(np.size(axis) for axis in scene.axes.values()) or scene.shape
         found = {
             name: np.broadcast_to(values, scene.shape).reshape(shape)
@@ -378,7 +381,7 @@ class ImpactResult(Answer, Generic[Each]):
         }
         return Sheet(found, units, axes, shape, dict(self.laws))
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Json]:
         """Return the result without its history as plain numbers, lists and text."""
         from contactlab.outcome.columns import columns, json_value
 

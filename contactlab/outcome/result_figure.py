@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from contactlab.impact.scene import entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array, Places, Real
-from contactlab.outcome.columns import find_quantity, unit_in
+from contactlab.outcome.columns import WithScene, find_quantity, unit_in
 from contactlab.outcome.history import WithHistory, scale_forces
 from contactlab.outcome.history_figure import on_axes
 from contactlab.outcome.plan import Plan
@@ -27,6 +27,8 @@ from contactlab.outcome.style import (
 
 class Drawn(WithHistory, Protocol):
     """What is drawn of a result."""
+
+    def __getitem__(self, index: int, /) -> WithScene: ...
 
     @property
     def plan(self) -> Plan:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,7 +35,7 @@ class Sheet(NamedTuple):
         What a row is, where no axis has values.
     """
 
-    columns: Mapping[str, Any]
+    columns: Mapping[str, AnyArray]
     units: Mapping[str, str]
     axes: Mapping[str, AnyArray | None]
     shape: tuple[int, ...]

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from matplotlib.axes import Axes
 
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import AnyArray, Array
 from contactlab.outcome.history_figure import on_axes
 from contactlab.outcome.sheet import Sheet
 from contactlab.outcome.style import Width, curve_colour, label
@@ -56,11 +54,13 @@ def draw_sheet(
         for k, place in enumerate(names):
             order = np.arange(rows) if course else np.argsort(across[:, k], kind="stable")
             curve = course or np.unique(across[:, k]).size == rows > 1
-            look: Any = {"marker": "" if curve else ".", "linestyle": "-" if curve else "none"}
-            look["color"] = curve_colour(0)
-            if len(names) <= MOST_CURVES:
-                look["color"] = curve_colour(k)
-            curves = drawn.plot(across[order, k], up[order, k], **look)
+            curves = drawn.plot(
+                across[order, k],
+                up[order, k],
+                color=curve_colour(k if len(names) <= MOST_CURVES else 0),
+                marker="" if curve else ".",
+                linestyle="-" if curve else "none",
+            )
             curves[0].set_label(_tell_place(sheet, place))
         for name, put in ((x, drawn.set_xlabel), (y, drawn.set_ylabel)):
             put(label(name, sheet.units.get(name, "") or "1"))
@@ -71,7 +71,7 @@ def draw_sheet(
 
 def _numbers(sheet: Sheet) -> dict[str, Array]:
     """Return axes and columns that hold numbers, each of the sheet's shape."""
-    found: dict[str, Any] = {}
+    found: dict[str, AnyArray] = {}
     for place, (name, values) in enumerate(sheet.axes.items()):
         words = values is None or np.asarray(values).dtype.kind == "U"
         counted = np.arange(sheet.shape[place]) if words else np.asarray(values)

@@ -4,25 +4,55 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Set
 from contextlib import contextmanager
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.typing import ColorType, LineStyleType
 
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array
 
+if TYPE_CHECKING:
+    from matplotlib.typing import RcKeyType  # since 3.11
+
+
+#: Settings of matplotlib by name.
+RcParams: TypeAlias = "dict[RcKeyType, str | float | bool]"
 Look = Literal["print", "slides"]
 Width = Literal["one", "two"]
 
 #: Okabe and Ito's palette for unordered curves, with contrast between neighbours.
 LAW_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-LAW_DASHES: tuple[Any, ...] = ("-", (0, (6, 2)), (0, (4, 1.5, 1, 1.5)), (0, (1.5, 1.5)), "-", "-")
-#: Look of annotations.
-ASIDE: Any = {"color": "#555555", "fontsize": "small"}
+LAW_DASHES: tuple[LineStyleType, ...] = (
+    "-",
+    (0, (6, 2)),
+    (0, (4, 1.5, 1, 1.5)),
+    (0, (1.5, 1.5)),
+    "-",
+    "-",
+)
+
+
+class Aside(TypedDict):
+    """Look of annotations."""
+
+    color: str
+    fontsize: str
+
+
+class Place(TypedDict):
+    """Place of a legend."""
+
+    loc: Literal["upper center"]
+    bbox_to_anchor: tuple[float, float]
+    borderaxespad: float
+
+
+ASIDE: Aside = {"color": "#555555", "fontsize": "small"}
 MEASURED_COLOUR = "#000000"
 QUIET = "#8C8C8C"
 #: Colour map of even lightness for ordered curves, and its end: yellow is too pale for lines.
@@ -35,12 +65,12 @@ WIDTHS: dict[Width, float] = {"one": 3.4, "two": 7.0}
 RESOLUTION = 200
 #: Width in inches below which a long legend stands below the axes, not beside.
 NARROW = 4.5
-BELOW: Any = {"loc": "upper center", "bbox_to_anchor": (0.45, -0.45), "borderaxespad": 0.0}
+BELOW: Place = {"loc": "upper center", "bbox_to_anchor": (0.45, -0.45), "borderaxespad": 0.0}
 #: Least half-width of an error band over the height of the axes: half the width of a line, below
 #: which the curve hides the band.
 VISIBLE = 0.004
 
-SETTINGS: Any = {  # matplotlib types each key
+SETTINGS: RcParams = {
     "font.family": "STIXGeneral",
     "mathtext.fontset": "stix",
     "font.size": 11.0,
@@ -77,7 +107,7 @@ SYMBOLS = {
 }
 
 #: Differences for a screen seen from the last row: sans serif, larger, bolder.
-SLIDES: Any = {
+SLIDES: RcParams = {
     "font.family": "DejaVu Sans",
     "mathtext.fontset": "dejavusans",
     "font.size": 16.0,
@@ -97,7 +127,7 @@ FEW_COLOURS = 8
 #: Greatest difference between red, green and blue of a grey.
 GREY = 0.08
 #: Text and lines at the size of print: no letter below 7 points.
-PRINTED: dict[Width, Any] = {
+PRINTED: dict[Width, RcParams] = {
     "one": {
         "font.size": 8.0,
         "axes.labelsize": 8.5,
@@ -229,14 +259,14 @@ def ordered_colours(count: int) -> list[Any]:
     return [colours(place) for place in np.linspace(0.0, ORDERED_END, count)]
 
 
-def own_colours() -> list[Any]:
+def own_colours() -> list[ColorType]:
     """Return the colours of matplotlib's ``axes.prop_cycle`` where it was changed."""
     cycle = mpl.rcParams["axes.prop_cycle"]
     changed = cycle != mpl.rcParamsDefault["axes.prop_cycle"]
     return list(cycle.by_key().get("color", ())) if changed else []
 
 
-def curve_colour(number: int) -> Any:
+def curve_colour(number: int) -> ColorType:
     """Return the colour of the curve at place ``number``: one's own, or of the palette."""
     colours = own_colours() or LAW_COLOURS
     return colours[number % len(colours)]
@@ -263,9 +293,8 @@ def force_axes(axes: Axes) -> Axes:
 
 def friction_limit(axes: Axes, time: Array, normal_force: Array) -> Axes:
     """Draw the friction limit, plus and minus P/P_max, with its name."""
-    look: Any = {"color": "black", "linestyle": (0, (4, 3)), "linewidth": 0.9, "zorder": 4}
-    axes.plot(time, normal_force, **look)
-    axes.plot(time, -normal_force, **look)
+    for limit in (normal_force, -normal_force):
+        axes.plot(time, limit, color="black", linestyle=(0, (4, 3)), linewidth=0.9, zorder=4)
     axes.annotate(
         r"limit $\pm\mu P$", (0.5, -0.9), xycoords=("axes fraction", "data"), ha="center",
         va="bottom", **ASIDE,

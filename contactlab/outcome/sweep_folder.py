@@ -11,13 +11,14 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from contactlab.contracts.status import Status
 from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import nearest, tell_attributes
+from contactlab.numeric.types import AnyArray, Json
 from contactlab.outcome.answer import Checked
 from contactlab.outcome.chunk_files import (
     DAMAGED,
@@ -35,7 +36,10 @@ from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.sheet import Sheet, batch_axes
 
 if TYPE_CHECKING:
+    from dask.dataframe import DataFrame as DaskFrame
     from matplotlib.axes import Axes
+    from pandas import DataFrame
+    from xarray import Dataset
 
     from contactlab.outcome.style import Width
 
@@ -107,7 +111,7 @@ class _Unchanged(NamedTuple):
 
 def _read(
     path: Path, form: Form, statuses: Sequence[str], about: About, names: Sequence[str]
-) -> dict[str, Any]:
+) -> dict[str, AnyArray]:
     """Return columns of a chunk by name, statuses by their words."""
     with columns_of(path, form, statuses, about.sums) as content:
         columns = {name: np.broadcast_to(content[name], about.chunk.size) for name in names}
@@ -116,12 +120,16 @@ def _read(
     return columns
 
 
-def _frame(form: Form, statuses: Sequence[str], names: Sequence[str], chunk: _Unchanged) -> Any:
+def _frame(
+    form: Form, statuses: Sequence[str], names: Sequence[str], chunk: _Unchanged
+) -> DataFrame:
     """Return a ``pandas.DataFrame`` of columns of a chunk."""
     chunk.check()
     pandas = import_optional("pandas", "to_dask")
     index = pandas.RangeIndex(*chunk.about.chunk, name="impact")
-    return pandas.DataFrame(_read(chunk.path, form, statuses, chunk.about, names), index)
+    columns = _read(chunk.path, form, statuses, chunk.about, names)
+    frame: DataFrame = pandas.DataFrame(columns, index)
+    return frame
 
 
 @tell_attributes
@@ -209,7 +217,7 @@ class SweepFolder(Checked):
         """Return the number of impacts in finished chunks."""
         return sum(about.chunk.size for _, about in self._abouts)
 
-    def chunks(self, *names: str) -> Iterator[tuple[slice, dict[str, Any]]]:
+    def chunks(self, *names: str) -> Iterator[tuple[slice, dict[str, AnyArray]]]:
         """Yield the place of each finished chunk in the sweep, and its columns by name.
 
         Parameters
@@ -238,14 +246,14 @@ class SweepFolder(Checked):
                 raise refuse("column", name, "is not a column of the sweep", remedy)
         return wanted
 
-    def _columns(self, *names: str) -> dict[str, Any]:
+    def _columns(self, *names: str) -> dict[str, AnyArray]:
         """Return columns of all impacts by name; no chunk may be missing."""
         if self.missing:
             first, stop = self.missing[0]
             rule = f"impacts {first} to {stop} are missing"
             remedy = "run the same sweep into the folder again, or read chunks()"
             raise refuse("path", str(self.path), rule, remedy)
-        columns: dict[str, Any] = {}
+        columns: dict[str, AnyArray] = {}
         for place, part in self.chunks(*names):
             for name, values in part.items():
                 if name not in columns:
@@ -257,7 +265,7 @@ class SweepFolder(Checked):
         shape = (len(self),)
         return Sheet(self._columns(*names), self.units, batch_axes(shape), shape, self.laws)
 
-    def to_dict(self, *names: str) -> dict[str, Any]:
+    def to_dict(self, *names: str) -> dict[str, Json]:
         """Return laws, statuses, cautions and what is missing, and the columns that are named.
 
         Parameters
@@ -273,9 +281,10 @@ class SweepFolder(Checked):
             "laws": dict(self.laws),
             "cautions": self.cautions,
             "units": dict(self.units),
-        } | {name: json_value(values) for name, values in columns.items()}
+            **{name: json_value(values) for name, values in columns.items()},
+        }
 
-    def to_dataframe(self, *names: str) -> Any:
+    def to_dataframe(self, *names: str) -> DataFrame:
         """Return a ``pandas.DataFrame`` of columns of all impacts, units in ``.attrs["units"]``.
 
         Parameters
@@ -287,7 +296,7 @@ class SweepFolder(Checked):
 
         return to_dataframe(self._sheet(*names))
 
-    def to_xarray(self, *names: str) -> Any:
+    def to_xarray(self, *names: str) -> Dataset:
         """Return an ``xarray.Dataset`` of columns of all impacts, with units.
 
         Parameters
@@ -299,7 +308,7 @@ class SweepFolder(Checked):
 
         return to_xarray(self._sheet(*names))
 
-    def to_dask(self, *names: str) -> Any:
+    def to_dask(self, *names: str) -> DaskFrame:
         """Return a ``dask.dataframe.DataFrame`` of the finished chunks, read when it is computed.
 
         Its index is the place of each impact in the sweep. Each chunk is a partition, from files of
@@ -318,7 +327,9 @@ class SweepFolder(Checked):
             raise refuse("path", str(self.path), "holds no finished chunk", remedy)
         read = partial(_frame, self._form, self._names, wanted)
         edges = [*(chunk.about.first for chunk in told), told[-1].about.stop - 1]
-        return dask.from_map(read, told, meta=read(told[0]).iloc[:0], divisions=edges)
+        meta = read(told[0]).iloc[:0]
+        frame: DaskFrame = dask.from_map(read, told, meta=meta, divisions=edges)
+        return frame
 
     def _draw(self, axes: Axes | None, x: str | None, y: str | None, width: Width | None) -> Axes:
         """Draw one column over another, by default psi2 over psi1; no other is read."""
@@ -327,7 +338,7 @@ class SweepFolder(Checked):
         x, y = x or "psi1", y or "psi2"
         return draw_sheet(axes, self._sheet(*dict.fromkeys((x, y))), x, y, width=width)
 
-    def __getitem__(self, name: str) -> Any:
+    def __getitem__(self, name: str) -> AnyArray:
         """Return a column of the sweep up to its last chunk, shape (n,); no chunk may be missing.
 
         An unfinished sweep has fewer impacts: ``check`` tells.

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, overload
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from pandas import DataFrame
+    from xarray import Dataset
 
+    from contactlab.numeric.types import Json
     from contactlab.outcome.sheet import Sheet
     from contactlab.outcome.style import Width
 
@@ -27,7 +30,7 @@ class Tabled:
     def _sheet(self) -> Sheet:
         """Return the columns with their axes and units."""
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Json]:
         """Return the columns by name as plain numbers, lists and text, None where not finite."""
         from contactlab.outcome.columns import json_value
 
@@ -35,13 +38,13 @@ class Tabled:
         axes = {name: values for name, values in sheet.axes.items() if values is not None}
         return {name: json_value(values) for name, values in (axes | {**sheet.columns}).items()}
 
-    def to_dataframe(self) -> Any:
+    def to_dataframe(self) -> DataFrame:
         """Return a ``pandas.DataFrame``, units in ``.attrs["units"]``; axes are its index."""
         from contactlab.outcome.frames import to_dataframe
 
         return to_dataframe(self._sheet())
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> Dataset:
         """Return an ``xarray.Dataset`` with units, one dimension for each axis."""
         from contactlab.outcome.frames import to_xarray
 

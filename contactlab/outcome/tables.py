@@ -13,7 +13,7 @@ from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.cautions import size_of_contact
 from contactlab.impact.hertz import semi_axes
 from contactlab.impact.scene import Scene, entry_unit
-from contactlab.numeric.types import Real
+from contactlab.numeric.types import Array, Real
 from contactlab.outcome.columns import (
     QUANTITIES,
     SWEEP_TABLE,
@@ -155,7 +155,7 @@ def _show_columns(scene: Scene, names: Sequence[str]) -> Iterator[Column]:
             yield column
 
 
-def _parts(result: ImpactResult, column: Column) -> Iterator[tuple[str, Any]]:
+def _parts(result: ImpactResult, column: Column) -> Iterator[tuple[str, Array]]:
     """Yield the components of a column by name, each of the scene's shape; NaN if undefined."""
     shape, value = result.scene.shape, column.read(result)
     for name, values in components(column.name, np.nan if value is None else value, shape):
@@ -259,12 +259,12 @@ def _pairs(name: str, before: Real, after: Real, unit: str) -> list[Row]:
     return [[f"{name} along t{place}", one, other, unit] for place, (one, other) in pairs]
 
 
-def _each(name: str, value: Real) -> list[tuple[str, Any]]:
+def _each(name: str, value: Real) -> list[tuple[str, float]]:
     """Return a number, or the components of a vector or tensor, by name."""
-    return [(part, float(each)) for part, each in components(name, value, ())]
+    return [(part, float(each)) for part, each in components(name, np.asarray(value), ())]
 
 
-def _groups(scene: Scene) -> list[tuple[str, Any]]:
+def _groups(scene: Scene) -> list[tuple[str, float]]:
     """Return the dimensionless groups but psi1, by name."""
     groups = [*kinetics.groups(scene).items()][1:]
     return [each for name, group in groups for each in _each(name, group)]

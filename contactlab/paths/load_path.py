@@ -14,13 +14,14 @@ from contactlab.contracts import faults
 from contactlab.contracts.law import claims
 from contactlab.contracts.normal import NormalLaw, unfollowed_rate
 from contactlab.contracts.restitution import LEAST_RESTITUTION
+from contactlab.contracts.status import Details, Statuses
 from contactlab.contracts.tangential import SteppedTangentialLaw, TangentialLaw
 from contactlab.impact.cautions import of_ellipse, path_cautions
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import lock_arrays
 from contactlab.numeric.checks import Rule, of_kind, real, refuse
-from contactlab.numeric.types import Array, Numbers
+from contactlab.numeric.types import Array, Json, Numbers
 from contactlab.outcome.answer import Answer
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.sheet import Sheet, batch_axes, names_of
@@ -94,11 +95,11 @@ class LoadPath(Answer):
     friction_load: Array
     contact_radius: Array
     friction_work: Array
-    status: Any
+    status: Statuses
     detail: str
     _states: tuple[Any, ...] = attrs.field(repr=False)
 
-    def _statuses(self) -> tuple[Any, Any]:
+    def _statuses(self) -> tuple[Statuses, Details]:
         return self.status, self.detail
 
     @property
@@ -150,7 +151,7 @@ class LoadPath(Answer):
         return Sheet(found, UNITS, batch_axes(shape[:1], "point") | batch_axes(shape[1:], "path"),
                      shape, about, "point")  # fmt: skip
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Json]:
         """Return columns, fields of the law and cautions as plain lists and text."""
         fields = {name: json_value(each) for name, each in self.fields.items()}
         told = {"status": json_value(self.status), "detail": self.detail}
@@ -238,7 +239,9 @@ def load_path(
     )
 
 
-def _laws(scene: Scene, normal: object, tangential: object) -> tuple[Any, Any, Scene]:
+def _laws(
+    scene: Scene, normal: object, tangential: object
+) -> tuple[NormalLaw, SteppedTangentialLaw, Scene]:
     """Return the two laws of a path, with what materials give, and the scene; or refuse them."""
     first = composition.law("normal", normal)
     second = composition.law("tangential", tangential)
@@ -258,15 +261,14 @@ def _path(
     scene: Scene, approach: Numbers, displacement: Numbers, time: Numbers | None
 ) -> tuple[Points, Array, Scene]:
     """Return the points of a path, the time of first touch, and the scene of the paths' shape."""
-    entries: dict[str, Any] = {
-        "approach": real("approach", approach),
-        "displacement": real("displacement", displacement),
-    }
+    given = {"approach": real("approach", approach)}
+    given["displacement"] = real("displacement", displacement)
     if time is not None:
-        entries["time"] = real("time", time, rule=GROWING, remedy="in s")
+        given["time"] = real("time", time, rule=GROWING, remedy="in s")
+    entries = {name: np.asarray(entry) for name, entry in given.items()}
     for name, entry in entries.items():
-        if not np.ndim(entry):
-            raise refuse(name, entry, "must be an array, shape (K,) or (K, ...)")
+        if not entry.ndim:
+            raise refuse(name, given[name], "must be an array, shape (K,) or (K, ...)")
     told = ", ".join(f"{name} {entry.shape}" for name, entry in entries.items())
     count = len(entries["approach"])
     if any(len(entry) != count for entry in entries.values()):

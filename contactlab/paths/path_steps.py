@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +13,11 @@ from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.sampled_motion import SampledMotion
-from contactlab.contracts.status import Status
+from contactlab.contracts.status import Status, Statuses
 from contactlab.contracts.tangential import Increment, Sampled, SteppedTangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import lock_arrays, plain
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Array, Mask, Real
 
 
 class Points(NamedTuple):
@@ -40,17 +40,17 @@ class Followed(NamedTuple):
     """Columns of a path by name, arrays of shape (K, ...), and the states of the tangential law."""
 
     columns: dict[str, Array]
-    states: tuple[Any, ...]
-    status: Any
+    states: tuple[object, ...]
+    status: Statuses
     detail: str
 
 
 def advance_steps(
     law: SteppedTangentialLaw,
-    state: Any,
+    state: object,
     before: NormalContact,
     steps: Iterable[tuple[Increment, NormalContact]],
-) -> tuple[list[tuple[Any, Any, Any]], tuple[Any, ...]]:
+) -> tuple[list[tuple[Real, Real, Mask]], tuple[object, ...]]:
     """Return force (N), friction work (J) and settled of each step, and the state after it.
 
     ``state`` and ``before`` are those at the beginning; a step has the contact at its end.
@@ -138,7 +138,7 @@ def _steps(
 
 def _judge(
     laws: tuple[Law, Law], columns: dict[str, Array], unsettled: NDArray[np.bool_]
-) -> tuple[Any, str]:
+) -> tuple[Statuses, str]:
     """Return statuses and the sentence of the first failure; what follows a failure is NaN."""
     normal, tangential = laws
     shape = unsettled.shape[1:]
@@ -168,6 +168,6 @@ def _column(rows: Iterable[Real], shape: tuple[int, ...]) -> Array:
     return np.array([np.broadcast_to(row, shape) for row in rows], dtype=np.float64)
 
 
-def _rows(column: Array) -> Any:
+def _rows(column: Array) -> Sequence[Real] | Array:
     """Return the rows of a column: floats of one path, arrays of a batch."""
     return column.tolist() if column.ndim == 1 else np.array(column)

@@ -6,12 +6,13 @@ import pickle
 from collections.abc import Mapping
 from concurrent.futures import BrokenExecutor, Executor, Future
 from queue import SimpleQueue
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import attrs
 
 from contactlab.numeric.arrays import lock_arrays
 from contactlab.numeric.checks import refuse
+from contactlab.numeric.types import Tree
 from contactlab.outcome.chunk_forms import Chunk
 from contactlab.registration.hooks import short
 from contactlab.registry.composition import Laws, versions
@@ -127,9 +128,10 @@ def reply(sent: bytes, part: bytes, chunk: Chunk, block: int) -> Reply:
         return Reply(None, {}, error)
 
 
-def _lock(tree: Any) -> Any:
+def _lock(tree: Tree) -> Tree:
     """Return a tree with its arrays read-only: pickling loses that flag."""
-    if attrs.has(type(tree)):
-        for field in attrs.fields(type(tree)):
+    kind: type = type(tree)
+    if attrs.has(kind):
+        for field in attrs.fields(kind):
             _lock(getattr(tree, field.name))
     return lock_arrays(tree)

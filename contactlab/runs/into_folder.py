@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -146,9 +145,10 @@ class ChunkFolder:
 
 def _arrays(
     result: ImpactResult, whole: Scene | None = None
-) -> tuple[dict[str, Any], dict[str, str]]:
+) -> tuple[dict[str, AnyArray], dict[str, str]]:
     """Return the columns that a scene has, statuses as codes, and their units."""
-    arrays, units = {}, {}
+    arrays: dict[str, AnyArray] = {}
+    units = {}
     for name, unit, values in columns(result, whole):
         if name == COLUMN_OF_STATUS:
             arrays[name] = _codes(result.status)
@@ -164,7 +164,7 @@ def _name_columns(arrays: Mapping[str, AnyArray]) -> dict[str, AnyArray]:
     return {**arrays, COLUMN_OF_STATUS: np.array(NAMES)[arrays[COLUMN_OF_STATUS]]}
 
 
-def _codes(statuses: NDArray[np.object_]) -> Any:
+def _codes(statuses: NDArray[np.object_]) -> NDArray[np.uint8]:
     """Return the codes of an array of statuses, one byte each."""
     if succeeded(statuses):  # a look at each takes longer than the impacts
         return np.zeros(statuses.shape, dtype=np.uint8)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Generator, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
@@ -48,20 +48,22 @@ class Rescue:
 
     def solve(self, lost: Sequence[Lost]) -> Generator[Piece, None, list[Part]]:
         """Yield pieces of lost parts; return the parts that have ended no process."""
-        pool: Any = self.calls.executor
+        pool = self.calls.executor
         broken = isinstance(lost[0].error, BrokenExecutor)
         if self.ends >= MOST_ENDS or (broken and not self._replace(pool, 1)):
             for part, error in lost:
                 yield self._give_up(part, error)
             return []
         # A pool takes parts in order: one of those that it was solving has ended a process.
-        suspects = pool._max_workers if broken else len(lost)
+        processes = isinstance(pool, ProcessPoolExecutor)
+        workers = pool._max_workers if processes else len(lost)  # type: ignore[attr-defined]  # typeshed
+        suspects = workers if broken else len(lost)
         for part, _ in lost[:suspects]:
             piece = self._alone(part)
             answered = any(status is not Status.WORKER_DIED for status in piece.motion.status)
             yield piece._replace(solved=answered or self._pool is not None)
         if broken:
-            self._replace(pool, pool._max_workers)
+            self._replace(pool, workers)
         return [part for part, _ in lost[suspects:]]
 
     def _give_up(self, part: Part, error: Exception) -> Piece:
@@ -89,14 +91,13 @@ class Rescue:
         """Take another pool with the settings of a pool of processes; False if none starts."""
         if not isinstance(pool, ProcessPoolExecutor):
             return False
-        settings: Any = pool
         self.__exit__()
         self._pool = ProcessPoolExecutor(
             workers,
-            mp_context=settings._mp_context,
-            initializer=settings._initializer,
-            initargs=settings._initargs,
-            max_tasks_per_child=settings._max_tasks_per_child,
+            mp_context=pool._mp_context,
+            initializer=pool._initializer,
+            initargs=pool._initargs,
+            max_tasks_per_child=pool._max_tasks_per_child,  # type: ignore[attr-defined]  # typeshed
         )
         if self._pool.submit(os.getpid).exception() is not None:
             self.__exit__()

@@ -5,11 +5,11 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable
 from inspect import signature
-from typing import Any
 
 import attrs
 
 from contactlab.contracts.law import Law, law_kind
+from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.material import Material
@@ -91,7 +91,7 @@ def with_restitution(law: Law, restitution: object) -> str:
     return f"create({name!r}, restitution={restitution!r})"
 
 
-def normal_of_restitution(normal: object, restitution: object) -> Any:
+def normal_of_restitution(normal: object, restitution: object) -> NormalLaw | None:
     """Return the normal law of a restitution, or a named one with it; None for elastic bodies.
 
     Raises

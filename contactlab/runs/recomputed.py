@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.types import AnyArray, Array, Mask
+from contactlab.numeric.types import AnyArray, Array, Mask, Real
 from contactlab.outcome.chunk_forms import Chunk
 from contactlab.runs.pieces import Part, Piece
 from contactlab.runs.target import ANOTHER
@@ -81,7 +81,7 @@ class Sample:
 
 def _ranges(scene: Scene) -> dict[str, Array]:
     """Return psi1 and chi of each impact; of vectors and tensors the size."""
-    psi1: Any = scene.psi1 if scene.planar else kinetics.size_of(scene, scene.psi1)
+    psi1: Real = scene.psi1 if scene.planar else kinetics.size_of(scene, scene.psi1)
     ranges = {"psi1": psi1, "chi": kinetics.largest_chi(scene)}
     return {
         name: np.nan_to_num(np.broadcast_to(values, scene.shape)) for name, values in ranges.items()

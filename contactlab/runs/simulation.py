@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, TypedDict, overload
 
 import attrs
 import numpy as np
@@ -42,6 +42,13 @@ if TYPE_CHECKING:
     from contactlab.outcome.sweep_folder import SweepFolder
     from contactlab.runs.pieces import Piece
     from contactlab.solve.gathering_plan import GatheringPlan
+
+    class SweepOptions(TypedDict):
+        """How a sweep is cut, where it is solved, and what an interruption leaves."""
+
+        chunk: int | None
+        executor: Executor | None
+        return_partial: bool
 
 
 #: What to do with a file, and with bodies in space, that users give in place of a scene.
@@ -244,7 +251,7 @@ class Simulation:
     ) -> SweepFolder: ...
     def sweep(
         self,
-        scenes: Any,
+        scenes: Scene | GridParts | Iterable[Scene],
         *,
         progress: bool | Count | None = None,
         chunk: int | None = None,
@@ -331,14 +338,15 @@ class Simulation:
         from contactlab.runs.sweep import one_axis, sweep_columns  # a single run needs none of this
 
         started = time.perf_counter()
-        options: dict[str, Any] = {"chunk": chunk, "executor": executor}
-        options["return_partial"] = return_partial
+        options: SweepOptions = {
+            "chunk": chunk, "executor": executor, "return_partial": return_partial
+        }  # fmt: skip
         if isinstance(scenes, str | Path) or hasattr(scenes, "scene"):
             remedy = "give its .scene" if hasattr(scenes, "scene") else FOR_FILES
             raise refuse("scenes", scenes, "must be a Scene, or a sequence of them", remedy)
         if into is not None:
             with follow(progress, "impacts") as count:
-                return self._into(into, keep, scenes, {"progress": count, **options})
+                return self._into(into, keep, scenes, count, options)
         if isinstance(scenes, GridParts):
             rule = "is a grid in parts, which needs a folder"
             raise refuse("scenes", scenes, rule, "give into=folder, or Scene.grid")
@@ -355,7 +363,8 @@ class Simulation:
         into: str | Path,
         keep: object,
         scenes: Scene | GridParts | Iterable[Scene],
-        options: Any,
+        progress: Count | None,
+        options: SweepOptions,
     ) -> SweepFolder:
         """Return the folder of a sweep that is written as it goes."""
         from contactlab.runs.into import sweep_into  # needed with ``into`` only
@@ -372,7 +381,7 @@ class Simulation:
             plan = plan_of(own, scene, piece.columns, piece.motion)
             return _result(solve.ways(own, scene), scene, plan, piece.motion, time.perf_counter())
 
-        return sweep_into(laws, scenes, into, result_of=result_of, **options)
+        return sweep_into(laws, scenes, into, result_of=result_of, progress=progress, **options)
 
     def normal_motion(self, scene: Scene) -> NormalMotion:
         """Return the approach without friction; all values are NaN if the normal law fails.

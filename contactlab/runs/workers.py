@@ -9,10 +9,9 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing.context import SpawnContext, SpawnProcess
-from typing import Any
 
 from contactlab.numeric.checks import refuse, whole
 from contactlab.registry.composition import Laws
@@ -102,7 +101,9 @@ class _Process(SpawnProcess):
     """A process that Ctrl-C does not reach: the program ends its processes itself."""
 
     def start(self) -> None:
-        mask: Any = getattr(signal, "pthread_sigmask", lambda *_: set())
+        mask: Callable[[int, set[int]], set[int]] = getattr(
+            signal, "pthread_sigmask", lambda *_: set()
+        )
         before = mask(signal.SIG_BLOCK, {signal.SIGINT})  # the process keeps this mask
         try:
             super().start()

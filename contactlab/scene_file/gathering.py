@@ -9,7 +9,7 @@ import attrs
 import numpy as np
 
 from contactlab.impact import material as materials
-from contactlab.impact.bodies import HalfSpace
+from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.gathering import Body, Gathering, Touch
 from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.shapes import FLAT
@@ -78,7 +78,7 @@ def _body(content: object, path: str) -> tuple[Body | HalfSpace, list[dict[str, 
         raise refuse(f"{path}.kind", kind, f"must be one of {', '.join(map(repr, KINDS))}")
     if kind == "half-space":
         return HalfSpace(read_material(Table(content, path, known=("kind", "material")))), []
-    shape: Any
+    shape: Sphere | RigidBody
     contacts: list[dict[str, object]] = []
     if kind == "sphere":
         shape = read_sphere(Table(content, path, known=("kind", *SPHERE_KEYS, *MOTION)))

@@ -161,25 +161,23 @@ def read_scene(
         sweep = read_sweep(document.get("sweep", {}))
         tables = with_materials({key: root.content[key] for key in SECTIONS[1:6] if root.has(key)})
         own = tables
+        varied: Mapping[str, Numbers] = sweep.varied
         if defaults:
             tables = _with_defaults(tables, defaults)
         if entries:
             tables = without_rivals(tables, entries)
-            given: Any = dict(entries)
-            sweep = Sweep(varied=given, axes={})
-        scene, encounter = _scene_with(tables, sweep.varied)
+            varied, sweep = dict(entries), Sweep(varied={}, axes={})
+        scene, encounter = _scene_with(tables, varied)
         laws = read_laws(document.get("simulation", {}), file.parent, allow_code=allow_code)
-        if of_laws := {name: each for name, each in sweep.varied.items() if is_option(name)}:
+        if of_laws := {name: each for name, each in varied.items() if is_option(name)}:
             laws = laws.set(of_laws)
         texts: dict[str, Any] = {key: about.text(key, default="") for key in ABOUT_KEYS}
         return SceneFile(
             path=file,
             **texts,
-            scene=batches.over(scene, sweep.axes)
-            if sweep.axes
-            else batches.varying(scene, sweep.varied),
+            scene=batches.over(scene, sweep.axes) if sweep.axes else batches.varying(scene, varied),
             encounter=encounter,
-            varied=sweep.varied,
+            varied={name: np.asarray(each, dtype=np.float64) for name, each in varied.items()},
             laws=laws,
             measured=read_series(document.get("measured", [])),
             materials=list_materials(document),
@@ -206,11 +204,11 @@ def _of_gathering(
     from contactlab.scene_file.gathering import read_gathering, read_path  # few files need it
 
     document = root.content
-    varied: Any = read_sweep(document.get("sweep", {}), read_path).varied
+    varied: Mapping[str, Real] = read_sweep(document.get("sweep", {}), read_path).varied
     if entries:
         varied = {read_path(name): real(name, values) for name, values in entries.items()}
     gathering = read_gathering(document, varied)
-    bodies: Any = document["bodies"]
+    bodies = document["bodies"]
     texts: dict[str, Any] = {key: about.text(key, default="") for key in ABOUT_KEYS}
     return SceneFile(
         path=file,
@@ -246,7 +244,8 @@ def _scene_with(
         return scene, encounter
     # Only options of laws vary: one number of the scene is given for each impact.
     section = "nondimensional" if "nondimensional" in tables else "impact"
-    inner: Any = tables[section]
+    inner = tables[section]
+    assert isinstance(inner, Mapping)
     for key, value in inner.items():
         if isinstance(value, float | int):
             return build_scene(replace_entry(tables, f"{section}.{key}", np.full(size, value)))
@@ -264,8 +263,10 @@ def _with_defaults(
     completed = dict(tables)
     if "nondimensional" in completed:
         return completed
-    impact: Any = tables.get("impact", {})
-    vectors = {*POLAR, *CARTESIAN} if "velocity" in impact else set()
+    impact = tables.get("impact", {})
+    vectors: set[str] = set()
+    if isinstance(impact, Mapping) and "velocity" in impact:
+        vectors = {*POLAR, *CARTESIAN}
     for name, value in defaults.items():
         if name in vectors or without_rivals(completed, [name]) != completed:
             continue

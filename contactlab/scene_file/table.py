@@ -9,7 +9,7 @@ import numpy as np
 
 from contactlab.numeric.checks import of_kind, real, refuse
 from contactlab.numeric.names import nearest
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 Made = TypeVar("Made")
 
@@ -59,7 +59,7 @@ class Table:
         """Return whether the table has any of the keys."""
         return any(key in self.content for key in keys)
 
-    def require(self, key: str, remedy: str) -> Any:
+    def require(self, key: str, remedy: str) -> object:
         """Return the raw value of ``key``, or refuse a table without this key."""
         if key not in self.content:
             raise ValueError(f"{self.at(key)}: is missing; {remedy}")
@@ -70,7 +70,7 @@ class Table:
         remedy = f"add a table [{self.at(key)}] with {', '.join(known)}"
         return Table(self.require(key, remedy), self.at(key), known=known)
 
-    def number(self, key: str, *, remedy: str) -> Any:
+    def number(self, key: str, *, remedy: str) -> Real:
         """Return a number, or the array of a sweep in its place.
 
         A list in the file is refused: entries that vary belong in ``[sweep]``.
@@ -80,7 +80,7 @@ class Table:
             raise refuse(self.at(key), value, "must be one number", "put lists in [sweep]")
         return real(self.at(key), value, remedy=remedy)
 
-    def friction(self) -> Any:
+    def friction(self) -> Real | dict[float, float]:
         """Return the friction coefficient: a number, an array, or a table {slip speed: mu}."""
         key = "friction_coefficient"
         pairs = self.content.get(key)

@@ -19,7 +19,7 @@ from contactlab.contracts.tangential_motion import Observer
 from contactlab.impact import kinetics
 from contactlab.impact.cautions import OUTSIDE
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import choose, every, spread
+from contactlab.numeric.arrays import every, spread
 from contactlab.numeric.types import Array, Index, Real
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
@@ -80,7 +80,9 @@ class Coupled(Way):
         scene, laws = self.scene, self.laws
         law, integrator = laws.capability.coupled, laws.integrator
         law = law if scene.links is None else None
-        code = choose(separates(normal), MARCHED if law is None else 0, ENDLESS)
+        apart, known = separates(normal), MARCHED if law is None else 0
+        many = isinstance(apart, np.ndarray)
+        code = np.where(apart, known, ENDLESS) if many else known if apart else ENDLESS
         errors: object
         if normal._known == "nothing":  # no law is asked about an approach that is not known
             errors = Errors()

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import inspect
+import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import attrs
 
 from contactlab.contracts import WholeImpactTangentialLaw
-from contactlab.contracts.law import law_kind
+from contactlab.contracts.law import Law, law_kind
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
@@ -84,7 +85,7 @@ class Method:
         """Return options of tangential law and integrator by kind, coarse to fine."""
         law = _law("tangential", self.tangential).resolution
         steps = None if self.whole else _law("integrator", self.integrator).resolution
-        values: Sequence[Any] = (None,)
+        values: Sequence[float] = (math.nan,)  # no resolution
         if "tolerance" in (law, steps):
             values = TOLERANCES
         elif law:
@@ -97,7 +98,7 @@ class Method:
             options: dict[str, dict[str, float]] = {"tangential": {}, "integrator": {}}
             if steps is not None:
                 options["integrator"][steps] = value
-            if values is PARTS:
+            if law is not None and values is PARTS:
                 options["tangential"][law] = value
                 if steps is not None:
                     options["integrator"][steps] = max(per_part * value, LEAST_STEPS)
@@ -109,7 +110,7 @@ class Method:
                 ladder.append(options)
         if not quick:
             return ladder
-        if values is PARTS:
+        if law is not None and values is PARTS:
             return [each for each in ladder if each["tangential"][law] in QUICK_PARTS]
         # A tolerance of 1e-6 would take minutes, because the annuli grow with it.
         return ladder[:: 1 if values is TOLERANCES else 2][:QUICK_RESOLUTIONS]
@@ -262,10 +263,10 @@ def accepts(name: str, options: Mapping[str, object]) -> bool:
     return True
 
 
-def _default(kind: str, name: str, option: str) -> Any:
+def _default(kind: str, name: str, option: str) -> object:
     """Return the default of a law's option."""
     return inspect.signature(_law(kind, name)).parameters[option].default
 
 
-def _law(kind: str, name: str) -> Any:
+def _law(kind: str, name: str) -> type[Law]:
     return REGISTRY.law_class(full_name(kind, name))

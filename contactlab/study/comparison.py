@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence, Set
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, overload
 
 import attrs
 import numpy as np
@@ -13,7 +13,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import nearest, tell_attributes
 from contactlab.numeric.progress import Count, follow
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import AnyArray, Array, Json, Real
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.sheet import Sheet
 from contactlab.outcome.tabled import Tabled
@@ -163,7 +163,7 @@ class Comparison(Tabled):
 
         return draw_compared(axes, self, quantity, width)
 
-    def to_dict(self, quantities: Sequence[str] | None = None) -> dict[str, Any]:
+    def to_dict(self, quantities: Sequence[str] | None = None) -> dict[str, Json]:
         """Return quantities of each law, differences and agreement as plain numbers and text.
 
         Parameters
@@ -178,7 +178,7 @@ class Comparison(Tabled):
         sheets = [run.result._sheet() for run in self.runs]
         shape = (len(sheets), *sheets[0].shape)
         units = {"law": ""}
-        columns: dict[str, Any] = {}
+        columns: dict[str, AnyArray] = {}
         for k, sheet in enumerate(sheets):
             units |= sheet.units
             for name, values in sheet.columns.items():  # options of a law are columns of its own
@@ -294,7 +294,7 @@ def _find_entries(scene: Scene) -> dict[str, Array]:
         return dict(scene.varied)
     # Several entries may vary together: the first one with different values is the abscissa.
     psi1 = kinetics.along_slip(scene, scene.psi1)
-    entries: dict[str, Any] = {"psi1": psi1, "chi": scene.central.chi}
+    entries: dict[str, Real] = {"psi1": psi1, "chi": scene.central.chi}
     if scene.sphere is not None:
         angle = np.degrees(np.arctan2(scene.tangential_velocity, scene.normal_speed))
         entries = {

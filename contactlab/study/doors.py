@@ -19,6 +19,7 @@ import numpy as np
 from contactlab.collisions.collide import collide
 from contactlab.collisions.collision import Collision
 from contactlab.collisions.rebound import rebound
+from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array, Real
@@ -165,7 +166,7 @@ def by_springs(*counts: int, restitution: float = 1.0) -> list[Door]:
 
 def springs_of(springs: int, restitution: float = 1.0) -> Simulation:
     """Return springs and four times as many steps, none from a table."""
-    normal: Any = composition.DEFAULT_NORMAL
+    normal: str | NormalLaw = composition.DEFAULT_NORMAL
     if restitution < 1.0:
         normal = composition.law(
             "normal", composition.RESTITUTION["normal"], restitution=restitution
@@ -244,7 +245,7 @@ def _numbers(scene: Scene, *names: str) -> tuple[Any, ...]:
 
 
 @functools.cache
-def _kernels() -> Any:
+def _kernels() -> ctypes.CDLL | None:
     """Return the kernels in C, compiled for this process, or None."""
     compiler = next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
     if compiler is None:

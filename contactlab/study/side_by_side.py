@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
 from contactlab.impact.scene import Scene, entry_unit
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Array, Json, Real
 from contactlab.outcome.columns import (
     COMPARISON_TABLE,
     columns_of,
@@ -200,7 +200,7 @@ def wrap(text: str) -> str:
     return textwrap.fill(" ".join(text.split()), width=96)
 
 
-def to_dict(comparison: Compared, quantities: Sequence[str]) -> dict[str, Any]:
+def to_dict(comparison: Compared, quantities: Sequence[str]) -> dict[str, Json]:
     """Return the comparison as numbers, lists and text, ready for JSON."""
     return {
         "laws": {
@@ -244,11 +244,11 @@ def to_dict(comparison: Compared, quantities: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def _beside(measured: Measured) -> dict[str, Any]:
+def _beside(measured: Measured) -> dict[str, Json]:
     """Return the other entries of measured impacts, if they have some."""
     entries = {name: _list(values) for name, values in measured.beside.items()}
     return {"beside": entries} if entries else {}
 
 
-def _list(values: Real) -> Any:
+def _list(values: Real) -> Json:
     return json_value(np.asarray(values)) if np.ndim(values) else json_value(float(values))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import attrs
 import numpy as np
@@ -312,11 +312,14 @@ def _sizes(*, quick: bool) -> Iterator[Case]:
 def _types() -> list[Case]:
     """Return scenes of single-precision numbers and of integers."""
     single = np.float32
-    singles: Any = {"friction": single(0.2), "slip": single(0.3), "poisson": single(0.3)}
     return [
         _plain("types", "float32", single(1.2), single(CHI)),
         _plain("types", "int", 1, 3),
         _plain("types", "int64", np.int64(2), np.int64(3)),
-        Case("types", "float32, SI", partial(_ball, **singles)),
+        Case(
+            "types",
+            "float32, SI",
+            partial(_ball, friction=single(0.2), slip=single(0.3), poisson=single(0.3)),
+        ),
         Case("types", "int, SI", partial(_ball, friction=1, slip=1, poisson=0)),
     ]

@@ -19,6 +19,7 @@ from contactlab.contracts.tangential import (
 )
 from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
+from contactlab.numeric.types import Array, Real
 from contactlab.outcome.result import ImpactResult
 from contactlab.registry.composition import fixed_steps
 from contactlab.registry.registry import PluginError
@@ -72,7 +73,7 @@ def in_space(scene: Scene) -> bool:
 
 
 @lru_cache(maxsize=64)
-def refine_in_space(law: TangentialLaw, scene: Scene) -> Any:
+def refine_in_space(law: TangentialLaw, scene: Scene) -> Array | None:
     """Return psi2 in space by the same law in many steps; None if it cannot be marched so.
 
     Springs are then within 0.001 of psi1 of twice as many steps.
@@ -141,8 +142,9 @@ def tries_bodies(method: Method) -> bool:
     )
 
 
-def distance(one: ImpactResult, other: ImpactResult) -> Any:
+def distance(one: ImpactResult, other: ImpactResult) -> Real:
     """Return the distance of rates and slip velocities after two impacts, over v1."""
     rate = np.subtract(one.normal_restitution, other.normal_restitution)
     slip = np.subtract(one.rebound_slip_velocity, other.rebound_slip_velocity)
-    return np.hypot(rate, slip / one.scene.normal_speed)
+    off: Real = np.hypot(rate, slip / one.scene.normal_speed)
+    return off

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from typing import Any
 
 import attrs
 import numpy as np
@@ -147,7 +146,7 @@ def judge_run(
     before = time.perf_counter()
     try:
         with np.errstate(all="ignore"):
-            result: Any = simulation.run(scene) if case.planned else march_impact(simulation, scene)
+            result = simulation.run(scene) if case.planned else march_impact(simulation, scene)
     except Exception as error:
         # Any exception is an outcome, and the report goes on. A planned run turns an exception of
         # the integrator into a status; a march does not.

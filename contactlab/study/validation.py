@@ -17,6 +17,7 @@ from contactlab.impact.hertz import hertz_scales, rigid_body_rebound
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
 from contactlab.numeric.progress import Count
+from contactlab.numeric.types import Array
 from contactlab.registration.bring import sound
 from contactlab.registration.hooks import PluginError, guard, hookimpl, shorten
 from contactlab.registration.manager import Told
@@ -204,13 +205,13 @@ def _exact_laws() -> Simulation:
 def _no_friction() -> Finding:
     scene = Scene.stack([rod(angle, 0.0, 0.5, kappa=0.8) for angle in (-50, 15, 30, 75)])
     result = _exact_laws().run(scene).check()
-    W: Any = scene.inverse_mass
+    W = np.asarray(scene.inverse_mass)
     slip = scene.slip_velocity - 2.0 * W[:, 0, 1] / W[:, 0, 0]
     off = np.hypot(result.normal_restitution - 1.0, result.rebound_slip_velocity - slip)
     return finding("fronts, two bodies: no friction", "V2 = -1, psi2 = psi1 - 2 eta", off, 1e-12)
 
 
-def _sliding() -> tuple[Scene, Any, Any]:
+def _sliding() -> tuple[Scene, Array, Array]:
     """Return scenes that slip in gross slip at first, s psi1 and k of theory §14."""
     chi, lam, eta = (np.array(each) for each in zip(*SLIDING, strict=True))
     k = (2.0 * chi + eta) / (1.0 + lam)
@@ -246,7 +247,7 @@ def _stiff() -> Finding:
     for angle, friction, slip in STIFF_RODS:
         scene = rod(angle, friction, slip, kappa=STIFF)
         rigid = Simulation(tangential="coulomb").run(scene).check()
-        off.append(distance(_exact_laws().run(scene).check(), rigid))
+        off.append(float(distance(_exact_laws().run(scene).check(), rigid)))
     bound = RIGID_DISTANCE * STIFF**-0.5
     return finding("fronts, two bodies: rods, kappa = 1e4", "Routh's construction", off, bound)
 

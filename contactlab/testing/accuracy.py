@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import attrs
 import numpy as np
 
 from contactlab.contracts import ClosedFormNormalLaw, Integrator, accuracy_of, resolution_of
+from contactlab.numeric.types import Real
 from contactlab.runs.simulation import Simulation
 from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing.check import apply_if, check, hold, within
@@ -71,7 +70,7 @@ def finer_is_better(integrator: Integrator) -> None:
         within(error, 0.05, f"psi2 is {error:.1e} off the exact solution.")
         if integrator.resolution is None or accuracy_of(integrator) is not None:
             continue
-        value: Any = resolution_of(integrator)
+        value = resolution_of(integrator)
         better = 4 * value if isinstance(value, int) else value / 16.0
         finer = at_resolution(integrator, better)
         change = march_impact(attrs.evolve(simulation, integrator=finer), 7.0).slip_velocity_change
@@ -141,16 +140,16 @@ def books_by(integrator: Integrator) -> None:
 
 def _imbalance(simulation: Simulation, psi1: float) -> float:
     """Return the imbalance of the energy books, over the energy of psi1 or of psi = 1."""
-    impact: Any = scene(psi1, CHI)
+    impact = scene(psi1, CHI)
     motion = march_alone(simulation, impact)
     change, unit = impact.psi(motion.slip_velocity_change), impact.pair.tangential_mass
     work = motion.friction_work * impact.psi_scale**2 / unit
     return float(abs(change * (psi1 + 0.5 * change) + work) / (0.5 * max(psi1, 1.0) ** 2))
 
 
-def _exact(simulation: Simulation, psi1: float) -> Any:
+def _exact(simulation: Simulation, psi1: float) -> Real:
     """Return the exact change of slip velocity, in m/s."""
-    impact: Any = scene(psi1, CHI)
+    impact = scene(psi1, CHI)
     if not isinstance(simulation.tangential, PressedSpring):
         return -4.0 * CHI / impact.psi_scale  # eq. (45)
     assert isinstance(simulation.normal, ClosedFormNormalLaw)

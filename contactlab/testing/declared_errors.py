@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import attrs
 import numpy as np
@@ -103,7 +103,7 @@ def _finer(law: SameLaw) -> SameLaw:
     """Return a law or integrator of finer resolution; the same if it has none."""
     if law.resolution is None:
         return law
-    value: Any = resolution_of(law)
+    value = resolution_of(law)
     for factor in (FINER, 2):
         finer = factor * value if isinstance(value, int) else value / TIGHTER
         try:
@@ -120,7 +120,7 @@ def motion_accuracy(law: ClosedFormNormalLaw) -> None:
     NaN declares nothing. The impulse is compared with the integral of the friction load over the
     phase, of which every quantity is an analytic function.
     """
-    impact: Any = scene(0.0, 1.0)
+    impact = scene(0.0, 1.0)
     motion = law.motion(impact)
     apply_if(not math.isnan(motion.accuracy), "Its motion declares no accuracy.")
     points, weights = np.polynomial.legendre.leggauss(NODES)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import attrs
 import numpy as np
@@ -25,7 +25,7 @@ from contactlab.contracts import (
     TangentialResponse,
 )
 from contactlab.impact.scene import Scene
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Array, Index, Real
 from contactlab.registry.registry import REGISTRY
 
 #: Calls of a law after which it raises ``TooManyCallsError``.
@@ -144,7 +144,7 @@ class SpoiledMotion(ClosedFormMotion):
 
     def at(self, phase: Real) -> NormalSample:
         """Return the sample of the motion, or NaN."""
-        factor: Any = np.where(np.asarray(phase) < SPOILED_FROM, 1.0, math.nan)
+        factor = np.where(np.asarray(phase) < SPOILED_FROM, 1.0, math.nan)
         time, approach, rate, contact, impulse = self.motion.at(phase)
         contact = NormalContact(*(factor * entry for entry in contact))
         return NormalSample(time, factor * approach, factor * rate, contact, factor * impulse)
@@ -153,7 +153,7 @@ class SpoiledMotion(ClosedFormMotion):
         """Return the phase of the sound motion."""
         return self.motion.phase(fraction)
 
-    def take(self, part: Any) -> NormalMotion:
+    def take(self, part: Index) -> NormalMotion:
         """Return the spoiled motion of a part of the impacts."""
         taken = self.motion.take(part)
         assert isinstance(taken, ClosedFormMotion)
@@ -194,11 +194,11 @@ class SpoiledHertz(ClosedFormNormalLaw):
         factory=lambda: REGISTRY.create("normal.hertz")
     )
 
-    def start(self, scene: Scene) -> Any:
+    def start(self, scene: Scene) -> object:
         """Return the state of Hertz's law."""
         return self.law.start(scene)
 
-    def respond(self, state: object, approach: Real, rate: Real) -> tuple[NormalContact, Any]:
+    def respond(self, state: object, approach: Real, rate: Real) -> tuple[NormalContact, object]:
         """Return the contact of Hertz's law."""
         contact, new = self.law.respond(state, approach, rate)
         return contact, new

@@ -202,7 +202,7 @@ def last_step(law: SteppedTangentialLaw) -> None:
             increment = bench.increment(moved, after, bench.time / 64.0)
             increment = increment._replace(friction_load=0.4 * before.friction_load)
             response, _ = law.advance(state, increment, before, after)
-            force = abs(float(response.force)) / bench.friction_force
+            force = abs(float(response.force)) / float(bench.friction_force)
             work = float(response.friction_work) / (bench.friction_force * bench.slip)
             largest = (1.0 + slack(law)) * level**1.5
             within(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 import itertools
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
@@ -48,7 +47,7 @@ REFERENCE = {
 
 def iterate_impacts(
     law: TangentialLaw | Integrator,
-) -> Iterator[tuple[Way, float, float, Any, Any]]:
+) -> Iterator[tuple[Way, float, float, float, float]]:
     """Iterate over ways, psi1 and chi, with change of psi and friction work of each impact."""
     for way in ways_of_bodies(law):
         for chi, psi1 in itertools.product(CHI, PSI1):
@@ -190,7 +189,12 @@ def impact_batch(law: TangentialLaw | Integrator) -> None:
             )
         for place in np.ndindex(psi1.shape):
             alone, _, alone_work = way.run(impacts.take(place))
-            gap = max(abs(float(change[place]) - alone), abs(float(work[place]) - alone_work))
+            changed, worked = (float(np.asarray(each)[place]) for each in (change, work))
+            off, work_off = (
+                changed - float(np.asarray(alone)),
+                worked - float(np.asarray(alone_work)),
+            )
+            gap = max(abs(off), abs(work_off))
             gap /= max(1.0, abs(float(psi1[place])))
             within(gap, room, f"Impact {place} of a batch is off by {gap:.1e} in psi ({way}).")
 

@@ -23,7 +23,7 @@ from contactlab.contracts import (
 )
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import spread
+from contactlab.numeric.arrays import chosen, greater, spread
 from contactlab.numeric.types import Array, Real
 
 
@@ -217,7 +217,7 @@ class DampedHertz(NormalLaw):
 
     def respond(self, state: Scene, approach: Real, rate: Real) -> tuple[NormalContact, Scene]:
         """Return the contact; the force is negative for rates below -v1/damping only."""
-        inside: Any = approach * (approach > 0.0)
+        inside = greater(approach, 0.0)
         radius = (state.pair.radius * inside) ** 0.5
         hertz = (4.0 / 3.0) * state.pair.effective_modulus * radius * inside
         force = hertz * (1.0 + self.damping * rate / state.normal_speed)
@@ -264,7 +264,7 @@ class PullingHertz(NormalLaw):
     ) -> tuple[NormalContact, Any]:
         """Return the contact."""
         stiffness, radius, pull = state
-        touching: Any = approach > 0.0
+        touching = chosen(approach > 0.0, 1.0, 0.0)
         inside = approach * touching
         load = stiffness * inside**1.5
         return NormalContact(

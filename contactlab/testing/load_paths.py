@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
-from typing import Any, NamedTuple
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import attrs
 import numpy as np
@@ -24,7 +24,7 @@ from contactlab.contracts import (
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.bodies import Pair
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import lock_arrays
+from contactlab.numeric.arrays import greater, lock_arrays
 from contactlab.numeric.types import Array, Real
 from contactlab.paths.path_steps import advance_steps
 from contactlab.registry.registry import REGISTRY
@@ -116,11 +116,11 @@ class Bench:
 
     scene: Scene
     normal: NormalMotion
-    force: Any
-    radius: Any
-    approach: Any
-    slip: Any
-    time: Any
+    force: Real
+    radius: Real
+    approach: Real
+    slip: Real
+    time: Real
 
     @classmethod
     def of(cls, shape: tuple[int, ...] = (), units: Units | None = None) -> Bench:
@@ -146,13 +146,13 @@ class Bench:
         """Return the bench of one contact of a batch."""
         return Bench.along(self.normal.take(place))
 
-    def start(self, law: SteppedTangentialLaw) -> Any:
+    def start(self, law: SteppedTangentialLaw) -> object:
         """Return the state of ``law`` at first touch."""
         return law.start(self.scene, self.normal)
 
     def contact(self, level: Real) -> NormalContact:
         """Return the Hertz contact at zeta = ``level``; negative levels are out of contact."""
-        inside = level * (level > 0.0)
+        inside = greater(level, 0.0)
         force = lock_arrays(self.force * inside**1.5)
         radius, overlap = lock_arrays(self.radius * inside**0.5), lock_arrays(self.approach * level)
         return NormalContact(force, radius, overlap, force)
@@ -169,7 +169,7 @@ class Bench:
         )
 
     @property
-    def friction_force(self) -> Any:
+    def friction_force(self) -> Real:
         """Unit of tangential force, mu P_max, in N."""
         return self.scene.friction_coefficient * self.force
 
@@ -228,7 +228,7 @@ def continue_from(
     return Answers(np.array(forces), np.array(works), states[-1] if states else state)
 
 
-def _rows(column: Array) -> Any:
+def _rows(column: Array) -> Sequence[Real] | Array:
     """Return the rows of a column: floats for one contact, arrays for a batch."""
     return column.tolist() if column.ndim == 1 else column
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -20,7 +19,7 @@ PHASES = 2001
 @check(ClosedFormNormalLaw)
 def motion_agrees(law: ClosedFormNormalLaw) -> None:
     """The motion in closed form has the contacts of ``respond``, and starts at touch with v1."""
-    impact: Any = scene(0.0, 1.0)
+    impact = scene(0.0, 1.0)
     speed, motion = impact.normal_speed, law.motion(impact)
     phases = np.linspace(0.0, math.pi, STEPS)
     _, approach, rate, contact, _ = motion.at(phases)
@@ -48,7 +47,7 @@ def motion_agrees(law: ClosedFormNormalLaw) -> None:
 @check(ClosedFormNormalLaw)
 def motion_obeys_newton(law: ClosedFormNormalLaw) -> None:
     """Mass times change of rate is the force, and approach the integral of rate."""
-    impact: Any = scene(0.0, 1.0)
+    impact = scene(0.0, 1.0)
     motion = law.motion(impact)
     phases = np.linspace(0.0, math.pi, PHASES)
     time, approach, rate, contact, impulse = motion.at(phases)
@@ -81,14 +80,14 @@ def motion_obeys_newton(law: ClosedFormNormalLaw) -> None:
             abs(float(last) / float(total) - 1.0), 1e-9, f"The motion does not end at its {name}."
         )
     mass = motion.maximum_force * per_time / (impact.pair.normal_mass * impact.normal_speed)
-    gap = abs(motion.scaled_mass * mass - 1.0)
+    gap = abs(motion.scaled_mass * float(mass) - 1.0)
     within(gap, 1e-9, f"The scaled mass is {gap:.1e} off that of Newton's law.")
 
 
 @check(ClosedFormNormalLaw)
 def motion_scaled(law: ClosedFormNormalLaw) -> None:
     """``scaled``, ``scaled_at``, ``phase`` and ``phase_at_rate`` agree with ``at``."""
-    impact: Any = scene(0.0, 1.0)
+    impact = scene(0.0, 1.0)
     motion = law.motion(impact)
     phases = np.linspace(0.05, math.pi - 0.05, 41)
     sample = motion.at(phases)

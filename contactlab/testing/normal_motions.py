@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
@@ -44,10 +43,10 @@ class _Stepwise(NormalLaw):
     def __init__(self, law: NormalLaw) -> None:
         self.law = law
 
-    def start(self, scene: Scene) -> Any:
+    def start(self, scene: Scene) -> object:
         return self.law.start(scene)
 
-    def respond(self, state: object, approach: Real, rate: Real) -> tuple[NormalContact, Any]:
+    def respond(self, state: object, approach: Real, rate: Real) -> tuple[NormalContact, object]:
         return self.law.respond(state, approach, rate)
 
 
@@ -123,17 +122,17 @@ def rebounds(law: NormalLaw) -> None:
     from scipy.integrate import trapezoid  # help and lists import this file and need no scipy
 
     for motion in impacts(law):
-        impact: Any = motion.scene
+        impact = motion.scene
         rebound = -float(motion.final_rate) / float(impact.normal_speed)
         hold(0.0 <= rebound <= 1.0 + SOLVED, f"The bodies part {rebound:.6g} times as fast.")
         momentum = impact.pair.normal_mass * (impact.normal_speed - float(motion.final_rate))
         sample = motion.at(np.linspace(0.0, np.pi, 2001))
         load = np.asarray(sample.contact.friction_load)
         impulse = trapezoid(np.asarray(sample.contact.force), np.asarray(sample.time))
-        gap = abs(float(impulse) / momentum - 1.0)
+        gap = abs(float(impulse) / float(momentum) - 1.0)
         within(gap, QUADRATURE, f"The force adds up to an impulse that is {gap:.2g} off.")
         gathered = float(trapezoid(load, np.asarray(sample.time)))
-        gap = abs(gathered - float(motion.total_load_impulse)) / max(gathered, momentum)
+        gap = abs(gathered - float(motion.total_load_impulse)) / max(gathered, float(momentum))
         within(gap, QUADRATURE, f"The friction load's impulse is {gap:.2g} off its integral.")
 
 

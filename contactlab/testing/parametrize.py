@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 from contactlab.contracts import Law
 from contactlab.testing.outcomes import applies, checks_for, expects_to_fail, make_law
 
+if TYPE_CHECKING:
+    import pytest
 
-def parametrize_with_checks(laws: Sequence[Law | str]) -> Any:
+
+def parametrize_with_checks(laws: Sequence[Law | str]) -> pytest.MarkDecorator:
     """Return a decorator that runs a test once for every check of every law.
 
     Expected failures are marked as strict ``xfail``: an unexpected pass fails the test.

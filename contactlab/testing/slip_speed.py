@@ -36,7 +36,7 @@ def gross_force(
     for moved in (0.0, *[MOVED] * STEPS):
         increment = bench.increment(moved, contact, duration)
         response, state = law.advance(state, increment, before, contact)
-        before, force = contact, float(response.force) / bench.friction_force
+        before, force = contact, float(response.force) / float(bench.friction_force)
     return force
 
 

@@ -89,7 +89,7 @@ def tension(law: SteppedTangentialLaw) -> None:
         load = share * pulled.force
         pulled = pulled._replace(force=-0.3 * pulled.force, friction_load=load)
         forward, reversed_force = (_pull(law, bench, pulled, sense) for sense in (1.0, -1.0))
-        limit = load / bench.force
+        limit = float(load / bench.force)
         over = worst(forward) - limit
         within(
             over,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -53,9 +53,17 @@ COUPLING = 1e-10
 class Solved(NamedTuple):
     """Change of psi, motion, and friction work over the unit of energy, of one way."""
 
-    change: Any
+    change: Real
     motion: TangentialMotion
-    work: Any
+    work: Real
+
+
+class Met(NamedTuple):
+    """Change of psi, motion, and friction work over the unit of energy, of one impact."""
+
+    change: float
+    motion: TangentialMotion
+    work: float
 
 
 class Way(NamedTuple):
@@ -240,20 +248,26 @@ def _marches(way: Way) -> bool:
 
 
 def meet(
-    way: Way, psi1: Real, chi: Real, *, units: Units | None = None, recorder: Observer | None = None
-) -> Solved:
+    way: Way,
+    psi1: float,
+    chi: float,
+    *,
+    units: Units | None = None,
+    recorder: Observer | None = None,
+) -> Met:
     """Return the answer of one way for an impact, by psi1 and chi.
 
     Parameters
     ----------
     way : Way
-    psi1, chi : float or array
+    psi1, chi : float
     units : Units, optional
         System of units of scene and law; SI by default.
     recorder : callable, optional
         Observer of the run.
     """
-    return way.run(scene(psi1, chi, units=units), recorder)
+    change, motion, work = way.run(scene(psi1, chi, units=units), recorder)
+    return Met(float(np.asarray(change)), motion, float(np.asarray(work)))
 
 
 def course(way: Way, psi1: float, chi: float) -> tuple[History, TangentialMotion]:

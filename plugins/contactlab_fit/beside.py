@@ -39,7 +39,7 @@ SPIN_BEFORE = "spin"
 DEFAULTS = {"friction_coefficient": 0.1}
 
 
-def as_target_sees(table: Measurements, scene: object) -> Measurements:
+def as_target_sees(table: Measurements, scene: Scene | SceneFile | str | Path) -> Measurements:
     """Return measurements relative to the surface of the struck body of a scene.
 
     Its spin moves the surface at the contact, and a file may have what the table does not say of
@@ -88,14 +88,23 @@ def as_target_sees(table: Measurements, scene: object) -> Measurements:
     )
 
 
-def _with_spins(table: Measurements, scene: object) -> Measurements:
+def _with_spins(table: Measurements, scene: Scene | SceneFile | str | Path) -> Measurements:
     """Return the impacts of a film without an angle with their spins before."""
     if isinstance(scene, Scene):
         return with_spins(table, scene, np.asarray(scene.spin) if np.any(scene.spin) else None)
-    path: Any = scene.path if isinstance(scene, SceneFile) else scene
+    path = scene.path if isinstance(scene, SceneFile) else scene
     file = read_scene(path, entries=table.given, defaults=DEFAULTS)
-    impact: Any = file.tables.get("impact", {})
-    return with_spins(table, file.scene, impact.get(SPIN_BEFORE))
+    impact = _impact(file)
+    spin = impact.get(SPIN_BEFORE)
+    assert spin is None or isinstance(spin, float | int | np.ndarray)
+    return with_spins(table, file.scene, spin)
+
+
+def _impact(file: SceneFile) -> Mapping[str, object]:
+    """Return the table ``[impact]`` of a file, empty if it has none."""
+    impact = file.tables.get("impact", {})
+    assert isinstance(impact, Mapping)
+    return impact
 
 
 def _of_file(
@@ -107,8 +116,10 @@ def _of_file(
     if table.struck:
         entries |= dict.fromkeys(VELOCITY, np.zeros(len(table)))
     file = read_scene(path, entries=entries, defaults=DEFAULTS)
-    impact: Any = file.tables.get("impact", {})
-    own = {name: impact[name] for name in STRUCK_KEYS if isinstance(impact.get(name), float | int)}
+    impact = _impact(file)
+    own = {
+        name: value for name in STRUCK_KEYS if isinstance(value := impact.get(name), float | int)
+    }
     if file.encounter is not None and file.scene.along is not None:
         n = components(file.encounter.normal)
         struck = (side.arm for side in sides(file.encounter, n) if side.name)
@@ -140,7 +151,7 @@ def with_measurements(file: SceneFile, table: Measurements) -> SceneFile:
         If the table has no column before the impact; or, beside a sweep, if several columns vary,
         or the speeds differ.
     """
-    impact: Any = file.tables.get("impact", {})
+    impact = _impact(file)
     own = [name for name in STRUCK_KEYS if name in impact]
     if own and file.varied:
         raise ValueError(

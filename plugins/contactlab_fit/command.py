@@ -117,7 +117,7 @@ def execute(arguments: argparse.Namespace) -> int:
             raise _tell_film(error, data, arguments) from None
     else:
         names = arguments.columns or dict(arguments.column)
-        read = partial(read_flight, data, frame_rate=arguments.fps)
+        read = partial(read_flight, arguments.flight, frame_rate=arguments.fps)
         impacts = read_named(read, names, arguments, first_fit)
     impacts = as_target_sees(impacts, path)
     samples = _samples(arguments.bootstrap, len(impacts))
@@ -170,7 +170,9 @@ def _pose(
     return file, simulations, parameters_of(impacts, path, simulations, arguments.fit)
 
 
-def _tell_film(error: ValueError, data: Any, arguments: argparse.Namespace) -> ValueError:
+def _tell_film(
+    error: ValueError, data: Path | SceneFile, arguments: argparse.Namespace
+) -> ValueError:
     """Return an error of a table; of one with the headings of a film, that it may be one."""
     try:
         first = read_text(data).splitlines()[0] if isinstance(data, Path) else ""
@@ -232,7 +234,7 @@ def _failures(ranked: list[Ranked]) -> int:
     return shared.FAILED if failed else shared.OK
 
 
-def _files(names: list[str], film: Path | None) -> tuple[Any, Path]:
+def _files(names: list[str], film: Path | None) -> tuple[Path | SceneFile, Path]:
     """Return the measured impacts, and the path of the scene file with the bodies."""
     scenes = [name for name in names if name.lower().endswith(".toml")]
     tables = [name for name in names if name not in scenes]

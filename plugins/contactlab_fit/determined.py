@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import attrs
 import numpy as np
 
 from contactlab.impact.body_contact import resolve_velocity
 from contactlab.impact.scene import Scene
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab.outcome.columns import foreign
 from contactlab_fit.intervals import Spread, spread
 from contactlab_fit.model import Model
@@ -240,7 +239,7 @@ def _candidates(scene: Scene) -> tuple[Scene, Array, str]:
     if scene.sphere is None:
         chi = float(np.median(scene.chi))
         return Scene.nondimensional(psi1=INCIDENCES, chi=chi), INCIDENCES, "psi1"
-    speed: Any = np.hypot(scene.normal_speed, scene.tangential_velocity)
+    speed: Real = np.hypot(scene.normal_speed, scene.tangential_velocity)
     angle = np.radians(ANGLES_DEG)
     first = scene.take(0)
     impacts = attrs.evolve(

@@ -296,7 +296,10 @@ def _solve_again(
 
 
 def _problem(
-    table: Measurements, scene: object, parameters: Sequence[str], simulation: Simulation | None
+    table: Measurements,
+    scene: Scene | SceneFile | str | Path,
+    parameters: Sequence[str],
+    simulation: Simulation | None,
 ) -> Problem:
     """Return the measured numbers with the model of the impacts and the named parameters."""
     if isinstance(parameters, str) or not parameters:
@@ -389,7 +392,7 @@ class Ranked:
 
 def rank(
     measurements: str | Path | Mapping[str, object] | SceneFile | Measurements,
-    scene: Scene | SceneFile | str | Path | None,
+    scene: Scene | SceneFile | str | Path,
     simulations: Mapping[str, Simulation | None],
     *,
     progress: bool | Count | None = None,
@@ -441,7 +444,7 @@ def rank(
 
 def parameters_of(
     measurements: Measurements,
-    scene: object,
+    scene: Scene | SceneFile | str | Path,
     simulations: Mapping[str, Simulation | None],
     parameters: Sequence[str],
 ) -> dict[str, list[str]]:

@@ -12,7 +12,7 @@ import numpy as np
 from contactlab.impact.scene import entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import tell_attributes
-from contactlab.numeric.types import Array, Numbers
+from contactlab.numeric.types import Array, Json, Numbers
 from contactlab.outcome.columns import QUANTITIES, json_value
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.sheet import Sheet, batch_axes
@@ -185,7 +185,7 @@ class Fit(Tabled):
         with on_axes(axes, width) as drawn:
             return draw_measurements(drawn, {"law": self}, quantity)
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Json]:
         """Return everything as plain numbers, lists and text."""
         content = self.measurements
         return {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import attrs
@@ -107,7 +108,7 @@ class Model:
             self.setup._replace(scene=self._times(many)),
             self._common_restitution(quantities),
         )
-        restitution: Any = None
+        restitution = None
         for parameter, column in zip(self.parameters, points.T, strict=True):
             each = many > 1 and (parameter.batched or parameter is restituted)
             value = np.repeat(column, count) if each else float(column[0])
@@ -184,16 +185,19 @@ def _read(column: Column, result: ImpactResult, simulation: Simulation | None) -
     return np.array([float(column.of(laws.run(one, history=True).check())) for one in impacts])
 
 
-def open_scene(scene: object, given: Mapping[str, Array]) -> Scene | SceneFile:
+def open_scene(scene: Scene | SceneFile | str | Path, given: Mapping[str, Array]) -> Scene | SceneFile:
     """Return a scene, or a scene file with the measured entries."""
     if isinstance(scene, Scene):
         return scene
-    path: Any = scene.path if isinstance(scene, SceneFile) else scene
+    path = scene.path if isinstance(scene, SceneFile) else scene
     return read_scene(path, entries=given, defaults=DEFAULTS)
 
 
 def setup_of(
-    scene: object, given: Mapping[str, Array], count: int, simulation: Simulation | None
+    scene: Scene | SceneFile | str | Path,
+    given: Mapping[str, Array],
+    count: int,
+    simulation: Simulation | None,
 ) -> Setup:
     """Return the batch of the measured impacts, and the laws with the options of each impact."""
     for name in filter(is_option, given):
@@ -215,7 +219,9 @@ def setup_of(
     return Setup(batch, Simulation.of(laws_bound) if changed else simulation)
 
 
-def scene_of(scene: object, given: Mapping[str, Array], count: int) -> Scene:
+def scene_of(
+    scene: Scene | SceneFile | str | Path, given: Mapping[str, Array], count: int
+) -> Scene:
     """Return the batch of the measured impacts."""
     file = open_scene(scene, given)
     if isinstance(file, SceneFile):

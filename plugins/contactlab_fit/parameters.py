@@ -7,7 +7,7 @@ import inspect
 import math
 from collections.abc import Callable, Collection, Sequence
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import attrs
 import numpy as np
@@ -32,7 +32,7 @@ TRIED = np.concatenate([-np.geomspace(1e12, 1e-6, 37), [0.0], np.geomspace(1e-6,
 #: Starts of a parameter with a finite range; few starts may all lie where it has no effect.
 STARTS = 15
 #: Options of the loss: of viscous normal laws, and of tangential laws that share it.
-RESTITUTION, SHEAR_LOSS = "restitution", "shear_loss"
+RESTITUTION, SHEAR_LOSS = tabulated.RESTITUTION, "shear_loss"
 
 
 class Setup(NamedTuple):
@@ -176,7 +176,7 @@ def defaults_of(setup: Setup, fitted: Collection[str]) -> dict[str, tuple[float,
         kind, _, option = name.partition(".")
         if not option or name in fitted:
             continue
-        law: Any = getattr(setup.simulation, kind)
+        law = getattr(setup.simulation, kind)
         try:
             default = getattr(type(law)(), option)
         except TypeError:  # a law whose author wants it to be given
@@ -243,8 +243,10 @@ def _choices(setup: Setup) -> dict[str, Callable[[], Parameter]]:
             most=STIFFNESS[1],
             starts=_evenly(*STIFFNESS),
         )
-    simulation: Any = setup.simulation
-    for kind in KINDS if simulation is not None else ():
+    simulation = setup.simulation
+    if simulation is None:
+        return choices
+    for kind in KINDS:
         law = getattr(simulation, kind)
         for field in attrs.fields(type(law)) if attrs.has(type(law)) else ():
             value = getattr(law, field.name)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -47,7 +46,7 @@ def unlikely_numbers(problem: Problem, table: Measurements) -> list[str]:
     """Return a sentence for each column of implausible numbers."""
     scene, sentences = problem.model.setup.scene, []
     for name, (least, most) in SET.items():
-        size: Any = np.abs(table.given.get(name, np.zeros(0)))
+        size = np.abs(table.given.get(name, np.zeros(0)))
         moving = size > 0.0
         off = np.flatnonzero(moving & ((size < least) | (size > most)))
         if not off.size:
@@ -98,7 +97,8 @@ def restitutions(problem: Problem, table: Measurements) -> list[str]:
     name = "normal_restitution"
     if e is None and (out := table.measured.get("rebound_normal_velocity")) is not None:
         name, error = "rebound_normal_velocity", table.errors.get("rebound_normal_velocity")
-        first: Any = scene.sphere if scene.encounter is None else scene.encounter.body
+        first = scene.sphere if scene.encounter is None else scene.encounter.body
+        assert first is not None  # what is measured has bodies
         speed = np.asarray(scene.normal_speed)
         change = speed * (scene.pair.normal_mass / first.mass)  # of a body that moves off, less
         e, error = (speed - out) / change - 1.0, None if error is None else error / change
@@ -133,7 +133,7 @@ def trend_of_restitution(problem: Problem, values: Array) -> list[str]:
         return []
     (name, *_), speed = names, np.broadcast_to(scene.normal_speed, scene.shape)
     scale = 1.0 if name == OF_NORMAL[0] else -speed
-    angle: Any = np.degrees(np.arctan2(np.abs(scene.tangential_velocity), speed))
+    angle: Array = np.degrees(np.arctan2(np.abs(scene.tangential_velocity), speed))
     rows = np.isfinite(residuals[name][0])
     off, e = ((part / scale)[rows] for part in (residuals[name][0], problem.measured[name]))
     found: list[tuple[float, str, Array]] = []

@@ -12,7 +12,7 @@ import attrs
 import numpy as np
 
 from contactlab.impact.scene import Scene
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab.outcome.columns import QUANTITIES
 from contactlab_fit.problem import Problem
 
@@ -120,9 +120,9 @@ def _name(name: str, way: str) -> dict[str, str]:
 
 def _impacts(scene: Scene, given: Collection[str]) -> Iterator[Met]:
     """Yield scenes with another angle, speed, spin before, or size of the ball."""
-    normal: Any = np.asarray(scene.normal_speed)
-    along: Any = np.asarray(scene.tangential_velocity)
-    angle: Any = np.degrees(np.arctan2(along, normal))
+    normal = np.asarray(scene.normal_speed)
+    along = np.asarray(scene.tangential_velocity)
+    angle: Real = np.degrees(np.arctan2(along, normal))
     name = "angle_deg" if "angle_deg" in given else "the angle of incidence"
     for way, reread in (("in radians", np.degrees(angle)), (SURFACE, 90.0 - angle)):
         if np.all(np.abs(reread) < 90.0):
@@ -160,10 +160,10 @@ def _impacts(scene: Scene, given: Collection[str]) -> Iterator[Met]:
 
 def turn_scene(scene: Scene, angle: Array, given: Collection[str]) -> Scene:
     """Return impacts at other angles, in rad, with the normal speed or speed of the table."""
-    normal: Any = np.asarray(scene.normal_speed)
+    normal = np.asarray(scene.normal_speed)
     if "normal_speed" in given:
         return attrs.evolve(scene, tangential_velocity=normal * np.tan(angle))
-    speed: Any = np.hypot(normal, scene.tangential_velocity)
+    speed: Real = np.hypot(normal, scene.tangential_velocity)
     along = speed * np.sin(angle)
     return attrs.evolve(scene, normal_speed=speed * np.cos(angle), tangential_velocity=along)
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import shlex
 from collections.abc import Callable, Collection, Iterable, Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import attrs
 import numpy as np
 
+from contactlab.contracts.whole_impact import Tabulated
 from contactlab.impact.hertz import slips_throughout
 from contactlab.numeric.types import Array, Real
 from contactlab.registration.names import short_name
@@ -159,7 +160,7 @@ def _better(problem: Problem, values: Array, candidates: Iterable[Reading]) -> l
 def _slides(problem: Problem, values: Array) -> bool:
     """Return whether all impacts slip throughout."""
     result = problem.model.impacts(values)
-    scene: Any = result.scene
+    scene = result.scene
     return bool(np.all(slips_throughout(scene.psi1, scene.chi, result.normal_restitution)))
 
 
@@ -363,7 +364,8 @@ def _free_restitution(problem: Problem, values: Array) -> Wider:
             f"{own:.3g} ({tabulated.fit_restitution(setup.scene, names)})"
         )
 
-    table: Any = REGISTRY.law_class("normal.viscoelastic")
+    table = REGISTRY.law_class("normal.viscoelastic")
+    assert issubclass(table, Tabulated)
     low, high = table.chi_range
     chi = np.asarray(setup.scene.chi)
     known = np.all((chi >= low) & (chi <= high)) and tabulated.holds(laws)

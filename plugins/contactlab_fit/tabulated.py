@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache
-from typing import Any
 
 import numpy as np
 
 from contactlab.collisions.rebound import rebound
+from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.cautions import unit_slips
 from contactlab.impact.coupling import coupling
@@ -23,6 +23,7 @@ from contactlab.runs.simulation import Simulation
 
 #: The normal law behind ``rebound(restitution=)``.
 LOSSY = composition.RESTITUTION["normal"]
+RESTITUTION = "restitution"
 #: Steepest impacts, by tangential over normal speed, that tell of no friction.
 STEEP = 0.1
 
@@ -46,13 +47,13 @@ def holds(simulation: Simulation | None) -> bool:
     if simulation is None:
         return True
     normal = simulation.normal
-    if type(normal) is not _normal_law() or getattr(normal, "restitution", None) is None:
+    if type(normal) is not _normal_law() or getattr(normal, RESTITUTION, None) is None:
         return False
     return simulation == Simulation(normal=normal)
 
 
 @cache
-def _normal_law() -> Any:
+def _normal_law() -> type[NormalLaw]:
     """Return the class of the normal law behind ``rebound(restitution=)``."""
     return type(composition.law("normal", LOSSY))
 
@@ -64,8 +65,10 @@ def with_loss(restitution: float) -> Simulation:
 
 def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
     """Return the impacts of a batch by the table of psi2; friction work is NaN."""
-    lossy = simulation is not None and "viscous" in simulation.laws.capability.normal_claims
-    laws: Any = simulation if lossy else Simulation()
+    laws = simulation or Simulation()
+    lossy = "viscous" in laws.laws.capability.normal_claims
+    if not lossy:
+        laws = Simulation()
     course = laws.normal_motion(scene)
     ends = {name: getattr(course, source) for name, source in ENDS.items()}
     everywhere = np.ones(scene.shape, dtype=bool)
@@ -77,13 +80,13 @@ def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
             said += laws.tangential.cautions(scene, course)
         return (), (), tuple(Clause(text, everywhere) for text in dict.fromkeys(said))
 
-    restitution = laws.normal.restitution if lossy else 1.0
+    restitution: Real = getattr(laws.normal, RESTITUTION) if lossy else 1.0
     return _result(scene, restitution, ends, clauses)
 
 
 def rebounds(scene: Scene, restitution: Real) -> ImpactResult:
     """Return impacts with a restitution each: velocities; the rest is NaN, and nothing is told."""
-    rate: Any = -restitution * np.asarray(scene.normal_speed)
+    rate: Real = -restitution * np.asarray(scene.normal_speed)
     ends = dict.fromkeys(ENDS, np.nan) | {"normal_velocity": rate}
     return _result(scene, restitution, ends, lambda: ((), (), ()))
 
@@ -97,13 +100,17 @@ def _result(
     """Return the impacts of a batch with psi2 by the table."""
     shape, e = scene.shape, restitution
     each = e if isinstance(e, float) else np.broadcast_to(e, shape)
-    psi2: Any = rebound(scene.psi1, scene.chi, restitution=each)
-    course: Any = {name: np.broadcast_to(number, shape) for name, number in ends.items()}
+    psi2: Real = rebound(scene.psi1, scene.chi, restitution=each)
+    course = {name: np.broadcast_to(ends[name], shape) for name in ENDS}
     motion = Motion(
         slip_velocity_change=(psi2 - scene.psi1) / np.asarray(scene.psi_scale),
         friction_work=np.full(shape, np.nan),
         status=np.full(shape, Status.SUCCESS, dtype=object),
-        **course,
+        duration=course["duration"],
+        normal_velocity=course["normal_velocity"],
+        maximum_radius=course["maximum_radius"],
+        maximum_approach=course["maximum_approach"],
+        maximum_force=course["maximum_force"],
     )
     plan = Plan(PlanColumns.nothing(shape), words)
     return ImpactResult(scene=scene, plan=plan, motion=motion, run_time=0.0, laws={})

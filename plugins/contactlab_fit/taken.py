@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,9 @@ from contactlab_fit.parameters import defaults_of
 STILL = {"tangential_velocity": "m/s", "spin": "rad/s", "normal_spin": "rad/s"}
 
 
-def tell_assumptions(table: Measurements, scene: object, model: Model) -> tuple[str, ...]:
+def tell_assumptions(
+    table: Measurements, scene: Scene | SceneFile | str | Path, model: Model
+) -> tuple[str, ...]:
     """Return a sentence for each number that enters a fit and that nobody gave.
 
     Parameters
@@ -32,7 +35,7 @@ def tell_assumptions(table: Measurements, scene: object, model: Model) -> tuple[
     found = [*table.taken, *_of_laws(model)]
     if model.setup.scene.sphere is not None or model.setup.scene.encounter is not None:
         file = open_scene(scene, table.given)
-        own: Mapping[str, Any] = file.tables if isinstance(file, SceneFile) else {}
+        own: Mapping[str, object] = file.tables if isinstance(file, SceneFile) else {}
         found += [*_of_motion(table, file, own), *_of_bodies(model.setup.scene, own)]
     return tuple(dict.fromkeys(found))
 

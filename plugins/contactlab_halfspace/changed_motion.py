@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -45,7 +44,7 @@ def change_motion(
             column[:, item] = np.concatenate((row[1:], np.full(longest - len(row), row[-1])))
     time, approach, rate, force = columns.reshape(4, longest - 1, *shape)
     edge = np.sqrt(scene.pair.radius * np.maximum(approach, 0.0))
-    contact: Any = NormalContact(force=force, radius=edge, overlap=approach)
+    contact = NormalContact(force=force, radius=edge, overlap=approach)
     motion = SampledMotion(
         normal.law, scene, time=time, approach=approach, rate=rate, contact=contact
     )

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts import NormalMotion
-from contactlab.numeric.types import Array, Mask, Real
+from contactlab.numeric.types import Array, Index, Mask, Real
 from contactlab_halfspace.basis import basis
 from contactlab_halfspace.groups import Options, groups, signs
 from contactlab_halfspace.instants import units
@@ -69,7 +69,7 @@ class Fields:
             pressure = float(1.5 * unit.force[0] / (math.pi * unit.length[0] ** 2))
             slip = float(mu * unit.length[0] ** 2 / (pair.stiffness_ratio * pair.radius))
             scales = np.array([mu * pressure, mu * pressure, slip, slip, pressure])
-            index: Any = (slice(None), *place)
+            index: Index = (slice(None), *place)
             count = len(radius)
             ends, share = _around(impulse, wanted, values)
             between = (1.0 - share) * ends[:, 0] + share * ends[:, 1]

@@ -8,12 +8,12 @@ ring slips along q.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Places
 from contactlab_laws.annulus.tables import factors
 
 Mask = NDArray[np.bool_]
@@ -79,7 +79,7 @@ def settle(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) ->
     # its slip, aim less displacement. ``stuck`` and ``sense`` hold a first guess of the division,
     # and then the division of the answer.
     traction, every = np.empty(aim.shape), np.arange(len(aim))
-    left: Any = slice(None)  # views are cheaper than copies, and most steps need one try
+    left: slice | Places = slice(None)  # views are cheaper than copies, and most steps need one try
     slack = ROUNDING * (float(limit.max()) + float(np.abs(aim).max()))
     largest = limit + slack
     for tried in range(MOST_TRIES):
@@ -96,7 +96,7 @@ def settle(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) ->
         if not wrong.any():
             return traction
         left = every[left][wrong.any(axis=1)]
-    raise RuntimeError(f"{left.size} impacts: no division into stick and slip was found")
+    raise RuntimeError(f"{every[left].size} impacts: no division into stick and slip was found")
 
 
 def _divide(table: Rings, aim: Array, limit: Array, stuck: Mask, sense: Array) -> Array:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from contactlab.contracts import NormalMotion, Status, WholeImpact, sliding
+from contactlab.contracts.status import Statuses
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
-from contactlab.numeric.types import Array, Mask, Real
+from contactlab.numeric.types import Array, Index, Mask, Real
 from contactlab_halfspace.changed_motion import change_motion
 from contactlab_halfspace.fields import Fields
 from contactlab_halfspace.groups import Options, groups
@@ -110,7 +111,7 @@ def _solve(options: Options, normal: NormalMotion) -> list[_Solved]:
         if group.spins:  # by symmetry there is no force without slip
             change = np.where(matter.psi1 == 0.0, 0.0, change)
         columns = change, np.maximum(work, 0.0), error, residual, spin, spin_error
-        numbers: Any = np.stack(columns, axis=1).tolist()
+        numbers: list[list[float]] = np.stack(columns, axis=1).tolist()
         phase = None if fine.departures is None else group.path(rings).phase[:, 0]
         for place, item in enumerate(group.items.tolist()):
             changed = None
@@ -142,13 +143,13 @@ def _whole_impact(options: Options, every: NormalMotion, left: Mask) -> WholeImp
     if changed:
         own, own_impulses = change_motion(every, changed)
     change, work, error, residual, spin, off = np.array([each.numbers for each in solved]).T
-    unit: Any = 1.0 / np.atleast_1d(scene.psi_scale)
-    mass: Any = np.atleast_1d(scene.pair.tangential_mass)
+    unit = 1.0 / np.atleast_1d(scene.psi_scale)
+    mass = np.atleast_1d(scene.pair.tangential_mass)
     # Under huge friction unit² may exceed what a float holds, and the work is as small.
     change, work = unit * change, mass * (unit * (unit * work))
     momentum = scene.pair.normal_mass * scene.normal_speed
-    scales: Any = unit, momentum, scene.friction_coefficient, scene.chi
-    scales = np.broadcast_arrays(*map(np.atleast_1d, scales), change)[:4]
+    each_of = unit, momentum, scene.friction_coefficient, scene.chi
+    scales = np.broadcast_arrays(*map(np.atleast_1d, each_of), change)[:4]
 
     def spread(values: Array) -> Real:
         if not shape:
@@ -166,7 +167,7 @@ def _whole_impact(options: Options, every: NormalMotion, left: Mask) -> WholeImp
             numbers, places, solved, np.transpose(scales).tolist(), strict=True
         ):
             velocity, impulse, friction, chi = scale
-            at: Any = (..., *place)
+            at: Index = (..., *place)
             wanted = passed[at] / impulse
             if number in own_impulses:
                 # The samples carry another impulse than the steps, for force is linear between.
@@ -178,7 +179,7 @@ def _whole_impact(options: Options, every: NormalMotion, left: Mask) -> WholeImp
 
     worst, bad = float(residual.max()), residual > LARGEST_RESIDUAL
     detail = f"A step is solved to a residual of {worst:.2g} only, from HalfSpace."
-    status: Any = Status.UNSETTLED if bad.any() else Status.SUCCESS
+    status: Statuses = Status.UNSETTLED if bad.any() else Status.SUCCESS
     if shape:
         status = np.full(shape, Status.SUCCESS, dtype=object)
         status[left] = [Status.UNSETTLED if each else Status.SUCCESS for each in bad.tolist()]

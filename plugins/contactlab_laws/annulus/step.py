@@ -73,7 +73,7 @@ def advance(
     traction, new_lag = np.full_like(lag, np.nan), np.full_like(lag, np.nan)
     # NaN would pass every test as "not wrong": items with NaN are left out and answer NaN.
     finite = np.isfinite(limit.sum(axis=1) + total[:, 0])
-    left: Any = slice(None) if finite.all() else np.flatnonzero(finite)
+    left = slice(None) if finite.all() else np.flatnonzero(finite)
     every, settled = np.arange(len(lag)), np.ones(len(lag), dtype=bool)
     for _ in range(MOST_PASSES):
         sign, most, before = signs[left], limit[left], lag[left]

@@ -20,7 +20,7 @@ from contactlab.contracts import (
 from contactlab.contracts.status import Status
 from contactlab.impact.hertz import DURATION_CONSTANT, hertz_scales
 from contactlab.numeric.arrays import choose, some, spread_object
-from contactlab.numeric.types import Array, Mask
+from contactlab.numeric.types import Array, Mask, Real
 from contactlab.numeric.vectors import entry, join_components
 from contactlab_laws.fronts import compiled
 from contactlab_laws.fronts.compiled import MEMORY, MOST_STEPS
@@ -113,7 +113,7 @@ def solve_impacts(numbers: Array, tolerance: float) -> tuple[Array, NDArray[np.i
 def _show(scene: Scene, scales: Any, steps: Steps, observer: Observer) -> None:
     """Show four instants of each step to an observer in SI."""
     speed, mu = scene.normal_speed, scene.friction_coefficient
-    unit: Any = mu * speed / scene.pair.stiffness_ratio
+    unit: Real = mu * speed / scene.pair.stiffness_ratio
     u, rate, margin, lack, _, time = steps.at(np.multiply.outer(steps.length, INSTANTS))
     sign = steps.sign[:, None]
     columns = (

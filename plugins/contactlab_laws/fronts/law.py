@@ -181,8 +181,8 @@ def _solve_in_c(scene: Scene, where: Mask) -> tuple[WholeImpact, ...]:
     change, work, known = np.zeros((3, psi1.size))
     change[places], work[places], known[places] = compiled.central(psi1[places], chi[places])
     pair, mu, speed = scene.pair, scene.friction_coefficient, scene.normal_speed
-    unit: Any = mu * speed / pair.stiffness_ratio
-    energy: Any = 1.25 * mu * unit * pair.normal_mass * speed  # 2.5 rho v1²/(2 W_nn), theory §14
+    unit: Real = mu * speed / pair.stiffness_ratio
+    energy: Real = 1.25 * mu * unit * pair.normal_mass * speed  # 2.5 rho v1²/(2 W_nn), theory §14
     error = COMPILED * np.maximum(1.0, np.abs(np.where(known, psi1, 0.0)))
     error = error * np.maximum(1.0, chi / HEAVY)
     shaped = (spread(each.reshape(scene.shape), scene.shape) for each in (change, work, error))

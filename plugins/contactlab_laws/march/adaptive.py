@@ -190,7 +190,7 @@ class Adaptive(CoupledIntegrator):
         if not _succeeds(last):
             return last
         error, allowed = self._error(*before, last), self._allow_change(normal.scene)
-        unresolved: Any = np.asarray(~(error <= allowed))
+        unresolved = np.asarray(~(error <= allowed))
         if not unresolved.any():
             return last
         if 2 * count > MOST_STEPS:

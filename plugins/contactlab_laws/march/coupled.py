@@ -121,7 +121,7 @@ class _March:
         self.W = [[entry(W[..., i, j]) for j in range(size)] for i in range(size)]
         slip = np.asarray(scene.slip_velocity)
         sides = [slip] if scene.planar else [slip[..., 0], slip[..., 1]]
-        speed: Any = scene.normal_speed if self.links is None else self.links.velocity[..., 0]
+        speed: Real = scene.normal_speed if self.links is None else self.links.velocity[..., 0]
         self.before = [entry(each) for each in (speed, *sides)]
         self.change: list[Any] = [0.0 * each for each in self.before]
         zero = self.change[0]

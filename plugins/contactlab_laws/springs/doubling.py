@@ -77,7 +77,7 @@ def start(
     shape, pair = scene.shape, scene.pair
     items = math.prod(shape)
     none, rows = np.zeros(items), np.zeros((springs, items))
-    deflection: Any = rows.astype(complex) if vectors else rows
+    deflection: Array = rows.astype(complex) if vectors else rows
     if spanned is not None:
         none = SPARE * flat(spanned, shape)
     return State(

@@ -82,11 +82,11 @@ def of_spheres(
     ``restitution``. Their oscillations die away: the error was at most 0.5/((1 - e) chi) of that
     without loss, on 1,200 impacts of e 0.3 to 0.98 and chi to 300, wherever the latter is small.
     """
-    chi: Any = scene.chi
+    chi: Real = scene.chi
     count = springs / DOUBLING if doubling else springs
     entering = BY_ENTERING_DOUBLED if doubling else BY_ENTERING
     even = BY_GRADED_STEPS if shared else BY_STEPS
-    slip: Any = abs(scene.psi1)
+    slip: Real = abs(scene.psi1)
     if not scene.shape:  # as plain numbers a run pays nothing for it
         steps = float(steps)
         whole, entered = chi * math.sqrt(chi) / steps**2, min(chi, 1.0) / steps**1.5
@@ -108,12 +108,12 @@ def _leave(error: Real, chi: Real, restitution: Real) -> Real:
 
 def of_bodies(scene: Scene, springs: int, steps: Real, *, shared: bool) -> Errors:
     """Return the errors of impacts whose approach friction changes, or whose slip turns."""
-    chi: Any = kinetics.largest_chi(scene)
+    chi = kinetics.largest_chi(scene)
     lam, eta, psi1 = (
         kinetics.size_of(scene, np.asarray(each)) for each in (scene.lam, scene.eta, scene.psi1)
     )
-    x: Any = chi + eta
-    depth: Any = deepest(scene)
+    x = chi + eta
+    depth: Real = deepest(scene)
     jams = lam > JAMS
     known = (lam <= LARGEST_LAM) & ~(jams & (kinetics.free_share(scene) < LEAST_FREE))
     known &= np.isfinite(x) & np.isfinite(psi1)
@@ -122,7 +122,7 @@ def of_bodies(scene: Scene, springs: int, steps: Real, *, shared: bool) -> Error
     by_springs = BY_SPRINGS * x * 4.0**doublings / springs**2
     even = BY_GRADED_STEPS if shared else BY_STEPS
     by_steps = _by_steps(x, steps, even, BY_ENTERING) * np.where(jams, np.sqrt(depth), 1.0)
-    psi2: Any = (by_springs + by_steps) * np.minimum((psi1 + eta) / LITTLE_SLIP, 1.0)
+    psi2: Real = (by_springs + by_steps) * np.minimum((psi1 + eta) / LITTLE_SLIP, 1.0)
     psi2 = np.where(known, psi2, math.nan)
     if not shared:
         return Errors(psi2)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from contactlab.numeric.types import Array
@@ -70,7 +68,7 @@ def _stick_ends(
     x, after = begin.copy(), begin > 0.0
     x[after], lobe[after] = stop[after], lobe[after] + 1.0
     live = np.flatnonzero(x < WHOLE)
-    columns: Any = [each[live] for each in (x, lobe, begin, turn, swing, lead, most)]
+    columns = [each[live] for each in (x, lobe, begin, turn, swing, lead, most)]
     while live.size:
         x, lobe, begin, turn, swing, lead, most = columns
         sign = 1.0 - 2.0 * (lobe % 2.0)

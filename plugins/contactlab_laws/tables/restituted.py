@@ -140,7 +140,7 @@ def shear_loss(psi1: Array, chi: Array, restitution: Real) -> Array:
     if not who.size:
         return lost
     e = part_of(restitution, who)
-    most: Any = np.clip(e, LEAST, JOINED)
+    most: Real = np.clip(e, LEAST, JOINED)
     most = float(most) if isinstance(e, float) else most
     found = _partial(speed[who], chi[who], most, SHEAR, power=2)
     lost[who] = np.maximum(found, 0.0) * np.minimum((1.0 - e) / (1.0 - JOINED), 1.0)

@@ -19,7 +19,7 @@ from contactlab_laws.viscoelastic.rebound import rebound
 def look_up(scene: Scene, restitution: Real, *, beyond: bool) -> tuple[WholeImpact, ...]:
     """Return the answer for the impacts whose chi is in the table, or for all; or nothing."""
     low, high = (0.0, math.inf) if beyond else RESTITUTED_CHI
-    where: Any = (scene.chi >= low) & (scene.chi <= high) & np.isfinite(scene.psi1)
+    where: Mask = (scene.chi >= low) & (scene.chi <= high) & np.isfinite(scene.psi1)
     if not some(where):
         return ()
     if scene.shape:
@@ -50,7 +50,7 @@ def look_up(scene: Scene, restitution: Real, *, beyond: bool) -> tuple[WholeImpa
 def _look_up_many(scene: Scene, restitution: Real, where: Mask) -> tuple[Any, Any, Any]:
     """Return change of psi, error and loss in shear of the impacts of a batch that are asked."""
     chi, psi1 = np.where(where, scene.chi, 1.0), np.where(where, scene.psi1, 0.0)
-    e: Any = restitution
+    e = restitution
     if not isinstance(e, float):
         e = np.broadcast_to(e, chi.shape).ravel()
     change = rebound(psi1.ravel(), chi.ravel(), e).reshape(chi.shape) - psi1
