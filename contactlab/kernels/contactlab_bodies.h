@@ -170,8 +170,11 @@ static inline int contactlab_bodies_march(const double *W, const double *rates, 
   steps = ceil(4 * duration * sqrt(2 * modulus * c.span * (W[0] + stiffness * (W[4] + W[8]))));
   if (!(steps <= MOST)) return CONTACTLAB_BODIES_RANGE;
   if (steps < LEAST) steps = LEAST;
-  status = contactlab_march_begin(&run, 1, &c, row, column, W, 2, SPRINGS, 1, 1, duration / steps, ceil(0.4 * steps),
-                                  LONGEST * steps, &deepest, &progress, work, &end);
+  {
+    const contactlab_march_scene scene = {1, &c, row, column, W, 2, SPRINGS, 1, 1, duration / steps, ceil(0.4 * steps),
+                                          LONGEST * steps, &deepest, &progress, work, &end};
+    status = contactlab_march_begin(&run, &scene);
+  }
   while (status == CONTACTLAB_MARCH_GOING) status = contactlab_march_on(&run, MOST);
   if (status) return status == CONTACTLAB_MARCH_INPUT ? CONTACTLAB_BODIES_RANGE : CONTACTLAB_BODIES_ENDLESS;
   for (k = 0; k < 3; ++k) impulse[k] = end.impulse[k];
@@ -304,7 +307,7 @@ static inline int contactlab_bodies_side(const contactlab_rigid *bodies, int pla
   return side;
 }
 
-/* Writes W of some contacts as contactlab_march_begin takes it: row (contacts + 1), and of each block of 3 x 3 that is
+/* Writes W of some contacts as a contactlab_march_scene takes it: row (contacts + 1), and of each block of 3 x 3 that is
  * not zero its column and 9 numbers, with room for `most` blocks. Returns how many there are, or -1 if there are more. */
 static inline int contactlab_bodies_blocks(const contactlab_rigid *bodies, int contacts, const contactlab_touch *touches,
                                            int most, int *row, int *column, double *block)

@@ -55,8 +55,11 @@ int main(int count, char **words)
     blocks = contactlab_bodies_blocks(body, contacts, touch, contacts * contacts, row, column, block);
     if (blocks < 0 || contactlab_bodies_blocks(body, contacts, touch, blocks - 1, row, column, block) != -1) return 4;
     contactlab_bodies_blocks(body, contacts, touch, blocks, row, column, block);
-    status = contactlab_march_begin(&run, contacts, c, row, column, block, 2, springs, lossy, 0, step, leading, 1e5, NULL,
-                                    progress, work, end);
+    {
+      const contactlab_march_scene scene = {contacts, c, row, column, block, 2, springs, lossy, 0, step, leading, 1e5, NULL,
+                                            progress, work, end};
+      status = contactlab_march_begin(&run, &scene);
+    }
     while (status == CONTACTLAB_MARCH_GOING) status = contactlab_march_on(&run, 1000);
     for (i = 0; i < contacts; ++i) contactlab_bodies_part(body, touch + i, end[i].impulse, velocity, spin);
     answer = status;

@@ -147,8 +147,11 @@ int main(int argc, char **argv)
     }
     for (i = 0; !wild && i < contacts; ++i) c[i].speed = most;
     step = wild ? odd(duration / 20.0) : fmin(duration / 60.0, 0.5 / fastest(contacts, c, W));
-    status = contactlab_march_begin(&run, contacts, c, row, column, W, axes, springs, lossy, contacts == 1 && chance(0.7), step, 8.0, 1000.0, deepest,
-                                    progress, work, end);
+    {
+      const contactlab_march_scene scene = {contacts, c, row, column, W, axes, springs, lossy, contacts == 1 && chance(0.7), step, 8.0, 1000.0, deepest,
+                                            progress, work, end};
+      status = contactlab_march_begin(&run, &scene);
+    }
     while (status == CONTACTLAB_MARCH_GOING) status = contactlab_march_on(&run, 1 + (long) uniform(0.0, 500.0));
     ++ended[status];
     if (status == CONTACTLAB_MARCH_DONE) {

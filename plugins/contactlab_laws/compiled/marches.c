@@ -36,10 +36,9 @@ long contactlab_march_scenes(long count, int contacts, const contactlab_march_co
   const long each = row[contacts];
   for (; left->place < count; ++left->place) {
     const long i = left->place;
-    if (!left->going)
-      status[i] = contactlab_march_begin(&left->run, contacts, c + i * contacts, row, column, block + 9 * each * i,
-                                         axes, springs, lossy, alone, step[i], leading[i], most[i], deepest + i * contacts,
-                                         progress, work, end + i * contacts);
+    const contactlab_march_scene scene = {contacts, c + i * contacts, row, column, block + 9 * each * i, axes, springs, lossy,
+        alone, step[i], leading[i], most[i], deepest + i * contacts, progress, work, end + i * contacts};
+    if (!left->going) status[i] = contactlab_march_begin(&left->run, &scene);
     left->going = status[i] == CONTACTLAB_MARCH_GOING;
     while (left->going) {
       if (budget <= 0.0) return left->place;
