@@ -59,7 +59,7 @@ class Assembly:
     gathering : Gathering
     count : int
     frames : list of Frame
-        Of each contact, arrays of shape (count,).
+        Of each contact, arrays of shape (count,), or floats of one gathering.
     reaches : list of dict
         Of each body, by the number of the contact: the body as that contact has it.
     """
@@ -67,7 +67,7 @@ class Assembly:
     def __init__(self, gathering: _Given) -> None:
         self.gathering = gathering
         self.count = math.prod(gathering.shape)
-        self._wide = gathering.shape or (1,)
+        self._wide = gathering.shape
         self.met = [self._flat_encounter(k) for k in range(len(gathering.touches))]
         self.frames: list[Frame] = []
         self.reaches: list[dict[int, Side]] = [{} for _ in gathering.bodies]
@@ -84,8 +84,10 @@ class Assembly:
                 self.reaches[at][k] = side
 
     def _flat_encounter(self, contact: int) -> Encounter:
-        """Return the encounter of a contact in each of the gatherings."""
+        """Return the encounter of a contact in each of the gatherings; of one it is plain numbers."""
         alone = self.gathering.alone(contact)
+        if not self.gathering.shape:
+            return alone
         velocity = np.broadcast_to(alone.velocity, (*self._wide, 3))
         spread = change_entries(alone, velocity=velocity, shape=self._wide)
         return spread.take(np.full(self._wide, True)) if len(self._wide) > 1 else spread

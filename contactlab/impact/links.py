@@ -97,11 +97,13 @@ def energy_of(inverse_mass: Inverse, velocity: Array) -> Array:
     """Return ½ qᵀ W⁺ q in J, shape (..., 1), of velocities q of shape (..., C, 3)."""
     flat = velocity.reshape(*velocity.shape[:-2], -1)
     if isinstance(inverse_mass, np.ndarray):
-        held = (np.linalg.pinv(inverse_mass, RANK, hermitian=True) @ flat[..., None])[..., 0]
-    else:
-        from scipy.sparse.linalg import lsqr  # only where W is sparse
+        size, along = np.linalg.eigh(inverse_mass)
+        parts = np.square((flat[..., None, :] @ along)[..., 0, :])
+        moves = size > RANK * size[..., -1:]
+        return 0.5 * np.sum(parts / np.where(moves, size, np.inf), axis=-1, keepdims=True)
+    from scipy.sparse.linalg import lsqr  # only where W is sparse
 
-        sparse: Any = inverse_mass
-        found = lsqr(sparse, flat.reshape(-1), atol=TOLERANCE, btol=TOLERANCE)
-        held = found[0].reshape(flat.shape)
+    sparse: Any = inverse_mass
+    found = lsqr(sparse, flat.reshape(-1), atol=TOLERANCE, btol=TOLERANCE)
+    held = found[0].reshape(flat.shape)
     return np.asarray(0.5 * (flat * held).sum(axis=-1)[..., None])

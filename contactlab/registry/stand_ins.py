@@ -24,22 +24,28 @@ def stand_in(laws: Laws, part: Scene) -> Laws:
     ValueError
         If a law that the user named has no answer; the message names laws that have one.
     """
-    refused = _no_answer(laws, part)
-    if refused is None and not _rigid_in_silence(laws):
+    lacking = _no_answer(laws, part)
+    if lacking is None and not _rigid_in_silence(laws):
         return laws
     for _, other in _fitting(laws, [kind for kind in KINDS if kind not in laws.named]):
         if _no_answer(other, part) is None:
             return other
     remedy = _remedy(laws, part)
-    if refused is None:
+    if lacking is None:
         name = RIGID["tangential"]
         refused = f"{_name(laws.tangential)}: rigid theory must be named"
         remedy += f"; for rigid bodies write tangential={name!r}"
+    else:
+        law, reason = lacking
+        where = "friction affects the approach" if part.planar else "the slip turns"
+        if part.links is not None:
+            where = "several contacts act at once"
+        refused = f"{_name(law)}: has no answer, as {where} and {reason}"
     raise ValueError(f"{refused}; {remedy}")
 
 
-def _no_answer(laws: Laws, part: Scene) -> str | None:
-    """Return why laws have no answer where friction changes the approach; None if they have one."""
+def _no_answer(laws: Laws, part: Scene) -> tuple[Law, str] | None:
+    """Return which law has no answer where friction changes the approach, and why; else None."""
     able, turns = laws.capability, not part.planar
     law: Law = laws.tangential
     reason = None
@@ -53,12 +59,7 @@ def _no_answer(laws: Laws, part: Scene) -> str | None:
         law, reason = laws.integrator, "the integrator needs the normal motion first"
     elif part.links is not None and SEVERAL not in laws.integrator.offers:
         law, reason = laws.integrator, "the integrator marches each contact by itself"
-    if reason is None:
-        return None
-    where = "the slip turns" if turns else "friction affects the approach"
-    if part.links is not None:
-        where = "several contacts act at once"
-    return f"{_name(law)}: has no answer, as {where} and {reason}"
+    return None if reason is None else (law, reason)
 
 
 def _fitting(laws: Laws, kinds: Iterable[str]) -> Iterator[tuple[dict[str, str], Laws]]:
