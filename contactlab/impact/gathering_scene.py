@@ -84,7 +84,7 @@ class Assembly:
                 self.reaches[at][k] = side
 
     def _flat_encounter(self, contact: int) -> Encounter:
-        """Return the encounter of a contact in each of the gatherings; of one it is plain numbers."""
+        """Return the encounter of a contact in each gathering; of one in plain numbers."""
         alone = self.gathering.alone(contact)
         if not self.gathering.shape:
             return alone

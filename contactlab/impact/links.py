@@ -100,7 +100,8 @@ def energy_of(inverse_mass: Inverse, velocity: Array) -> Array:
         size, along = np.linalg.eigh(inverse_mass)
         parts = np.square((flat[..., None, :] @ along)[..., 0, :])
         moves = size > RANK * size[..., -1:]
-        return 0.5 * np.sum(parts / np.where(moves, size, np.inf), axis=-1, keepdims=True)
+        energies = parts / np.where(moves, size, np.inf)
+        return np.asarray(0.5 * energies.sum(axis=-1, keepdims=True))
     from scipy.sparse.linalg import lsqr  # only where W is sparse
 
     sparse: Any = inverse_mass

@@ -75,6 +75,8 @@ class Laws:
     reason: str = ""
     asked: Laws | None = None
     capability: Capability = attrs.field(init=False, eq=False, repr=False)
+    #: What stands in for these laws, by what it was asked for: to compose laws takes longer.
+    stand_ins: dict[Any, Laws] = attrs.field(init=False, eq=False, repr=False, factory=dict)
 
     @capability.default
     def _capability(self) -> Capability:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from contactlab.contracts.law import Law
 from contactlab.impact.scene import Scene
+from contactlab.registration.bring import state
 from contactlab.registration.names import KINDS
 from contactlab.registry.composition import FOR_COUPLED, RIGID, Laws, misfit
 from contactlab.registry.registry import REGISTRY
@@ -24,6 +25,14 @@ def stand_in(laws: Laws, part: Scene) -> Laws:
     ValueError
         If a law that the user named has no answer; the message names laws that have one.
     """
+    key = part.planar, part.links is None, state()
+    if (found := laws.stand_ins.get(key)) is None:
+        found = laws.stand_ins[key] = _find_stand_in(laws, part)
+    return found
+
+
+def _find_stand_in(laws: Laws, part: Scene) -> Laws:
+    """Return what ``stand_in`` returns."""
     lacking = _no_answer(laws, part)
     if lacking is None and not _rigid_in_silence(laws):
         return laws

@@ -104,7 +104,7 @@ class Division(NamedTuple):
     leading : float or array
         So many steps grow evenly at first, where forces depend on rates.
     longest : float or array
-        Approaches without friction after which an impact is given up.
+        Approaches without friction after which an impact of one contact is given up.
     most : float or array
         Steps after which it is.
     """
@@ -117,17 +117,18 @@ class Division(NamedTuple):
 
 def divide(scene: Scene, normal: NormalMotion, count: Real, usual: float) -> Division:
     """Return the steps of impacts, ``count`` and ``usual`` as of ``march_coupled``."""
-    longest = LONGEST / np.sqrt(np.maximum(kinetics.free_share(scene), LEAST_SHARE))
-    # steps raised for a contact that grows without end are no reason to follow it longer
-    lasting = np.where(_come_to_an_end(normal), count, np.minimum(count, usual))
     with np.errstate(invalid="ignore"):
         step = np.where(
             np.isfinite(count), _count_duration(scene, normal) / np.asarray(count), math.nan
         )
-    most = longest * lasting
+    leading = np.ceil(LEADING * np.asarray(count))
     if scene.links is not None:
         most = contacts.most_steps(scene, approach_duration(normal), step)
-    return Division(step, np.ceil(LEADING * np.asarray(count)), longest, most)
+        return Division(step, leading, math.inf, most)
+    longest = LONGEST / np.sqrt(np.maximum(kinetics.free_share(scene), LEAST_SHARE))
+    # steps raised for a contact that grows without end are no reason to follow it longer
+    lasting = np.where(_come_to_an_end(normal), count, np.minimum(count, usual))
+    return Division(step, leading, longest, longest * lasting)
 
 
 def tell_too_long(longest: float, compressions: int) -> str:
