@@ -182,26 +182,19 @@ static inline double contactlab_march_total(int n, const double *x)
 /* Doubles what n springs span until it holds `reach`; returns the energy lost over 2 G*. */
 static inline double contactlab_march_fit(int axes, int n, double *w, double *size, double reach, double cross)
 {
-  const int m = CONTACTLAB_MARCH_ROW(n);
   double lost = 0.0;
-  int i, k;
+  int i, j, k;
   for (k = 0; reach > *size && k < CONTACTLAB_MARCH_DOUBLINGS; ++k) {
-    double sum = 0.0;
-    for (i = 0; i < n / 2; ++i) {
-      const double d = w[2 * i] - w[2 * i + 1];
-      sum += d * d;
-      w[i] = 0.5 * (w[2 * i] + w[2 * i + 1]);
-      if (axes == 2) {
-        const double e = w[m + 2 * i] - w[m + 2 * i + 1];
-        sum += e * e / cross;
-        w[m + i] = 0.5 * (w[m + 2 * i] + w[m + 2 * i + 1]);
+    for (j = 0; j < axes; ++j) {
+      double *row = w + j * CONTACTLAB_MARCH_ROW(n), sum = 0.0;
+      for (i = 0; i < n / 2; ++i) {
+        const double d = row[2 * i] - row[2 * i + 1];
+        sum += d * d;
+        row[i] = 0.5 * (row[2 * i] + row[2 * i + 1]);
       }
+      for (; i < n; ++i) row[i] = 0.0;
+      lost += 0.25 * (*size / n) * sum / (j ? cross : 1.0);
     }
-    for (; i < n; ++i) {
-      w[i] = 0.0;
-      if (axes == 2) w[m + i] = 0.0;
-    }
-    lost += 0.25 * (*size / n) * sum;
     *size *= 2.0;
   }
   return lost;
@@ -532,24 +525,18 @@ static inline void contactlab_march_drag(const contactlab_march_run *run, int i,
   contactlab_march_progress *p = run->scene.progress + i;
   const double a = c->span, slip = c->friction * a * a / (c->shear / (2.0 * c->modulus) * c->radius);
   const double rate = fmax(fabs(at[0]), CONTACTLAB_MARCH_SLOWEST * c->speed);
-  contactlab_march_drive d;
-  double edge, excess, push, time, aside[3];
-  int k;
+  const double scale = c->friction > 0.0 ? 1.0 / slip : 0.0;
+  double edge, excess, push, time, acting, aside[3];
   contactlab_march_press(c, p->approach, rate, aside, aside + 1, aside + 2, &push);
   p->touching = contactlab_march_press(c, p->approach, at[0], p->force, &p->radius, &edge, &excess);
   time = c->share * (push * (a * a) / (c->radius * rate));
-  d.scale = c->friction > 0.0 ? 1.0 / slip : 0.0;
-  d.drift = drift;
-  d.kick = run->width;
-  for (k = 0; k < 2; ++k) {
-    d.move[k] = moved[k] * d.scale;
-    d.slip[k] = at[1 + k];
+  acting = c->friction * p->force[0];
+  {
+    const contactlab_march_drive d = {{moved[0] * scale, moved[1] * scale}, drift, run->width, {at[1], at[2]}, mobility,
+                                      acting, acting, scale, c->cross};
+    contactlab_march_lossy(run->scene.axes, run->scene.springs, &p->now, &p->next, edge * edge, excess, time, &d, 1, room,
+                           p->force + 1, last ? &p->work : NULL, &p->shear);
   }
-  d.mobility = mobility;
-  d.limit = d.acting = c->friction * p->force[0];
-  d.cross = c->cross;
-  contactlab_march_lossy(run->scene.axes, run->scene.springs, &p->now, &p->next, edge * edge, excess, time, &d, 1, room,
-                         p->force + 1, last ? &p->work : NULL, &p->shear);
   if (last && c->friction > 0.0) {
     p->work *= slip;
     p->shear *= slip;
@@ -628,7 +615,6 @@ static inline void contactlab_march_lay(contactlab_march_run *run, int i)
   p->touched = p->touching = 1;
   for (pressed = 0; pressed < 2; ++pressed) {
     const double far = pressed ? reach : 0.0, moved[2] = {far * p->velocity[1], far * p->velocity[2]};
-    p->force[1] = p->force[2] = 0.0;
     if (run->scene.lossy) {
       contactlab_march_drag(run, i, still, moved, 0.0, run->width, 0, contactlab_march_spare(run));
       contactlab_march_swap(&p->now, &p->next);
@@ -695,9 +681,6 @@ static inline void contactlab_march_press_lossy(const contactlab_march_run *run,
 static inline int contactlab_march_kick(contactlab_march_run *run, double *greatest)
 {
   int i, k, going = 0;
-  for (i = 0; i < run->scene.contacts; ++i)
-    if (!run->scene.progress[i].touching)
-      for (k = 0; k < 3; ++k) run->scene.progress[i].force[k] = 0.0;
   contactlab_march_kicked(run);
   for (i = 0; i < run->scene.contacts; ++i) {
     contactlab_march_progress *p = run->scene.progress + i;
@@ -724,15 +707,14 @@ static inline int contactlab_march_kick(contactlab_march_run *run, double *great
       e->last = run->time;
       going = 1;
     } else if (!run->scene.lossy && run->scene.alone) e->duration = run->time - p->approach / drifting;
-    p->touched = p->touching;
-    e->closed = p->touching;
+    e->closed = p->touched = p->touching;
     if (run->pulled) e->pushed += run->width;
     for (k = 0; k <= run->scene.axes; ++k) {
       e->change[k] -= p->kick[k];
       p->velocity[k] = run->scene.c[i].velocity[k] + e->change[k];
+      sum += p->velocity[k];
     }
     if (p->touching && p->velocity[0] > 0.0 && p->velocity[0] + p->kick[0] <= 0.0) e->compressions += 1.0;
-    for (k = 0; k <= run->scene.axes; ++k) sum += p->velocity[k];
     if (!isfinite(sum)) return -1;
     *greatest = fmax(*greatest, e->force);
   }
@@ -875,18 +857,10 @@ static inline void contactlab_march_along_lossy(int n, const contactlab_march_sa
   for (k = 0; k < count; ++k) {
     const contactlab_march_sample *s = steps + k;
     const double drift = s->drift * one->drift, kick = s->kick * one->kick, mobility = 0.5 * kick / one->mass;
-    contactlab_march_drive d;
+    const double rate = one->velocity + path->change;
+    const contactlab_march_drive d = {{rate * (drift * one->scale), 0.0}, drift, kick, {rate - mobility * force[0], 0.0},
+                                      mobility, one->force * s->load, one->force * s->limit, one->scale, 1.0};
     double lost, gained;
-    d.drift = drift;
-    d.scale = one->scale;
-    d.move[0] = (one->velocity + path->change) * (drift * one->scale);
-    d.move[1] = d.slip[1] = 0.0;
-    d.kick = kick;
-    d.mobility = mobility;
-    d.slip[0] = one->velocity + path->change - mobility * force[0];
-    d.limit = one->force * s->limit;
-    d.acting = one->force * s->load;
-    d.cross = 1.0;
     contactlab_march_lossy(1, n, &path->now, &path->next, s->edge, s->excess, s->time * one->time, &d, 0, room, force,
                            &lost, &gained);
     contactlab_march_swap(&path->now, &path->next);
