@@ -185,8 +185,11 @@ def _factor(text: str, name: str, unit: str, own: str, ending: str = "") -> floa
     if (times := factor(unit, own)) is not None:
         return times
     convertible = "".join(f", or ({unit})" for unit, to in CONVERSIONS if to == own)
+    share = "divide the numbers by 100 and " if unit in ("%", "percent") else ""
     reason = "has no unit" if not unit else f"is in {unit}, which is not known here"
-    raise ValueError(f"heading {text!r}: {reason}; write '{name}{ending} ({own})'{convertible}")
+    raise ValueError(
+        f"heading {text!r}: {reason}; {share}write '{name}{ending} ({own})'{convertible}"
+    )
 
 
 def read_text(path: Path) -> str:
