@@ -111,7 +111,7 @@ def test_a_heading_of_another_name_keeps_its_unit(text, alias, expected):
         ("speed", "has no unit; write 'speed (m/s)', or (mm/s), or (cm/s)"),
         ("contact_time (min)", "is in min, which is not known here; write 'contact_time (s)'"),
         ("psi2 (m)", "write 'psi2 (1)'"),
-        ("normal_restitution (in percent)", "is in percent, .*; divide the numbers by 100 and "),
+        ("normal_restitution (in percent)", "divide the numbers by 100 and write"),
         ("incidence_angle", "write 'incidence_angle (deg)', or (rad)"),
         ("incidence_angle (from normal)", "write 'incidence_angle (deg)', or (rad)"),
         ("rebound_angle", "write 'rebound_angle (rad)', or (deg)"),
