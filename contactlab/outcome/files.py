@@ -63,12 +63,16 @@ def content(path: Path, *, kind: str, remedy: str) -> bytes:
 
 
 @overload
-def written(
+def replace_file(
     path: str | Path, *, binary: Literal[False] = ...
 ) -> AbstractContextManager[TextIO]: ...
 @overload
-def written(path: str | Path, *, binary: Literal[True]) -> AbstractContextManager[BinaryIO]: ...
-def replace_file(path: str | Path, *, binary: bool = False) -> AbstractContextManager[TextIO | BinaryIO]:
+def replace_file(
+    path: str | Path, *, binary: Literal[True]
+) -> AbstractContextManager[BinaryIO]: ...
+def replace_file(
+    path: str | Path, *, binary: bool = False
+) -> AbstractContextManager[TextIO | BinaryIO]:
     """Return a stream whose content replaces ``path`` when the block ends without an error.
 
     Text is UTF-8 without translation of line ends, as ``csv`` requires. The new file has the

@@ -312,8 +312,8 @@ class _Words:
         said: dict[str, list[int]] = {}
         central = self.scene.central
         for k, encounter in enumerate(self.gathering.assembly.met):
-            alone = central.take((slice(None), k))._with(encounter=encounter)  # type: ignore[arg-type]
-            normal = self.normal.take((slice(None), k))  # type: ignore[arg-type]
+            alone = central.take((slice(None), k))._with(encounter=encounter)
+            normal = self.normal.take((slice(None), k))
             laws = self.laws.normal, self.laws.tangential
             told = [text for law in laws for text in ask(law, law.cautions, alone, normal)]
             told += NormalLaw.cautions(self.laws.normal, alone, normal)

@@ -23,7 +23,7 @@ from contactlab.contracts import (
 )
 from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import chosen, greater, spread
+from contactlab.numeric.arrays import choose, greater, spread
 from contactlab.numeric.types import Array, Real
 
 
@@ -264,7 +264,7 @@ class PullingHertz(NormalLaw):
     ) -> tuple[NormalContact, Any]:
         """Return the contact."""
         stiffness, radius, pull = state
-        touching = chosen(approach > 0.0, 1.0, 0.0)
+        touching = choose(approach > 0.0, 1.0, 0.0)
         inside = approach * touching
         load = stiffness * inside**1.5
         return NormalContact(

@@ -185,7 +185,9 @@ def _read(column: Column, result: ImpactResult, simulation: Simulation | None) -
     return np.array([float(column.of(laws.run(one, history=True).check())) for one in impacts])
 
 
-def open_scene(scene: Scene | SceneFile | str | Path, given: Mapping[str, Array]) -> Scene | SceneFile:
+def open_scene(
+    scene: Scene | SceneFile | str | Path, given: Mapping[str, Array]
+) -> Scene | SceneFile:
     """Return a scene, or a scene file with the measured entries."""
     if isinstance(scene, Scene):
         return scene
