@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from abc import abstractmethod
 
+import numpy as np
+
 from contactlab.contracts.law import Law, claims, resolution_of
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.tangential import Errors, TangentialLaw
@@ -35,15 +37,11 @@ class Integrator(Law, kind="integrator"):
         One impact or a batch.
     """
 
-    def resolution_for(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Real:
-        """Return the resolution of each impact, 0 of none; by default the option's.
-
-        Errors are estimated by refining this value.
-        """
-        return float(resolution_of(self)) if self.resolution else 0.0
-
     def errors(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Errors:
-        """Return declared bounds of the numerical errors; NaN, the default: not declared."""
+        """Return declared bounds of the numerical errors; NaN, the default: not declared.
+
+        An integrator that raises its resolution for some impacts tells what each takes.
+        """
         return Errors()
 
     def cautions(
@@ -91,6 +89,24 @@ class CoupledIntegrator(Integrator, way="marcher"):
             One impact or a batch, with its inverse mass.
         observer : callable, optional
         """
+
+
+def resolution_for(
+    integrator: Integrator, scene: Scene, normal: NormalMotion, tangential: TangentialLaw
+) -> Real:
+    """Return the resolution that each impact takes, by the errors' or the option; 0 of none.
+
+    Parameters
+    ----------
+    integrator : Integrator
+    scene : Scene
+    normal : NormalMotion
+    tangential : TangentialLaw
+    """
+    if not integrator.resolution:
+        return 0.0
+    taken = integrator.errors(scene, normal, tangential).resolution
+    return np.where(np.isnan(taken), float(resolution_of(integrator)), taken)
 
 
 def accuracy_of(integrator: Law) -> float | None:

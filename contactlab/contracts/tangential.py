@@ -106,10 +106,13 @@ class Errors(NamedTuple):
         Of psi2; in space the length of its error.
     restitution : float or array
         Of V2/v1, the normal restitution.
+    resolution : float or array
+        The integrator's, where it takes another than its option says; estimates refine it.
     """
 
     psi2: Real = math.nan
     restitution: Real = math.nan
+    resolution: Real = math.nan
 
 
 class Resolutions(NamedTuple):

@@ -10,7 +10,7 @@ import numpy as np
 from contactlab.impact import inverse_mass
 from contactlab.impact.bodies import Pair, Sphere, size_ratio
 from contactlab.numeric import arrays as batch
-from contactlab.numeric.arrays import choose, magnitude, quotient
+from contactlab.numeric.arrays import choose, magnitude, quotient, some
 from contactlab.numeric.types import Array, Index, Places, Real
 from contactlab.numeric.vectors import components, dot, entry, hypotenuse, join_components, rows
 
@@ -208,7 +208,7 @@ def rubs(scene: Motions) -> bool:
     """Return whether any impact has friction and slip at first touch."""
     slip = slip_speed(scene)
     friction = scene.friction_coefficient
-    return bool(np.any((slip != 0.0) & (friction != 0.0)))
+    return some((slip != 0.0) & (friction != 0.0))
 
 
 def turns(scene: Motions) -> bool:

@@ -240,7 +240,11 @@ class Manager(pluggy.PluginManager):
         ``only`` is the name after the kind: of options that of their command. With ``again`` the
         folders of ``sys.path`` are looked at for what was installed meanwhile.
         """
-        key = kind, only, os.environ.get(BLOCK_VARIABLE, "")
+        self._load((kind, only, os.environ.get(BLOCK_VARIABLE, "")), again=again)
+
+    def _load(self, key: tuple[str, str, str], *, again: bool) -> None:
+        """Load the plug-ins of a kind, what is only wanted of them, and what is blocked."""
+        kind, only, _ = key
         if kind not in COLLECTIONS:
             return
         if key in self._loaded and not (again and path_times() != self._stamp):
@@ -265,9 +269,10 @@ class Manager(pluggy.PluginManager):
         A kind that is asked for in every run is not ``silent``: nothing keeps it from stdout, and
         no folder is looked at again.
         """
-        self.load(kind, only=only, again=silent)
+        blocked = os.environ.get(BLOCK_VARIABLE, "")  # asking takes long
+        self._load((kind, only, blocked), again=silent)
         found: list[Told] = []
-        for info, caller in self._find_hooks(HOOKS[kind]):
+        for info, caller in self._find_hooks(HOOKS[kind], blocked):
             try:
                 with guard(info.source, f"raised when asked for its {kind}", silent=silent):
                     answers = caller(**arguments)
@@ -290,8 +295,11 @@ class Manager(pluggy.PluginManager):
             self._here[hook] = self.changes, found
         return found
 
-    def _find_hooks(self, hook: str) -> list[tuple[PluginInfo, Callable[..., Any]]]:
-        """Return the plug-ins with a hook, in order, and what asks each alone with all wrappers."""
+    def _find_hooks(self, hook: str, blocked: str) -> list[tuple[PluginInfo, Callable[..., Any]]]:
+        """Return the plug-ins with a hook, in order, and what asks each alone with all wrappers.
+
+        Those that are ``blocked`` are left out.
+        """
         since, callers = self._callers.get(hook, (-1, []))
         if since != self.changes:
             impls = [
@@ -309,9 +317,9 @@ class Manager(pluggy.PluginManager):
                 for impl in impls
             ]
             self._callers[hook] = self.changes, callers
-        blocking = read_blocks()
-        if not blocking:
+        if not blocked:
             return callers
+        blocking = read_blocks()
         return [
             (info, caller)
             for info, caller in callers

@@ -10,7 +10,7 @@ from contactlab.contracts.law import API_VERSION, Law, law_kind
 
 #: Methods of integrators that are called with the impact, its normal motion and the law, and their
 #: first arguments. One in another order would be run with arguments exchanged.
-ORDERED = ("integrate", "integrate_coupled", "resolution_for", "errors", "cautions")
+ORDERED = ("integrate", "integrate_coupled", "errors", "cautions")
 ARGUMENTS = ("scene", "normal", "tangential")
 
 
@@ -52,7 +52,12 @@ def is_law_class(value: object) -> TypeGuard[type[Law]]:
 
 
 def _find_exchange(law: type[Law]) -> str | None:
-    """Return which method of an integrator has other first arguments than those of the contract."""
+    """Return which method of an integrator is not as the contract has it, by its arguments."""
+    if hasattr(law, "resolution_for"):
+        return (
+            f"{law.__name__}.resolution_for is not asked; return the resolution of each impact as "
+            "the third of errors: Errors(psi2, restitution, resolution)"
+        )
     for name in ORDERED:
         if name == "integrate_coupled" and "marcher" not in law._ways:
             continue

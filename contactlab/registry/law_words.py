@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from functools import lru_cache
+from collections.abc import Callable
+from functools import lru_cache, wraps
+from typing import TypeVar
 
 import attrs
 import numpy as np
@@ -12,6 +14,8 @@ from contactlab.contracts.law import Law, law_kind
 from contactlab.numeric.checks import quote
 from contactlab.numeric.taken import list_assumptions
 from contactlab.registry.registry import REGISTRY
+
+T = TypeVar("T")
 
 #: The address of an object without words of its own, which differs from run to run.
 ADDRESS = re.compile(r" at 0x[0-9A-Fa-f]+")
@@ -22,6 +26,21 @@ def name_of(law: Law) -> str:
     return _name(type(law))
 
 
+def _kept(make: Callable[[Law], T]) -> Callable[[Law], T]:
+    """Return a function of laws that keeps its answers, but of laws that have no hash."""
+    keep = lru_cache(maxsize=128)(make)
+
+    @wraps(make)
+    def tell(law: Law) -> T:
+        try:
+            return keep(law)
+        except TypeError:
+            return make(law)
+
+    return tell
+
+
+@_kept
 def in_words(law: Law) -> str:
     """Return the name of a law with the options that differ from their defaults.
 
@@ -43,12 +62,16 @@ def own_options(law: Law) -> str:
 
 def tell_assumptions(*laws: Law) -> list[str]:
     """Return a caution of each number that laws took as nobody gave it."""
-    return [
+    return [text for law in laws for text in _tell_taken(law)]
+
+
+@_kept
+def _tell_taken(law: Law) -> tuple[str, ...]:
+    return tuple(
         f"{name_of(law)}: no {name} given, using {value:g}. Set your own: --set "
         f"{law_kind(law)}.{name}=..."
-        for law in laws
         for name, value in list_assumptions(law).items()
-    ]
+    )
 
 
 @lru_cache(maxsize=128)

@@ -165,8 +165,8 @@ class Simulation:
                 return plan_of_gathering(scene, self.laws, history=history)
         laws, scene = bind(self.laws, _scene(scene))
         ways = solve.accept_scene(laws, scene, as_one=bool(_history(history)))
-        columns = solve.plan_columns(ways, scene, history)
-        return plan_of(laws, scene, columns, history=history)
+        columns, found = solve.prepare(ways, scene, history)
+        return plan_of(laws, scene, columns, history=history, found=found)
 
     def run(
         self,

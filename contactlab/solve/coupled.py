@@ -93,7 +93,7 @@ class Coupled(Way):
         else:
             errors = law.errors(scene, normal, np.inf, laws.capability.accuracy)
         judged = judges.judge_errors(laws.tangential, errors, scene.shape)
-        psi2, restitution = (spread(error, scene.shape) for error in judged)
+        psi2, restitution = (spread(error, scene.shape) for error in judged[:2])
         return PlanColumns(code, psi2, () if law is None else (WHOLE,), restitution)
 
     def solve(self, prepared: Prepared, recorder: Recorder | None) -> Motion:

@@ -9,6 +9,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.contracts.integrator import resolution_for
 from contactlab.contracts.law import Law
 from contactlab.contracts.status import Status, Statuses
 from contactlab.impact import kinetics
@@ -89,7 +90,7 @@ def _fill(
 def _resolution(laws: Laws, scene: Scene) -> Any:
     """Return the resolution of the integrator for each impact; 0 if it has none."""
     normal = try_normal(laws, scene.central)
-    resolution = laws.integrator.resolution_for(scene, normal, laws.tangential)
+    resolution = resolution_for(laws.integrator, scene, normal, laws.tangential)
     return np.broadcast_to(resolution, scene.shape)
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from contactlab.contracts.integrator import resolution_for
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.restitution import restitution_of
@@ -85,9 +86,7 @@ def gathering_plan(
     depth = np.broadcast_to(normal.maximum_approach, scene.shape)
     assert scene.links is not None
     integrator = way.laws.integrator
-    steps: Any = getattr(integrator, "resolution_for", lambda *_: np.nan)(
-        scene, normal, way.laws.tangential
-    )
+    steps = resolution_for(integrator, scene, normal, way.laws.tangential)
     said = _Words(gathering, way, normal, motion, history)
     plan: list[GatheringPlan] = []
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Any, NamedTuple, TypeGuard
 
@@ -64,11 +65,13 @@ def plan_of(
     history: bool | str = False,
     *,
     estimated: bool = False,
+    found: Sequence[tuple[Way, NormalMotion]] = (),
 ) -> Plan:
     """Return the plan of a scene, with words that are made when they are first read.
 
     ``motion`` is that of a run, with the numbers of impacts that failed; None before a run. Errors
-    that are ``estimated`` need no advice.
+    that are ``estimated`` need no advice. Ways and normal motions that were not ``found`` yet are
+    found by the words.
     """
     asked_for = _Asked(history, estimated)
 
@@ -81,14 +84,17 @@ def plan_of(
         return with_normal_spin(of_impacts(), scene, answered=answered)
 
     def of_impacts() -> Words:
-        found = ways(laws, scene, as_one=bool(history))
-        if len(found) == 1:
-            return _words(laws, found[0], scene, columns, motion, asked_for)
+        solved: Sequence[tuple[Way, NormalMotion | None]] = found
+        if not solved:
+            solved = [(way, None) for way in ways(laws, scene, as_one=bool(history))]
+        if len(solved) == 1:
+            return _words(laws, *solved[0], scene, columns, motion, asked_for)
         said = []
-        for way in found:
+        for way, normal in solved:
             some_columns = columns.take(way.where)
             moved = None if motion is None else take(motion, scene.shape, way.where)
-            kinds = _words(laws, way, scene.take(way.where), some_columns, moved, asked_for)
+            part = scene.take(way.where)
+            kinds = _words(laws, way, normal, part, some_columns, moved, asked_for)
             said.append((way.where, Plan(some_columns, kinds)))
         return Plan.merge(said, scene.shape).words
 
@@ -98,12 +104,16 @@ def plan_of(
 def _words(
     laws: Laws,
     way: Way,
+    normal: NormalMotion | None,
     scene: Scene,
     columns: PlanColumns,
     motion: Motion | None,
     asked_for: _Asked,
 ) -> Words:
-    """Return the clauses on impacts of ``scene`` that are solved in one way."""
+    """Return the clauses on impacts of ``scene`` that are solved in one way.
+
+    ``normal`` is their normal motion where it is known before a run.
+    """
     masks = Masks.of(columns)
     if not some(masks.known):
         return (), (), ()
@@ -144,7 +154,7 @@ def _words(
     if absent:
         left_out.append(Clause(", ".join(absent), masks.known))
     with np.errstate(under="ignore"):
-        cautions = _cautions(way, scene, motion, masks, asked_for.history)
+        cautions = _cautions(way, normal, scene, motion, masks, asked_for.history)
         if some(masks.marched):
             error = columns.psi2_error
             from contactlab.solve.error_cautions import of_errors  # of marches only
@@ -184,7 +194,12 @@ def _has_fields(law: SteppedTangentialLaw | None) -> TypeGuard[SteppedTangential
 
 
 def _cautions(
-    way: Way, scene: Scene, motion: Motion | None, masks: Masks, history: bool | str
+    way: Way,
+    normal: NormalMotion | None,
+    scene: Scene,
+    motion: Motion | None,
+    masks: Masks,
+    history: bool | str,
 ) -> Clauses:
     """Return the cautions about numbers of the scene, of the laws, and of the energy books."""
     laws, part, central, known = way.laws, way.scene, way.scene_of_cautions, masks.known
@@ -192,9 +207,9 @@ def _cautions(
     said = [*unit_slips(whole), *unlikely(whole), *rigid_bodies(whole)]
     of_laws: list[str] = []
     moved = way.motion_of_cautions(motion)
-    normal = None
+    normal = normal if every(known) else None
     if some(masks.ended):
-        normal = _motion_of(laws, central, moved, known)
+        normal = _motion_of(laws, central, moved, known) if normal is None else normal
         of_laws += way.cautions_of_laws(whole, normal, known)
         said += way.cautions_of_contact(whole, normal)
     if some(masks.marched):
@@ -297,9 +312,9 @@ def _absent(way: Way) -> list[str]:
         absent.append("coupling of unlike materials (equal)")
     if "elastic_hertz" in way.laws.capability.normal_claims:
         absent.append("loss (none given)")
-    if not np.any(scene.normal_spin):
+    if not kinetics.turns(scene):
         absent.append("spin about the normal (none)")
-    if np.all(elongation_of(pair) == 1.0):
+    if every(elongation_of(pair) == 1.0):
         absent.append("elliptic contact (round)")
     if way.both and scene.planar:
         absent.append("out-of-plane motion (planar)")

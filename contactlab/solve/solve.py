@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from contactlab.contracts.motion import NormalMotion
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
@@ -96,7 +97,14 @@ def outcome(
 
 
 @np.errstate(under="ignore")
-def plan_columns(found: Sequence[Way], scene: Scene, history: bool | str) -> PlanColumns:
-    """Return the columns of the plan, without a march."""
-    parts = [(way.where, way.prepare(history).columns) for way in found]
-    return parts[0][1] if len(parts) == 1 else PlanColumns.merge(parts, scene.shape)
+def prepare(
+    found: Sequence[Way], scene: Scene, history: bool | str
+) -> tuple[PlanColumns, list[tuple[Way, NormalMotion]]]:
+    """Return the columns of the plan, without a march, and the normal motion of each way."""
+    parts, normals = [], []
+    for way in found:
+        prepared = way.prepare(history)
+        parts.append((way.where, prepared.columns))
+        normals.append((way, prepared.normal))
+    columns = parts[0][1] if len(parts) == 1 else PlanColumns.merge(parts, scene.shape)
+    return columns, normals

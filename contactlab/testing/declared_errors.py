@@ -1,4 +1,4 @@
-"""Checks of declared errors: psi2_error of laws, accuracy of motions, resolution_for."""
+"""Checks of declared errors: psi2_error of laws, accuracy of motions, the resolution taken."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from contactlab.contracts import (
     claims,
     resolution_of,
 )
+from contactlab.contracts.integrator import resolution_for
 from contactlab.impact.error_model import psi_magnitude
 from contactlab.impact.scene import Scene
 from contactlab.runs.simulation import Simulation
@@ -75,7 +76,7 @@ def _declare(way: Way, impact: Scene) -> float:
     if way.integrator is None:
         whole = whole_answers(way.law, normal)
         return float(np.asarray(whole[0].psi2_error)) if whole else math.nan
-    steps = way.integrator.resolution_for(impact, normal, way.law)
+    steps = resolution_for(way.integrator, impact, normal, way.law)
     if (controlled := accuracy_of(way.integrator)) is None:
         return float(np.asarray(way.law.errors(impact, normal, steps).psi2))
     own = float(np.asarray(way.law.errors(impact, normal, math.inf).psi2))
@@ -144,13 +145,14 @@ def motion_accuracy(law: ClosedFormNormalLaw) -> None:
 
 @check(Integrator)
 def resolution_told(integrator: Integrator) -> None:
-    """An impact run at the value of ``resolution_for`` ends the same."""
+    """An impact run at the resolution that ``errors`` tells, or the option's, ends the same."""
     if not integrator.resolution:
         raise NotApplicableError("The integrator has no resolution.")
     for simulation in sound(integrator):
         impact = scene(2.0, SOLID)
         normal = normal_motion(simulation.normal, impact)
-        stated = float(np.max(integrator.resolution_for(impact, normal, simulation.tangential)))
+        taken = resolution_for(integrator, impact, normal, simulation.tangential)
+        stated = float(np.max(taken))
         value = type(resolution_of(integrator))(stated)
         asked = at_resolution(integrator, value)
         change = march_impact(simulation, 2.0).slip_velocity_change
@@ -160,7 +162,7 @@ def resolution_told(integrator: Integrator) -> None:
         within(
             difference,
             ROUNDING,
-            f"resolution_for says {integrator.resolution} = {stated:g}, and with "
+            f"errors tells {integrator.resolution} = {stated:g}, and with "
             f"{integrator.resolution} = {stated:g} an impact ends {difference:.2g} off: by default "
             f"the integrator uses another value ({type(simulation.tangential).__name__}).",
         )

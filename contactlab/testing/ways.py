@@ -24,6 +24,7 @@ from contactlab.contracts import (
     WholeImpactTangentialLaw,
     accuracy_of,
 )
+from contactlab.contracts.integrator import resolution_for
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
 from contactlab.outcome.history import History, Recorder
@@ -139,7 +140,7 @@ def _bound_steps(way: Way, normal: NormalMotion, impact: Scene) -> None:
     assert way.integrator is not None
     if not isinstance(way.law, SteppedTangentialLaw):
         return
-    steps = float(np.max(way.integrator.resolution_for(impact, normal, way.law)))
+    steps = float(np.max(resolution_for(way.integrator, impact, normal, way.law)))
     if steps > MOST_STEPS:
         stiffness = float(np.max(way.law.stiffness(impact, normal)))
         hold(

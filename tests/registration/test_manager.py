@@ -158,7 +158,8 @@ CODE = """
 import sys, contactlab
 {first}
 {second}
-asked = [info.module for info, _ in contactlab.plugin_manager()._find_hooks("contactlab_materials")]
+hooks = contactlab.plugin_manager()._find_hooks("contactlab_materials", "")
+asked = [info.module for info, _ in hooks]
 print(asked)
 """
 

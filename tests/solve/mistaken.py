@@ -132,12 +132,13 @@ class Slider(CausalTangentialLaw):
     offers: ClassVar[frozenset[str]] = frozenset({"vectors"})
     how: str = "none"
     value: object = None
+    damping: float = 0.1
 
     def _or(self, name, value):
         return self.value if self.how == name else value
 
     def start(self, scene, normal):
-        damping = 0.1 * np.max(scene.pair.tangential_mass / normal.duration)
+        damping = self.damping * np.max(scene.pair.tangential_mass / normal.duration)
         return damping, np.asarray(scene.index)
 
     def stiffness(self, scene, normal):

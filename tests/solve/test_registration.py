@@ -37,6 +37,14 @@ class OldErrors(Symplectic):
 
 
 @attrs.frozen(kw_only=True)
+class OldResolution(Symplectic):
+    api_version = 2
+
+    def resolution_for(self, scene, normal, tangential):
+        raise AssertionError("not asked")
+
+
+@attrs.frozen(kw_only=True)
 class OldCoupled(Symplectic):
     api_version = 2
 
@@ -80,6 +88,7 @@ class Weighed(Springs):
 REFUSED = {
     ("integrator", "OldOrder"): "OldOrder.integrate has the arguments (normal, tangential, scene",
     ("integrator", "OldErrors"): "(scene, normal, tangential), in this order",
+    ("integrator", "OldResolution"): "resolution_for is not asked; return the resolution",
     ("integrator", "OldCoupled"): "OldCoupled.integrate_coupled has the arguments",
     ("integrator", "AnyOrder"): "AnyOrder.cautions has the arguments (given)",
     ("normal", "ByParameter"): "ByParameter.offers must be a frozenset",

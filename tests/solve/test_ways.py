@@ -351,7 +351,8 @@ def test_unlike_impacts_in_one_sweep_have_the_answers_of_each_alone(impacts, law
     scenes = [getattr(impact, "scene", impact) for impact in impacts]
     result, told = laws.sweep(scenes).check(), []
     for place, (impact, item) in enumerate(zip(impacts, result, strict=True)):
-        alone = laws.run(scenes[place])
+        made = collide(impact, laws) if isinstance(impact, Encounter) else None
+        alone = laws.run(scenes[place]) if made is None else made.result
         found = np.atleast_1d(item.psi2)
         expected = np.zeros_like(found)
         expected[: np.size(alone.psi2)] = alone.psi2
@@ -359,8 +360,7 @@ def test_unlike_impacts_in_one_sweep_have_the_answers_of_each_alone(impacts, law
         assert item.normal_restitution == pytest.approx(alone.normal_restitution, abs=1e-12)
         assert item.energy.friction_work == pytest.approx(alone.energy.friction_work, rel=1e-12)
         told += [*alone.cautions, *map(str, alone.plan.left_out)]
-        if isinstance(impact, Encounter) and alone.velocity_in_space is not None:
-            made = collide(impact, laws)
+        if made is not None and alone.velocity_in_space is not None:
             assert alone.velocity_in_space == pytest.approx(made.velocity, rel=1e-9)
             if len({type(each.target) for each in impacts}) > 1:
                 assert item.velocity_in_space is None
@@ -697,7 +697,9 @@ FAILING = {
     [
         (Liar("raises"), "LAW_RAISED", "symplectic"),
         *(
-            pytest.param(Slider(how), status, name, marks=[pytest.mark.slow] * (name != usual))
+            pytest.param(
+                Slider(how, damping=0.0), status, name, marks=[pytest.mark.slow] * (name != usual)
+            )
             for how, (status, usual) in FAILING.items()
             for name in ("symplectic", "adaptive", "paper")
         ),
@@ -711,11 +713,8 @@ def test_an_impact_that_fails_takes_no_other_with_it(scene, integrator, law, sta
     assert type(law).__name__ in result.failures[1]
     assert status != "LAW_RAISED" or "that one" in result.failures[1]
     assert statuses(laws.run(scene.take(1))) == [status]
-    if isinstance(law, Liar):
-        return
-    sound = Simulation(tangential=Slider(), integrator=integrator).run(scene)
-    for place in (0, 2):
-        assert result[place].psi2 == pytest.approx(sound[place].psi2, rel=1e-6)
+    if not isinstance(law, Liar):
+        assert result.normal_restitution[[0, 2]] == pytest.approx(1.0, abs=1e-6)
 
 
 @each_batch

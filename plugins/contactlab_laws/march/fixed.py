@@ -141,24 +141,23 @@ class FixedSteps(CoupledIntegrator):
         """Return how many steps each impact takes: ``steps``, or more if these are too few."""
         return refine_count(self._steps, needed) if self.refine else float(self._steps)
 
-    def resolution_for(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Real:
-        """Return how many steps each impact takes."""
-        steps: Real = self._count_steps(find_least_steps(normal, tangential, scene))
-        return steps
-
     def errors(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Errors:
-        """Return the errors that the tangential law declares for as many steps."""
+        """Return the errors that the tangential law declares for as many steps, and these."""
         if scene.inverse_mass is None:
             needed = find_least_steps(normal, tangential, scene)
-            taken = self._count_steps(needed)
+            taken = steps = self._count_steps(needed)
         else:
             assert isinstance(tangential, CausalTangentialLaw)
             needed = coupled_steps.find_least_steps(scene, normal, tangential)
             taken = self._take_coupled(needed)
+            steps = self._count_steps(np.maximum(needed, LEAST_STEPS))
         declared = tangential.errors(scene, normal, taken)
-        if every(followed := np.less_equal(needed, taken) & np.isfinite(taken)):
-            return declared
-        return Errors(*(choose(followed, each, math.nan) for each in declared))
+        if type(declared) is not Errors:
+            return declared  # and refused where it is judged
+        psi2, restitution, _ = declared
+        if not every(followed := np.less_equal(needed, taken) & np.isfinite(taken)):
+            psi2, restitution = (choose(followed, each, math.nan) for each in (psi2, restitution))
+        return Errors(psi2, restitution, steps)
 
     def _take_coupled(self, needed: Real) -> Real:
         """Return the steps of each impact in the approach without friction; infinite if refused."""
