@@ -46,6 +46,14 @@ def finite(text: str) -> float:
     return value
 
 
+def whole_number(text: str) -> int:
+    """Return the text as a whole number."""
+    try:
+        return int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number") from None
+
+
 def _range_hint(text: str) -> str:
     """Return how to write a range if the text looks like one, else nothing."""
     written = re.fullmatch(
@@ -98,11 +106,16 @@ def file_of(*suffixes: str) -> Callable[[str], Path]:
     return convert
 
 
+#: Endings of files that commands write or read, which no folder has.
+OF_FILES = {".png", ".pdf", ".svg", ".gif", ".csv", ".json", ".npz", ".toml", ".html", ".c", ".js"}
+
+
 def folder_of(text: str) -> Path:
     """Return the path of a folder for files, or refuse a name that is empty, or that of a file."""
     path = Path(text)
-    if not text or (os.path.exists(path) and not os.path.isdir(path)):
-        what = "is a file" if text else "is no name"
+    file = path.suffix.lower() in OF_FILES and not text.endswith(("/", os.sep))
+    if not text or ((os.path.exists(path) or file) and not os.path.isdir(path)):
+        what = ("is the name of a file" if file else "is a file") if text else "is no name"
         raise argparse.ArgumentTypeError(f"{text!r}: {what}; give a folder")
     return path
 

@@ -82,6 +82,8 @@ class Parser(argparse.ArgumentParser):
     def _instead_of(self, word: str) -> str:
         """Return what to write in place of a word that no option takes; empty if unknown."""
         options = self._options()
+        if word.endswith(".toml"):
+            return "one scene at a time; give each a command of its own"
         if not word.startswith("-"):
             return f"--csv prints; to write a file: --out {word}" if "--csv" in options else ""
         new = RENAMED.get(word, "")

@@ -76,7 +76,9 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     parser.add_argument("--out", type=_output, metavar="FILE or FOLDER/", help=words)
     words = "keep finished impacts beside --out, and continue a stopped sweep"
     parser.add_argument("--resume", action="store_true", help=words)
-    parser.add_argument("--workers", type=int, metavar="N", help="share the work among N processes")
+    parser.add_argument(
+        "--workers", type=shared.whole_number, metavar="N", help="share the work among N processes"
+    )
     shared.add_figure(parser, "also draw psi2 over psi1")
     shared.add_progress(parser)
     return shared.check_outputs_first(execute)

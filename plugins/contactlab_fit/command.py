@@ -74,7 +74,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     shared.add_names(parser, "--quantity", "measured quantities to fit (default: all)")
     parser.add_argument(
         "--bootstrap",
-        type=int,
+        type=shared.whole_number,
         metavar="SAMPLES",
         help=f"bootstrap samples for the first law (default {SAMPLES}; none above {MANY} impacts)",
     )
@@ -85,7 +85,10 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
         help="in place of DATA.csv: positions t, x, y (optional z, angle) of a ball that bounces",
     )
     parser.add_argument(
-        "--fps", type=float, metavar="RATE", help="frames a second of a film with a column frame"
+        "--fps",
+        type=shared.finite,
+        metavar="RATE",
+        help="frames a second of a film with a column frame",
     )
     add_columns(parser)
     shared.add_figure(parser, "draw measured values, laws and residuals")

@@ -92,6 +92,12 @@ MISSING = "must be given too (chi is 1.4412 for a solid sphere)"
          "for the whole topic"),
         (["kernel", "--out", "FILE"], "argument --out: '{file}': is a file; give a folder "
          "(see contactlab kernel --help)"),
+        (["run", "BALL", "other.toml"], "unrecognized arguments: other.toml; one scene at a time; "
+         "give each a command of its own (see contactlab run --help)"),
+        (["sweep", "SWEEP", "--workers", "two"], "argument --workers: 'two' is not a whole number "
+         "(see contactlab sweep --help)"),
+        (["figures", "--out", "all.png"], "argument --out: 'all.png': is the name of a file; give "
+         "a folder (see contactlab figures --help)"),
         (["kernel", "--out", ""], "argument --out: '': is no name; give a folder "
          "(see contactlab kernel --help)"),
     ],
