@@ -83,7 +83,8 @@ if TYPE_CHECKING:
     from contactlab.outcome.sweep_folder import SweepFolder
     from contactlab.paths.load_path import load_path
     from contactlab.registration.hooks import PluginError, hookimpl
-    from contactlab.registration.manager import plugin_manager, register
+    from contactlab.registration.manager import plugin_manager
+    from contactlab.registry.loading import register
     from contactlab.registry.named_laws import IntegratorName, NormalName, TangentialName
     from contactlab.runs.simulation import Simulation
     from contactlab.scene_file import read_scene
@@ -205,7 +206,7 @@ MODULES = {
     "plugin_manager": "registration.manager",
     "read_scene": "scene_file",
     "rebound": "collisions.rebound",
-    "register": "registration.manager",
+    "register": "registry.loading",
     "shapes": "impact.shapes",
     # the classes that authors of laws derive from, and what their methods return
     "NormalLaw": "contracts.normal",

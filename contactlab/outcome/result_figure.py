@@ -14,6 +14,7 @@ from contactlab.outcome.columns import WithScene, find_quantity, unit_in
 from contactlab.outcome.history import WithHistory, scale_forces
 from contactlab.outcome.history_figure import on_axes
 from contactlab.outcome.plan import Plan
+from contactlab.outcome.sheet_figure import refuse_itself
 from contactlab.outcome.style import (
     Width,
     curve_colour,
@@ -93,8 +94,10 @@ def draw_result(
         with on_axes(axes, width) as drawn:
             draw = _forces if result.scene.inverse_mass is None else _path
             return draw(drawn, result)
+    x, y = x or _abscissa(result), y or "psi2"
+    refuse_itself(x, y)
     with on_axes(axes, width) as drawn:
-        return _quantities(drawn, result, x or _abscissa(result), y or "psi2")
+        return _quantities(drawn, result, x, y)
 
 
 def _abscissa(result: Drawn) -> str:

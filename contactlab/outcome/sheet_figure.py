@@ -47,6 +47,7 @@ def draw_sheet(
     numbers = _numbers(sheet)
     x = _find_column("x", x or next(iter(sheet.axes), None) or next(iter(numbers)), numbers)
     y = _find_column("y", y or next(name for name in numbers if name != x), numbers)
+    refuse_itself(x, y)
     rows = sheet.shape[0] if sheet.shape else 1
     across, up = (numbers[name].reshape(rows, -1) for name in (x, y))
     names = [*np.ndindex(*sheet.shape[1:])]
@@ -83,6 +84,12 @@ def _numbers(sheet: Sheet) -> dict[str, Array]:
         for name, values in found.items()
         if values.dtype.kind in "fiub"
     }
+
+
+def refuse_itself(x: str, y: str) -> None:
+    """Refuse a column over itself; a single name that is given is that of ``x``."""
+    if x == y:
+        raise refuse("x, y", x, "is drawn over itself", f"write y={x!r} alone, or another x")
 
 
 def _find_column(argument: str, name: str, numbers: dict[str, Array]) -> str:

@@ -383,33 +383,6 @@ def command(word: str) -> PluginInfo | None:
     return found
 
 
-def register(plugin: Any, name: str | None = None) -> str | None:
-    """Register a plug-in in this program: an object with hooks, or the class of a law by name.
-
-    ``register(Brush, "tangential.brush")``; ``register(MyHooks())``. It is known at once to
-    everything that asks for its kind, and forgotten by ``plugin_manager().unregister``.
-
-    Parameters
-    ----------
-    plugin : object
-        An object or a module with hooks, or the class of a law.
-    name : str, optional
-        The plug-in's name; of a law kind and name, by default that of the class in lower case.
-
-    Raises
-    ------
-    PluginError
-        If a hook or one of its arguments is unknown.
-    ValueError
-        If the name is taken.
-    """
-    kind = getattr(plugin, "_kind", None)  # of a law, which this room does not know
-    if isinstance(plugin, type) and kind in KINDS:
-        full = name or f"{kind}.{plugin.__name__.lower()}"
-        return MANAGER.register_law(plugin, full)
-    return MANAGER.register(plugin, name)
-
-
 def plugin_manager() -> Manager:
     """Return the plug-in manager of the process, a ``pluggy.PluginManager``."""
     return MANAGER

@@ -18,7 +18,7 @@ from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
 from contactlab.registration.hooks import PluginError, guard
 from contactlab.registration.manager import MANAGER
-from contactlab.registration.names import FILE, PluginInfo, Untrusted
+from contactlab.registration.names import FILE, KINDS, PluginInfo, Untrusted
 from contactlab.registry.law_classes import is_law_class, unfit
 
 #: Laws that were loaded from files.
@@ -167,3 +167,40 @@ def check_class(law: object, kind: str, source: str) -> type[Law]:
         missing = ", ".join(sorted(law.__abstractmethods__))
         raise PluginError(f"{source}: {law.__name__} does not define {missing}")
     return law
+
+
+def register(plugin: Any, name: str | None = None) -> str | None:
+    """Register a plug-in in this program: an object with hooks, or the class of a law by name.
+
+    ``register(Brush, "tangential.brush")``; ``register(MyHooks())``. It is known at once to
+    everything that asks for its kind, and forgotten by ``plugin_manager().unregister``.
+
+    Parameters
+    ----------
+    plugin : object
+        An object or a module with hooks, or the class of a law.
+    name : str, optional
+        The plug-in's name; of a law kind and name, by default that of the class in lower case.
+
+    Raises
+    ------
+    PluginError
+        If a hook or one of its arguments is unknown, or a law breaks the contract.
+    ValueError
+        If the name is taken, or what is given is no law and has no hooks.
+    """
+    if is_law_class(plugin):
+        full = name or f"{law_kind(plugin)}.{plugin.__name__.lower()}"
+        if plugin.__abstractmethods__:
+            lacking = ", ".join(sorted(plugin.__abstractmethods__))
+            raise PluginError(f"{full}: {plugin.__name__} lacks {lacking}")
+        if (kind := full.partition(".")[0]) in KINDS:  # else the name is refused
+            check_class(plugin, kind, full)
+        return MANAGER.register_law(plugin, full)
+    given = MANAGER.register(plugin, name)
+    if not MANAGER.get_hookcallers(plugin):
+        MANAGER.unregister(plugin)
+        rule = "is not the class of a law, and has no hooks"
+        remedy = "derive a law from a class of contactlab.contracts, mark a hook @hookimpl"
+        raise refuse("plugin", plugin, rule, remedy)
+    return given

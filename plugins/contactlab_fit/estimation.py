@@ -138,6 +138,8 @@ def _fit(
         scene = measurements
     if scene is None:
         raise refuse("scene", None, "must be given", "a Scene, or a TOML file with the bodies")
+    if isinstance(quantities, str):  # a sequence of letters
+        raise refuse("quantities", quantities, "must be a list of names", f"write [{quantities!r}]")
     samples = whole("bootstrap", bootstrap, least=0, most=100_000)
     table = as_target_sees(read_measurements(measurements), scene).only(quantities)
     laws = simulation_of(simulation)

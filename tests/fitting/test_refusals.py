@@ -174,6 +174,7 @@ def test_a_law_that_is_not_that_of_the_data_ends_at_the_end_of_a_range():
         ({"parameters": ["friction_coefficient"] * 2}, "twice"),
         ({"simulation": "coulomb"}, "simulation = 'coulomb': must be a Simulation"),
         ({"quantities": ["rebound_spin"]}, "was not measured"),
+        ({"quantities": "e_t"}, "must be a list of names; write ['e_t']"),
         ({"bootstrap": -1}, "bootstrap"),
         (
             {"parameters": ["restitution"], "simulation": Simulation(tangential="coulomb")},

@@ -111,6 +111,27 @@ def test_unknown_hooks_and_arguments_are_refused_and_leave_nothing(registered):
     assert not contactlab.plugin_manager().has_plugin("misspelt")
 
 
+def test_what_is_no_law_or_an_unfinished_one_is_refused_and_stops_no_other():
+    class Unfinished(contactlab.SteppedTangentialLaw):
+        api_version = 2
+
+        def start(self, scene, normal):
+            return 0.0
+
+    class Undated(Unfinished):
+        api_version = 1
+
+        def advance(self, state, increment, before, after):
+            return 0.0
+
+    for law, told in ((Unfinished, "lacks advance"), (Undated, "api_version is 1")):
+        with pytest.raises(contactlab.PluginError, match=told):
+            contactlab.register(law)
+    with pytest.raises(ValueError, match="plugin = 'smooth': is not the class of a law"):
+        contactlab.register("smooth")
+    assert Simulation(tangential="coulomb").run(Scene.nondimensional(psi1=1.2, chi=1.44)).psi2 == 0
+
+
 def test_a_law_is_registered_by_name(registered):
     class Mine(contactlab.contracts.WholeImpactTangentialLaw):
         api_version = 2

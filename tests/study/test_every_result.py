@@ -153,6 +153,13 @@ def test_columns_are_drawn_over_each_other():
     assert drawn.get_xdata().tolist() == loop.displacement.tolist()
 
 
+@pytest.mark.parametrize(("name", "column"), [("spheres", "psi2"), ("gathering", "spin_z")])
+def test_a_column_over_itself_is_refused(name, column):
+    told = f"x, y = '{column}': is drawn over itself; write y='{column}'"
+    with pytest.raises(ValueError, match=told):
+        results()[name][0].plot(column, column)
+
+
 @pytest.mark.parametrize("name", ["collision of balls", "path", "history", "gathering"])
 def test_an_unknown_column_is_refused(name):
     with pytest.raises(ValueError, match=r"y = 'friction': is not a column of numbers; .*known: "):
