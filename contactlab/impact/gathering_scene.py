@@ -100,8 +100,10 @@ class Assembly:
 
     def of_contacts(self, entry: str) -> Array:
         """Return an entry of every contact, shape (count, C)."""
-        touches = self.gathering.touches
-        return np.stack([self.flat(getattr(touch, entry)) for touch in touches], axis=-1)
+        given = [getattr(touch, entry) for touch in self.gathering.touches]
+        if not self.gathering.shape:  # some microseconds less
+            return np.array([given])
+        return np.stack([self.flat(each) for each in given], axis=-1)
 
     def of_bodies(self, entry: str) -> Array:
         """Return vectors of every body, shape (count, N, 3)."""
@@ -111,16 +113,22 @@ class Assembly:
     @property
     def axes(self) -> Array:
         """n, t1 and t2 of each contact as rows, shape (count, C, 3, 3)."""
-        shape = (self.count,)
-        return np.stack([join_components(each.axes, shape) for each in self.frames], axis=1)
+        return self._joined("axes")
+
+    def _joined(self, entry: str) -> Array:
+        """Return vectors or tensors of the frames, shape (count, C, ...)."""
+        parts = [getattr(each, entry) for each in self.frames]
+        if not self.gathering.shape:
+            return np.array([parts])
+        return np.stack([join_components(each, (self.count,)) for each in parts], axis=1)
 
     def scene(self) -> Scene:
         """Return the scene of the contacts, or refuse one in which nothing approaches."""
-        gathering, shape = self.gathering, (self.count,)
-        velocity = np.stack([join_components(each.velocity, shape) for each in self.frames], axis=1)
+        gathering = self.gathering
+        velocity = self._joined("velocity")
         fast = self._fastest(velocity)
         W = self._inverse_mass()
-        own = np.stack([join_components(each.inverse_mass, shape) for each in self.frames], axis=1)
+        own = self._joined("inverse_mass")
         pull = self._pull()
         loaded = self._find_loads(pull)
         links = Links(
