@@ -15,7 +15,7 @@ from contactlab.collisions import impulses
 from contactlab.collisions.collision_plan import collision_plan
 from contactlab.collisions.restituted import plan_rebounds, run_by_restitution
 from contactlab.collisions.velocities import Velocities, velocities
-from contactlab.contracts.status import Status
+from contactlab.contracts.status import Details, Status, Statuses
 from contactlab.impact import kinetics
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.body_contact import in_space, push_bodies
@@ -24,7 +24,7 @@ from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.arrays import every, of_each, plain, spread_object, take
 from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import tell_attributes
-from contactlab.numeric.types import Array, Each, Labelled, Mask, Numbers, Real
+from contactlab.numeric.types import Array, Each, Json, Labelled, Mask, Numbers, Real
 from contactlab.numeric.vectors import NOTHING, components, cross, join_components
 from contactlab.outcome.answer import Answer
 from contactlab.outcome.columns import components as parts_of
@@ -351,18 +351,20 @@ class Collision(Answer, Generic[Each]):
             lines.append(f"  ... and {more} more: to_dataframe()")
         return lines
 
-    def _statuses(self) -> tuple[Any, Any]:
+    def _statuses(self) -> tuple[Statuses, Details]:
         return (Status.SUCCESS, "") if self.known is None else self.known._statuses()
 
     @property
-    def status(self) -> Any:
+    def status(self) -> Statuses:
         """A ``Status``, or an array of statuses; ``SUCCESS`` if the bodies passed through."""
         if self.known is not None and np.all(self.collided):
-            return self.known.status
+            own: Statuses = self.known.status
+            return own
         status = spread_object(Status.SUCCESS, self.encounter.shape)
         if self.known is not None:
             status[self.collided] = self.known.status
-        return status
+        found: Statuses = status
+        return found
 
     @property
     def cautions(self) -> list[str]:
@@ -373,7 +375,7 @@ class Collision(Answer, Generic[Each]):
         """Return the vectors of both bodies after the collision as plain lists."""
         return {name: json_value(np.asarray(getattr(self, name))) for name, _ in VECTORS_AFTER}
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Json]:
         """Return vectors and numbers as plain lists, with energy, status and plan."""
         numbers = {name: json_value(getattr(self, name)) for name, _ in NUMBERS_AFTER}
         told = {

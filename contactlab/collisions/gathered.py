@@ -12,14 +12,14 @@ import attrs
 import numpy as np
 
 from contactlab.contracts.contact import NormalContact
-from contactlab.contracts.status import Status, succeeded
+from contactlab.contracts.status import Details, Status, Statuses, succeeded
 from contactlab.contracts.tangential_motion import Sample
 from contactlab.impact.gathering import Body, Gathering
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import shape_as
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import tell_attributes
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Array, Json, Real
 from contactlab.outcome.answer import Answer, tell_statuses
 from contactlab.outcome.columns import components, json_value
 from contactlab.outcome.energy import EnergyLedger
@@ -42,6 +42,8 @@ from contactlab.solve.gathering_plan import GatheringPlan
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from pandas import DataFrame
+    from xarray import Dataset
 
     from contactlab.outcome.style import Width
 
@@ -245,16 +247,17 @@ class GatheringResult(Answer):
         return EnergyLedger(**entries)
 
     @property
-    def status(self) -> Any:
+    def status(self) -> Statuses:
         """A ``Status``, or an array of the batch shape."""
-        return self._of_gatherings(self._motion.status)
+        status: Statuses = self._of_gatherings(self._motion.status)
+        return status
 
     def _of_gatherings(self, words: object) -> Any:
         """Return a status or sentence of each gathering, which its contacts share."""
         whole = np.broadcast_to(np.asarray(words, dtype=object), self._scene.shape)
         return whole[:, 0].reshape(self.gathering.shape)[()]
 
-    def _statuses(self) -> tuple[Any, Any]:
+    def _statuses(self) -> tuple[Statuses, Details]:
         return self.status, self._of_gatherings(self._motion.detail)
 
     @property
@@ -284,7 +287,7 @@ class GatheringResult(Answer):
             told.append("  ... and more: to_dataframe()")
         return [repr(self), *told]
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Json]:
         """Return the vectors of bodies and the numbers of contacts as plain lists."""
         names = (
             *VECTORS_OF_BODIES,
@@ -326,7 +329,7 @@ class GatheringResult(Answer):
         axes = batch_axes(gathering.shape, "gathering") | last
         return Sheet(found, units, axes, shape, self.laws)
 
-    def to_dataframe(self, rows: Literal["bodies", "contacts"] = "bodies") -> Any:
+    def to_dataframe(self, rows: Literal["bodies", "contacts"] = "bodies") -> DataFrame:
         """Return a ``pandas.DataFrame``, one row for each body or each contact.
 
         Parameters
@@ -342,7 +345,7 @@ class GatheringResult(Answer):
 
         return to_dataframe(self._sheet(rows))
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> Dataset:
         """Return an ``xarray.Dataset`` of bodies and contacts, each a dimension."""
         from contactlab.outcome.frames import to_xarray
 

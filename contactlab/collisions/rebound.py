@@ -6,7 +6,7 @@ import math
 import warnings
 from collections.abc import Callable, Iterable
 from functools import cache
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeGuard, overload
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeGuard, TypeVar, overload
 
 import attrs
 import numpy as np
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 Yes: TypeAlias = Literal[True]
 No: TypeAlias = Literal[False]
+#: An array of another library, which gives one of the same.
+Labels = TypeVar("Labels", bound=Labelled)
 
 #: Springs of the laws for a restitution; the steps are four times as many.
 SPRINGS = 100
@@ -120,13 +122,40 @@ def rebound(
 ) -> tuple[Array, Array, Array, Array]: ...
 @overload
 def rebound(
+    psi1: Labels,
+    chi: Plain | Labels,
+    *,
+    tolerance: float = ...,
+    derivatives: No = ...,
+    restitution: Plain | Labels | None = ...,
+) -> Labels: ...
+@overload
+def rebound(
+    psi1: Plain,
+    chi: Labels,
+    *,
+    tolerance: float = ...,
+    derivatives: No = ...,
+    restitution: Plain | Labels | None = ...,
+) -> Labels: ...
+@overload
+def rebound(
+    psi1: Labels,
+    chi: Plain | Labels,
+    *,
+    tolerance: float = ...,
+    derivatives: Yes,
+    restitution: Plain | Labels | None = ...,
+) -> tuple[Labels, ...]: ...
+@overload
+def rebound(
     psi1: Plain | Labelled,
     chi: Plain | Labelled,
     *,
     tolerance: float = ...,
     derivatives: bool = ...,
     restitution: Plain | Labelled | None = ...,
-) -> Any: ...
+) -> float | Array | Labelled | tuple[float | Array | Labelled, ...]: ...
 def rebound(
     psi1: Plain | Labelled,
     chi: Plain | Labelled,
@@ -134,7 +163,7 @@ def rebound(
     tolerance: float = USUAL,
     derivatives: bool = False,
     restitution: Plain | Labelled | None = None,
-) -> Any:
+) -> object:
     """Return the dimensionless rebound psi2 of spheres, a float or an array of the inputs' shape.
 
     The model is the paper's in its continuum limit: Hertz contact, Coulomb friction. Elastic

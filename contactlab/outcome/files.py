@@ -79,12 +79,12 @@ def replace_file(
     permissions of the old one; if ``path`` is a symbolic link, the file behind the link is
     replaced. An ``OSError`` names ``path``, and leaves the old file unchanged.
     """
-    return _written(path, binary)
+    return _replace(path, binary)
 
 
 @contextlib.contextmanager
-def _written(path: str | Path, binary: bool) -> Iterator[TextIO | BinaryIO]:
-    """Return the stream of ``written``."""
+def _replace(path: str | Path, binary: bool) -> Iterator[TextIO | BinaryIO]:
+    """Return the stream of ``replace_file``."""
     if why_not := unwritable(path):
         raise OSError(f"{path}: {why_not}")
     target = os.path.realpath(path)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, Generic, Self, overload
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, Self, overload
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
-from contactlab.contracts.status import Details, Statuses
+from contactlab.contracts.status import Details, Status, Statuses
 from contactlab.impact import kinetics
 from contactlab.impact.bodies import Sphere
 from contactlab.impact.scene import Scene
@@ -27,6 +28,18 @@ if TYPE_CHECKING:
     from contactlab.outcome.sheet import Sheet
     from contactlab.outcome.style import Width
 
+    class StatusOf(Protocol):
+        """The status of a result, by the kind of its numbers."""
+
+        @overload
+        def __get__(self, result: ImpactResult[float], owner: object = ..., /) -> Status: ...
+        @overload
+        def __get__(
+            self, result: ImpactResult[Array], owner: object = ..., /
+        ) -> NDArray[np.object_]: ...
+        @overload
+        def __get__(self, result: ImpactResult[Real], owner: object = ..., /) -> Statuses: ...
+
 
 @tell_attributes
 @attrs.frozen(kw_only=True, eq=False, repr=False, slots=False)  # frozen slots are slow to fill
@@ -40,7 +53,7 @@ class ImpactResult(Answer, Generic[Each]):
     those of a batch, an ``ImpactResult[Array]``, are arrays. An item of a batch, and the result of
     an ``Encounter``'s scene, they take for either: of bodies in space psi is a vector. A program
     that knows may say so: ``result: ImpactResult[float] = simulation.run(scene)``.
-    ``status`` is ``Any``: a ``Status``, or an array of them.
+    ``status`` is a ``Status``, or an array of them.
 
     Attributes
     ----------
@@ -341,10 +354,14 @@ class ImpactResult(Answer, Generic[Each]):
     def _statuses(self) -> tuple[Statuses, Details]:
         return self.motion.status, self.motion.detail
 
-    @property
-    def status(self) -> Any:
-        """Status of the impact, or an array of statuses of the scene's shape."""
-        return self.motion.status
+    if TYPE_CHECKING:  # a status of one impact, an array of a batch
+        status: ClassVar[StatusOf]
+    else:
+
+        @property
+        def status(self):
+            """Status of the impact, or an array of statuses of the scene's shape."""
+            return self.motion.status
 
     @property
     def counters(self) -> Mapping[str, int]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import attrs
 import numpy as np
@@ -117,7 +117,8 @@ class Frictionless(WholeImpactTangentialLaw, CoupledTangentialLaw):
         observer: Observer | None = None,
     ) -> TangentialMotion:
         """Return the velocities that the impulse of the frictionless approach gives."""
-        W: Any = scene.inverse_mass
+        W = scene.inverse_mass
+        assert W is not None
         speed: Real = scene.normal_speed
         rate: Real = normal.final_rate
         impulse = scene.pair.normal_mass * (speed - rate)

@@ -63,7 +63,7 @@ class DerjaguinMullerToporov(NormalLaw):
     def respond(self, state: Parts, approach: Real, rate: Real) -> tuple[NormalContact, Parts]:
         """Return force, Hertz's radius (2) and Hertz's force as friction load."""
         touching: Any = approach >= 0.0
-        inside: Any = approach * touching  # NaN stays NaN
+        inside: Real = approach * touching  # NaN stays NaN
         load = state.stiffness * inside**1.5
         contact = NormalContact(
             force=load - state.pull * touching,

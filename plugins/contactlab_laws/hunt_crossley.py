@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import attrs
 
@@ -75,13 +75,13 @@ class HuntCrossley(NormalLaw):
 
     def start(self, scene: Scene) -> Parts:
         """Return stiffness and damping of the pair; the law has no memory."""
-        damping: Any = self.damping
+        damping: Real = self.damping or 0.0
         if self.restitution is not None:
             damping = damping_number(self.restitution) / scene.normal_speed
         return Parts(hertz_stiffness(scene), damping, scene.pair.radius)
 
     def respond(self, state: Parts, approach: Real, rate: Real) -> tuple[NormalContact, Parts]:
         """Return force and Hertz's radius (2)."""
-        inside: Any = approach * (approach > 0.0)
+        inside: Real = approach * (approach > 0.0)  # type: ignore[assignment]  # float64
         force = state.stiffness * inside**1.5 * (1.0 + state.damping * rate)
         return without_tension(force, (state.radius * inside) ** 0.5, approach), state

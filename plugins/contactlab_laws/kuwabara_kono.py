@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import attrs
 import numpy as np
@@ -87,6 +87,6 @@ class KuwabaraKono(Relaxing):
 
     def respond(self, state: Parts, approach: Real, rate: Real) -> tuple[NormalContact, Parts]:
         """Return force and Hertz's radius (2)."""
-        inside: Any = approach * (approach > 0.0)
+        inside: Real = approach * (approach > 0.0)  # type: ignore[assignment]  # float64
         force = state.stiffness * inside**0.5 * (inside + 1.5 * state.time * rate)
         return without_tension(force, (state.radius * inside) ** 0.5, approach), state

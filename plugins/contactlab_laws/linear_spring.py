@@ -118,7 +118,9 @@ class LinearSpring(CausalTangentialLaw):
             zero,
         )
 
-    def begin(self, scene: Scene, normal: NormalMotion, *, vectors: bool = False) -> Any:
+    def begin(
+        self, scene: Scene, normal: NormalMotion, *, vectors: bool = False
+    ) -> State | InPlane:
         """Return a spring at rest, whose displacement is a vector if ``vectors``."""
         return in_plane(self, scene, normal) if vectors else self.start(scene, normal)
 
@@ -128,7 +130,7 @@ class LinearSpring(CausalTangentialLaw):
         increment: Increment,
         before: NormalContact,
         after: NormalContact,
-    ) -> tuple[TangentialResponse, Any]:
+    ) -> tuple[TangentialResponse, State | InPlane]:
         """Return the force, and the friction work: the work that the spring does not store."""
         if isinstance(state, InPlane):
             return move_in_plane(self, state, increment, before, after)

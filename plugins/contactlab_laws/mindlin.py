@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, NamedTuple, TypeAlias
+from typing import Any, ClassVar, NamedTuple, TypeAlias, overload
 
 import attrs
 import numpy as np
@@ -23,7 +23,7 @@ from contactlab.impact.cautions import OUTSIDE
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import shape_as, spread
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, choice, quantity
-from contactlab.numeric.types import Mask, Real
+from contactlab.numeric.types import Array, Mask, Real
 
 FORMS = ("displacement", "displacement_rescaled", "increment", "increment_rescaled")
 
@@ -101,7 +101,7 @@ def critical_share(share: float, stiffness: Real, mass: Real) -> Real:
 
 def with_dashpot(
     spring: Real, constant: Real, increment: Increment, tangential_mass: Real, limit: Real
-) -> Any:
+) -> Real:
     """Return the force of a spring and a dashpot in N, cut off at the limit mu L."""
     # The dashpot acts on the velocity in the middle of the time in which the force acts. The force
     # itself changes that velocity: solving for it keeps the march of second order.
@@ -139,21 +139,29 @@ def move_in_plane(
     shape = state.shape
     numbers = (np.asarray(each) for each in (increment.displacement, increment.velocity))
     moved, velocity = ((each[..., 0] + 1j * each[..., 1]).reshape(shape or 1) for each in numbers)
-    step: Any = increment._replace(displacement=moved, velocity=velocity)  # type: ignore[arg-type]
+    step = increment._replace(displacement=moved, velocity=velocity)  # type: ignore[arg-type]
     response, own = law.advance(state.own, step, before, after)
     force = np.stack((response.force.real, response.force.imag), axis=-1).reshape(*shape, 2)
     work = np.asarray(response.friction_work)
     return TangentialResponse(force, shape_as(work, shape)), InPlane(own, shape)
 
 
-def along(force: Along, slip: Along) -> Any:
+@overload
+def along(force: Real, slip: Real) -> Real: ...
+@overload
+def along(force: NDArray[np.complex128], slip: NDArray[np.complex128]) -> Array: ...
+def along(force: Along, slip: Along) -> object:
     """Return force times slip: the product, or the scalar product of complex numbers."""
     if isinstance(slip, np.ndarray) and slip.dtype.kind == "c":
         return (np.conj(force) * slip).real
     return force * slip
 
 
-def cut(value: Along, limit: Real) -> Any:
+@overload
+def cut(value: Real, limit: Real) -> Real: ...
+@overload
+def cut(value: NDArray[np.complex128], limit: Real) -> NDArray[np.complex128]: ...
+def cut(value: Along, limit: Real) -> object:
     """Return ``value`` within plus and minus ``limit``; of a complex number the length."""
     if isinstance(value, np.ndarray) and value.dtype.kind == "c":
         size = np.abs(value)
@@ -281,7 +289,9 @@ class MindlinCap(CausalTangentialLaw):
         modulus = self._modulus(scene)
         return State(modulus, *masses, scene.friction_coefficient, zero, zero, zero)
 
-    def begin(self, scene: Scene, normal: NormalMotion, *, vectors: bool = False) -> Any:
+    def begin(
+        self, scene: Scene, normal: NormalMotion, *, vectors: bool = False
+    ) -> State | InPlane:
         """Return a spring at rest, whose displacement is a vector if ``vectors``."""
         return in_plane(self, scene, normal) if vectors else self.start(scene, normal)
 
@@ -291,7 +301,7 @@ class MindlinCap(CausalTangentialLaw):
         increment: Increment,
         before: NormalContact,
         after: NormalContact,
-    ) -> tuple[TangentialResponse, Any]:
+    ) -> tuple[TangentialResponse, State | InPlane]:
         """Return the force after the step, and the work of the mean force on the slip."""
         if isinstance(state, InPlane):
             return move_in_plane(self, state, increment, before, after)

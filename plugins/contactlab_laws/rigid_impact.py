@@ -8,7 +8,7 @@ gives back e² of the work that it did in compression.
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Callable
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from contactlab.contracts import Ends, NormalMotion, Scene, TangentialMotion
 from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
 from contactlab.numeric.arrays import spread, spread_object
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 
 #: Tolerance of Keller's equations; slip below this part of the speed has stopped. Steps chatter
 #: about a slip that hardly stops, at ten tolerances.
@@ -35,7 +35,7 @@ def rigid_impacts(scene: Scene, normal: NormalMotion) -> TangentialMotion:
     after = np.array([row[0] for row in rows]).reshape(*shape, 3)
     work, loss = (np.array([row[k] for row in rows]).reshape(shape) for k in (1, 2))
     change = after[..., 1:] - scene.velocity[..., 1:]
-    number: Any = np.asarray if shape else float
+    number: Callable[[Array], Real] = np.asarray if shape else float
     unknown = spread(math.nan, shape)  # they happen in no time
     return TangentialMotion(
         slip_velocity_change=kinetics.tangent(scene, change),
@@ -136,10 +136,11 @@ def _spatial(inverse: Array, before: Array, mu: float, e: float) -> tuple[Array,
     reach = 1e3 * scale / float(np.linalg.eigvalsh(W)[0])
     at = 0.0
     for _ in range(20):
-        path: Any = solve_ivp(
+        path = solve_ivp(
             slopes, (at, reach), state, "DOP853", events=events, rtol=TOLERANCE,
             atol=TOLERANCE * scale * min(1.0, scale),
         )  # fmt: skip
+        assert path.t_events is not None
         at, state = float(path.t[-1]), path.y[:, -1].copy()
         if path.t_events[1].size:
             break

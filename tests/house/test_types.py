@@ -48,9 +48,11 @@ import attrs
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
+import xarray as xr
 from numpy.typing import NDArray
 
 import contactlab as cl
+from contactlab.collisions.gathered import GatheringResult
 from contactlab import Encounter, HalfSpace, Material, Scene, Simulation, Sphere, collide, rebound
 
 Array = NDArray[np.float64]
@@ -88,6 +90,11 @@ many = simulation.sweep(Scene.grid(chi=[1.2, 1.4412], psi1=np.linspace(0, 6, 25)
 assert_type(many.check()[1:], cl.ImpactResult[Array])
 assert_type(many.psi2, Array)
 assert_type(many.energy.start, Array)
+assert_type(many.status, NDArray[np.object_])
+assert_type(result.status, cl.Status)
+assert_type(many.to_dataframe(), pd.DataFrame)
+assert_type(many.to_xarray(), xr.Dataset)
+assert_type(simulation.sweep(scene, into="here").to_dataframe("psi2"), pd.DataFrame)
 told: cl.ImpactResult[float] = simulation.run(scene)
 assert_type(told.psi2, float)
 assert_type(told.energy, cl.EnergyLedger[float])
@@ -107,6 +114,11 @@ print(simulation.run(scene, estimate_error=True).psi2_error_estimate < 1e-4, res
 plt.plot(many.psi1, many.psi2)
 plt.plot([result.psi1], [result.psi2], "o")
 told.psi2.shape  # refused
+told.status.shape  # refused
+many.status.name  # refused
+frame: str = many.to_dataframe()  # refused
+labelled: int = many.to_xarray()  # refused
+many.to_dict().psi2  # refused
 many.psi2.is_integer()  # refused
 result.psi2.shape  # refused
 simulation.run(Scene.nondimensional(psi1=1, chi=2)).psi2[0]  # refused
@@ -130,6 +142,22 @@ assert_type(hit.velocity, Array)
 print(round(hit.friction_work, 3), hit.normal_velocity < 0, hit.velocity @ hit.spin, hit.impulse[0])
 print(hit.energy.start + 1, hit.status is cl.Status.SUCCESS, hit.result.psi2[0], hit.spin.tolist())
 hit.speed  # refused
+assert_type(hit, cl.Collision)
+assert_type(hit.to_dataframe(), pd.DataFrame)
+assert_type(hit.result, cl.ImpactResult)
+hit.velocity.shape[0].real.name  # refused
+hit.status.psi2  # refused
+pair = [cl.Body(ball, velocity=[1, 0, 0]), cl.Body(ball)]
+both = collide(cl.Gathering(pair, [cl.Touch(0, 1, 0.0, normal=[1, 0, 0])]))
+assert_type(both, GatheringResult)
+assert_type(both.to_dataframe("contacts"), pd.DataFrame)
+assert_type(both.to_xarray(), xr.Dataset)
+both.to_dataframe("touches")  # refused
+both.psi2  # refused
+both.status.shapes  # refused
+assert_type(rebound(column, 1.44), "pd.Series[float]")
+assert_type(rebound(1.2, column, restitution=0.9), "pd.Series[float]")
+rebound(column, "1.44")  # refused
 Encounter(ball, plane, [0.1, 0.2], normal=(1, 0, 0), velocity=np.array([2, 0, 0]))
 collide(met, restitution=lambda speed: 1 - 0.1 * speed)
 Scene.grid(chi=[1.2, 1.4412], psi1=np.linspace(0, 6, 25))

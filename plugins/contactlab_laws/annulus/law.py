@@ -20,7 +20,7 @@ from contactlab.contracts import (
 )
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import choice, count
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Array, Mask, Real
 from contactlab_laws.annulus import all_steps, step
 from contactlab_laws.annulus.tables import Tables, hertz_pressure, tables
 from contactlab_laws.differences import table as differences
@@ -109,11 +109,12 @@ class Annulus(PartialSlip, AllStepsTangentialLaw):
         radius: Real = after.radius / scales.radius
         pressure = self._pressure(scales, radius, after.friction_load, hertz=hertz)
         slip: Real = increment.displacement * scales.displacement
-        answers: Any
-        *answers, memory = step.advance(self._tables(), memory, slip, radius, pressure)
+        forces, works, passed, memory = step.advance(self._tables(), memory, slip, radius, pressure)
+        force: Real = forces
+        work: Real = works
+        settled: Mask = passed
         if not memory.lag.shape[:-1]:
-            answers = [each.item() for each in answers]
-        force, work, settled = answers
+            force, work, settled = forces.item(), works.item(), passed.item()
         response = TangentialResponse(force * scales.force, work * scales.work, settled)
         return response, State(scales, hertz, memory)
 
@@ -130,7 +131,9 @@ class Annulus(PartialSlip, AllStepsTangentialLaw):
         radius, load = steps.contact.radius / scales.radius, steps.contact.friction_load
         scaled = ScaledSteps(
             radius=radius,
-            pressure=self._pressure(scales, radius, load, hertz="elastic_hertz" in normal.claims),
+            pressure=np.asarray(
+                self._pressure(scales, radius, load, hertz="elastic_hertz" in normal.claims)
+            ),
             drift=steps.drift * scales.displacement,
             kick=steps.kick * scales.force / scene.pair.tangential_mass,
         )
@@ -139,7 +142,7 @@ class Annulus(PartialSlip, AllStepsTangentialLaw):
         work = march.friction_work() * float(scales.work)
         return AllStepsResponse(march.forces * scales.force, work, settled)
 
-    def _pressure(self, scales: Scales, radius: Real, load: Real, *, hertz: bool) -> Any:
+    def _pressure(self, scales: Scales, radius: Real, load: Real, *, hertz: bool) -> Real:
         """Return the ratio of the pressures of (34) to those of a Hertz contact of this radius."""
         if hertz:
             return scales.pressure(radius, load)

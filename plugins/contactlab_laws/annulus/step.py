@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,8 +59,8 @@ def advance(
     # step, ``pressure`` the ratio to the pressure of a Hertz contact of this radius.
     shape, size = states.lag.shape[:-1], states.lag.shape[-1]
     lag, old = states.lag.reshape(-1, size), states.traction.reshape(-1, size)
-    moved: Any = displacement
-    total = (states.total + (moved[..., None] if shape else moved)).reshape(-1, 1)
+    moved = np.asarray(displacement)[..., None] if shape else displacement
+    total = (states.total + moved).reshape(-1, 1)
     limit = np.asarray(pressure)[..., None] * hertz_pressure(table, radius)
     if limit.shape != states.lag.shape:
         limit = np.broadcast_to(limit, states.lag.shape)

@@ -71,7 +71,7 @@ def _library(wanted: bool) -> tuple[Any, str]:
     return found, COMPILED
 
 
-def _declare(found: Any) -> None:
+def _declare(found: ctypes.CDLL) -> None:
     """Set the types of the functions of the library."""
     pointer, whole, number = ctypes.c_void_p, ctypes.c_long, ctypes.c_double
     some = ctypes.c_int  # ``ndpointer`` takes longer than an impact

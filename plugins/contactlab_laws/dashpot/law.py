@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import attrs
 
@@ -33,7 +33,7 @@ class Parts(NamedTuple):
 def press(parts: Parts, approach: Real, rate: Real, powers: tuple[float, float]) -> NormalContact:
     """Return the contact of P = k z^n + c z^m z', ``powers`` (n, m), without tension; b² = R z."""
     touching = approach >= 0.0
-    inside: Any = approach * touching  # NaN stays NaN
+    inside: Real = approach * touching  # type: ignore[assignment]  # float64; NaN stays NaN
     damping = parts.damping * inside ** powers[1] * touching
     force = parts.stiffness * inside ** powers[0] + damping * rate
     return without_tension(force, (parts.radius * inside) ** 0.5, approach)

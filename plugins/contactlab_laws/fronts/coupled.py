@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,7 @@ from contactlab.contracts import (
     TangentialMotion,
 )
 from contactlab.contracts.status import Status
-from contactlab.impact.hertz import DURATION_CONSTANT, hertz_scales
+from contactlab.impact.hertz import DURATION_CONSTANT, HertzScales, hertz_scales
 from contactlab.numeric.arrays import choose, some, spread_object
 from contactlab.numeric.types import Array, Mask, Real
 from contactlab.numeric.vectors import entry, join_components
@@ -47,11 +46,12 @@ def motion(
     """Return the motion of planar impacts."""
     shape, tolerance = scene.shape, error_of_step(accuracy)
     scales = hertz_scales(normal.scene)
-    W: Any = scene.inverse_mass
-    mu: Any = scene.friction_coefficient
-    speed: Any = scene.normal_speed
+    W = scene.inverse_mass
+    assert W is not None
+    mu: Real = scene.friction_coefficient
+    speed: Real = scene.normal_speed
     kappa = scene.pair.stiffness_ratio
-    smooth: Any = mu == 0.0
+    smooth: Mask = mu == 0.0
     numbers = join_components((scene.psi1, scene.chi, scene.lam, scene.eta), shape).reshape(-1, 4).T
     if observer is None or some(smooth) or numbers.shape[1] != 1:
         found, lost = _follow_sides(numbers, smooth, tolerance)
@@ -110,7 +110,7 @@ def solve_impacts(numbers: Array, tolerance: float) -> tuple[Array, NDArray[np.i
     return out, status
 
 
-def _show(scene: Scene, scales: Any, steps: Steps, observer: Observer) -> None:
+def _show(scene: Scene, scales: HertzScales, steps: Steps, observer: Observer) -> None:
     """Show four instants of each step to an observer in SI."""
     speed, mu = scene.normal_speed, scene.friction_coefficient
     unit: Real = mu * speed / scene.pair.stiffness_ratio

@@ -27,7 +27,7 @@ from contactlab.contracts import (
 from contactlab.impact.error_model import psi_magnitude
 from contactlab.impact.hertz import slips_throughout
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import greater, spread
+from contactlab.numeric.arrays import greater, magnitude, spread
 from contactlab.numeric.types import Array, Mask, Real
 from contactlab_laws.compiled import library
 from contactlab_laws.fronts import compiled
@@ -77,7 +77,7 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
     rebound = staticmethod(rebound)
 
     @staticmethod
-    def rebound_error(*_: Any) -> Real:
+    def rebound_error(*_: object) -> Real:
         """Return that of the table."""
         return ERROR
 
@@ -103,9 +103,9 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
         """Return gross slip where (44) and (46) say so, and the rest from the table."""
-        chi: Any = scene.chi
-        psi1: Any = scene.psi1
-        tabulated = self.table and (chi <= LARGEST_CHI) & (abs(psi1) < 4.0 * LARGEST_CHI)
+        chi: Real = scene.chi
+        psi1: Real = scene.psi1
+        tabulated = self.table and (chi <= LARGEST_CHI) & (magnitude(psi1) < 4.0 * LARGEST_CHI)
         if not scene.shape and tabulated and psi1 and not slips_throughout(psi1, chi):
             return (_from_table(scene, psi1, chi, where=True),)
         closed = (*super().whole_impacts(scene, normal), *gross_slip(scene, normal))
@@ -120,7 +120,7 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
                 chi, psi1 = np.where(tabulated, chi, 1.0), np.where(tabulated, psi1, 0.0)
         return (*closed, _from_table(scene, psi1, chi, where=tabulated))
 
-    def solved(self, psi1: Array, chi: Array) -> Any:
+    def solved(self, psi1: Array, chi: Array) -> Array | None:
         """Return psi2 - psi1 by the compiled law; None where it does not answer for all."""
         if library() is None:
             return None
@@ -199,12 +199,12 @@ def _solve_in_c(scene: Scene, where: Mask) -> tuple[WholeImpact, ...]:
     )
 
 
-def _from_table(scene: Scene, psi1: Any, chi: Real, *, where: Mask) -> WholeImpact:
+def _from_table(scene: Scene, psi1: Real, chi: Real, *, where: Mask) -> WholeImpact:
     return from_change(
         scene,
         where=where,
         psi_change=rebound(psi1, chi) - psi1,
-        psi2_error=ERROR * greater(abs(psi1), 1.0),
+        psi2_error=ERROR * greater(magnitude(psi1), 1.0),
         reason=REASON,
         counter="tabulated",
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import attrs
 
@@ -37,7 +37,7 @@ class Hertz(ClosedFormNormalLaw):
     def respond(self, state: Pair, approach: Real, rate: Real) -> tuple[NormalContact, Pair]:
         """Return force (4) and radius (2) at ``approach``; both are 0 out of contact."""
         # A product with the comparison keeps NaN a NaN, for floats and arrays alike.
-        compression: Any = approach * (approach > 0.0)
+        compression: Real = approach * (approach > 0.0)  # type: ignore[assignment]  # float64
         radius = (state.radius * compression) ** 0.5
         force = (4.0 / 3.0) * state.effective_modulus * radius * compression
         return NormalContact(force, radius, approach, force), state

@@ -101,7 +101,7 @@ class ProfileLaw(PartialSlip, AllStepsTangentialLaw):
         radius = steps.contact.radius / scales.radius
         scaled = all_steps.ScaledSteps(
             radius=radius,
-            pressure=scales.pressure(radius, steps.contact.friction_load),
+            pressure=np.asarray(scales.pressure(radius, steps.contact.friction_load)),
             drift=steps.drift * scales.displacement,
             kick=steps.kick * (scales.force / scene.pair.tangential_mass),
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -55,7 +55,7 @@ class Scales(NamedTuple):
         per_slip = (friction > 0.0) / (slip + (friction == 0.0))
         return cls(radius, per_slip, friction * peak, peak, friction * peak * slip)
 
-    def pressure(self, radius: Real, load: Real) -> Any:
+    def pressure(self, radius: Real, load: Real) -> Real:
         """Return p, the load at a radius over that of a Hertz contact: 1 under Hertz's law."""
         cube = self.normal_force * radius**3
         return load / (cube + (cube == 0.0))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import attrs
 import numpy as np
@@ -24,7 +24,7 @@ from contactlab.impact.error_model import range_of
 from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import Rule, quantity
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab_laws.march import coupled, coupled_steps
 from contactlab_laws.march.division import midpoints
 from contactlab_laws.march.fixed import (
@@ -208,20 +208,22 @@ class Adaptive(CoupledIntegrator):
             merged, counters={"steps": finer.counters["steps"], "evaluations": evaluations}
         )
 
-    def _allow_change(self, scene: Scene) -> Any:
+    def _allow_change(self, scene: Scene) -> Real:
         """Return the tolerance as a change of slip velocity, in m/s."""
         unit, _, speed = range_of(scene)
-        return max(self.tolerance, ROUNDING) * np.maximum(unit, speed)
+        allowed: Real = max(self.tolerance, ROUNDING) * np.maximum(unit, speed)
+        return allowed
 
     @staticmethod
-    def _error(*motions: TangentialMotion) -> Any:
+    def _error(*motions: TangentialMotion) -> Array:
         """Return the estimated error of the last of three answers with doubled steps, in m/s."""
         coarse, middle, fine = (np.asarray(m.slip_velocity_change) for m in motions)
         earlier, last = np.abs(middle - coarse), np.abs(fine - middle)
         with np.errstate(all="ignore"):
             ratio = np.where(last > 0.0, earlier / last, np.inf)
             smooth = np.maximum(last / (np.minimum(ratio, 4.0) - 1.0), BELIEVED * earlier)
-        return np.where(ratio >= SMOOTH, smooth, WANDERS * np.maximum(last, 0.5 * earlier))
+        error: Array = np.where(ratio >= SMOOTH, smooth, WANDERS * np.maximum(last, 0.5 * earlier))
+        return error
 
 
 def _rates(motion: TangentialMotion) -> tuple[Array, Array]:

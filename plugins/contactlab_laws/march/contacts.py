@@ -59,14 +59,14 @@ class TouchingContacts:
         self._impulse, self._moment = np.zeros((2, *scene.shape, 3))
         self._pushed, self._greatest = none, none
         self._touching = links.loaded
-        self.too_often: Any = np.zeros(scene.shape, dtype=bool)
+        self.too_often = np.zeros(scene.shape, dtype=bool)
         self._touches = links.loaded.astype(float)
         self._first = np.where(links.loaded, 0.0, math.nan)
         self._least = CLOSING * np.asarray(scene.normal_speed)
         self._holding = ~np.asarray(links.loaded)
         self._last = self._first
         # a gathering that forces push does not fly freely
-        pulled: Any = links.pull.any(axis=(-1, -2), keepdims=True)
+        pulled = np.asarray(links.pull.any(axis=(-1, -2), keepdims=True))
         self._free, self._pulls = np.logical_not(pulled[..., 0]), bool(pulled.any())
 
     def after(
@@ -183,10 +183,11 @@ class TouchingContacts:
         return approach, lies, state
 
 
-def most_steps(scene: Scene, duration: Real, step: Real) -> Any:
+def most_steps(scene: Scene, duration: Real, step: Real) -> Real:
     """Return the steps after which a gathering is given up, without flights."""
     longest = np.max(np.broadcast_to(duration, scene.shape), axis=-1, keepdims=True)
-    return LONGEST * scene.shape[-1] * np.ceil(longest / step)
+    most: Real = LONGEST * scene.shape[-1] * np.ceil(longest / step)
+    return most
 
 
 def tell_still_closing(touches: Array, held: Where, pulled: bool) -> str:
@@ -199,7 +200,7 @@ def tell_still_closing(touches: Array, held: Where, pulled: bool) -> str:
     return sentence
 
 
-def pressing(law: NormalLaw, memory: object, approach: Array) -> Any:
+def pressing(law: NormalLaw, memory: object, approach: Array) -> Real:
     """Return the force in N of contacts at rest."""
     return law.respond(memory, approach, np.zeros(approach.shape))[0].force
 

@@ -7,6 +7,7 @@ so that single impacts are plain numbers.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -116,7 +117,8 @@ class _March:
         self.links, self.contacts = scene.links, None
         if self.links is not None:
             self.contacts = TouchingContacts(scene, self.links)
-        W: Any = scene.inverse_mass
+        W = scene.inverse_mass
+        assert W is not None
         size = 1 + self.axes
         self.W = [[entry(W[..., i, j]) for j in range(size)] for i in range(size)]
         slip = np.asarray(scene.slip_velocity)
@@ -348,7 +350,7 @@ class _March:
             return [step * moved[..., k] for k in range(3)]
         return [step * sum(w * f for w, f in zip(row, each, strict=True)) for row in self.W]
 
-    def _whole(self, where: Mask) -> Any:
+    def _whole(self, where: Mask) -> Mask:
         """Return a mask; of gatherings with all contacts where one is marked."""
         return where if self.contacts is None else whole(where)
 
@@ -363,7 +365,9 @@ class _March:
     def _motion(self) -> TangentialMotion:
         lost = np.where(self.status != Status.SUCCESS, math.nan, 0.0)
         change = self._join([each + lost for each in self.change[1:]])
-        number: Any = (lambda v: v + lost) if self.shape else (lambda v: float(v + lost))
+        number: Callable[[Real], Real] = (
+            (lambda v: v + lost) if self.shape else (lambda v: float(v + lost))
+        )
         rate = self.before[0] + self.change[0]
         ends = (self.duration, rate, *self.greatest, self.loss, self.compressions)
         return TangentialMotion(

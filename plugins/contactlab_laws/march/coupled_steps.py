@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,11 +33,12 @@ def find_least_steps(scene: Scene, normal: NormalMotion, law: CausalTangentialLa
     """Return the least steps in the approach without friction that resolve every oscillation."""
     # omega² <= k_n W_nn + k_t tr W_tt; both stiffnesses grow as the contact radius, and the energy
     # bounds the radius.
-    W: Any = scene.inverse_mass
     normal_stiffness = 2.0 * scene.pair.effective_modulus * normal.maximum_radius
     tangential = judges.stiffness_of(law, normal.scene, normal)
     if scene.links is not None:
         return _find_largest_need(scene, normal, law, (normal_stiffness, tangential))
+    W = scene.inverse_mass
+    assert W is not None
     inertia = W[..., 1, 1]
     if not scene.planar:
         inertia = inertia + scene.pair.cross_stiffness_ratio * W[..., 2, 2]
@@ -53,7 +54,7 @@ def _find_largest_need(
     pressed, dragged = stiffness
     sides = pressed, dragged, np.asarray(scene.pair.cross_stiffness_ratio) * dragged
     wide = np.stack([np.broadcast_to(each, scene.shape) for each in sides], axis=-1)
-    omega = np.sqrt(scene.links.fastest(wide * (deepest(scene) ** 0.2)[..., None]))
+    omega = np.sqrt(scene.links.fastest(wide * np.asarray(deepest(scene) ** 0.2)[..., None]))
     return resolving(np.broadcast_to(omega * _count_duration(scene, normal), scene.shape), law)
 
 
@@ -80,18 +81,20 @@ def _count_duration(scene: Scene, normal: NormalMotion) -> Real:
     return duration if scene.links is None else np.min(duration, axis=-1, keepdims=True)
 
 
-def deepest(scene: Scene) -> Any:
+def deepest(scene: Scene) -> Real:
     """Return a bound of zeta^2.5, the energy in the normal contact over that of the approach."""
     if scene.links is not None:
         approach = 0.5 * scene.pair.normal_mass * np.square(scene.normal_speed)
-        return np.clip(scene.links.energy / approach, 1.0, DEEPEST)
+        most: Real = np.clip(scene.links.energy / approach, 1.0, DEEPEST)
+        return most
     unmoved = 0.0 * np.asarray(scene.slip_velocity)
     energy, _, _ = kinetics.energies(scene, scene.normal_speed, unmoved)
     alone = 0.5 * scene.pair.normal_mass * np.square(scene.normal_speed)
     drag = kinetics.size_of(scene, np.asarray(scene.lam))
     with np.errstate(divide="ignore"):
         held = np.where(drag < 1.0, 1.0 / np.maximum(1.0 - drag, 0.0), np.inf)
-    return np.clip(np.minimum(energy / alone, held), 1.0, DEEPEST)
+    bound: Real = np.clip(np.minimum(energy / alone, held), 1.0, DEEPEST)
+    return bound
 
 
 class Division(NamedTuple):

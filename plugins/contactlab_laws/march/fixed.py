@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Callable
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.contracts import (
     CausalTangentialLaw,
@@ -85,7 +86,7 @@ def _most(needed: Real) -> float:
     return needed if isinstance(needed, float) else float(np.fmax.reduce(needed, axis=None))
 
 
-def refusals(steps: int, needed: Real) -> Any:
+def refusals(steps: int, needed: Real) -> str | NDArray[np.object_]:
     """Return the detail of ``TOO_FEW_STEPS`` for each impact."""
     told = [f"steps = {steps}; this scene needs at least {each:.6g}." for each in np.ravel(needed)]
     return np.array(told, dtype=object).reshape(np.shape(needed)) if np.ndim(needed) else told[0]
@@ -112,7 +113,7 @@ def in_groups(
             motion = even(normal.take(where), int(number))
         else:
             detail = refusals(steps, needed[where])
-            motion = TangentialMotion.nothing(detail.shape, Status.TOO_FEW_STEPS, detail)
+            motion = TangentialMotion.nothing(np.shape(needed[where]), Status.TOO_FEW_STEPS, detail)
         parts.append((where, motion))
     return TangentialMotion.merge(parts, shape)
 

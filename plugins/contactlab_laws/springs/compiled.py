@@ -200,7 +200,8 @@ def _contacts(scene: Scene, normal: NormalMotion, shear_loss: float | None) -> A
 def _blocks(scene: Scene, contacts: int) -> tuple[NDArray[np.intc], NDArray[np.intc], Array]:
     """Return W as blocks of 3 x 3 that are not zero in all scenes, by rows: starts, columns, W."""
     if scene.links is None:
-        inverse: Any = scene.inverse_mass
+        inverse = scene.inverse_mass
+        assert inverse is not None
         block = np.ascontiguousarray(np.broadcast_to(inverse, (*scene.shape, 3, 3)), dtype=float)
         return np.array([0, 1], np.intc), np.zeros(1, np.intc), block
     W = scene.links.inverse_mass
@@ -209,7 +210,7 @@ def _blocks(scene: Scene, contacts: int) -> tuple[NDArray[np.intc], NDArray[np.i
         starts, columns = (each.astype(np.intc) for each in (W.indptr, W.indices))
         return starts, columns, np.ascontiguousarray(W.data, dtype=float)
     full = W.reshape(-1, contacts, 3, contacts, 3).swapaxes(2, 3)
-    kept: Any = full.any(axis=(0, 3, 4))
+    kept = np.asarray(full.any(axis=(0, 3, 4)))
     np.fill_diagonal(kept, True)
     starts = np.concatenate(([0], np.cumsum(kept.sum(axis=1)))).astype(np.intc)
     rows, columns = np.nonzero(kept)

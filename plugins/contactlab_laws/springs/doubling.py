@@ -22,7 +22,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat
 from contactlab.numeric.types import Array, Real
 from contactlab_laws.jaeger.bundle import spring_fields
-from contactlab_laws.springs.turning import Vectors, energy, turn_springs
+from contactlab_laws.springs.turning import Some, Vectors, energy, turn_springs
 
 #: Contacts whose radius is below this times that of the pair just touch: no friction. The cells of
 #: a smaller contact could underflow.
@@ -246,7 +246,7 @@ def fields(state: State) -> dict[str, Any]:
     springs = len(deflection)
     places = np.multiply.outer(np.arange(springs) + 0.5, size / springs)
 
-    def rows(each: Vectors) -> Any:
+    def rows(each: Some) -> Some:
         return each.T.reshape(*state.shape, springs)
 
     return spring_fields(rows(places), rows(deflection), rows(limit))

@@ -8,7 +8,6 @@ and 18 x^1.5/m² of the steps: of impacts of spheres and of bodies, in the plane
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -132,7 +131,8 @@ def of_bodies(scene: Scene, springs: int, steps: Real, *, shared: bool) -> Error
     return Errors(np.fmin(psi2, 0.5 * (1.0 + x) * restitution), restitution)
 
 
-def _by_steps(x: Any, steps: Real, even: float, entering: float) -> Any:
+def _by_steps(x: Real, steps: Real, even: float, entering: float) -> Real:
     """Return the error by steps."""
     steps = np.asarray(steps, dtype=float)
-    return np.maximum(even * x**1.5 / steps**2, entering * np.minimum(x, 1.0) / steps**1.5)
+    graded, entered = even * x**1.5 / steps**2, entering * np.minimum(x, 1.0) / steps**1.5
+    return np.maximum(graded, entered)

@@ -213,7 +213,9 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
             return doubling.start(scene, self.number)
         return super().start(scene, normal)
 
-    def begin(self, scene: Scene, normal: NormalMotion, *, vectors: bool = False) -> Any:
+    def begin(
+        self, scene: Scene, normal: NormalMotion, *, vectors: bool = False
+    ) -> doubling.State | viscous.State:
         """Return springs that span the approach without friction, and double if outgrown.
 
         As ``vectors`` they turn with the slip.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,8 +40,12 @@ class Slip(NamedTuple):
     def of(self, where: NDArray[np.intp]) -> Slip:
         """Return that of some impacts."""
         shape = np.shape(self.velocity)
-        few: Any = (np.broadcast_to(each, shape)[where] for each in self)
-        return Slip(*few)
+        return Slip(
+            np.broadcast_to(self.velocity, shape)[where],
+            np.broadcast_to(self.force, shape)[where],
+            np.broadcast_to(self.mobility, shape)[where],
+            np.broadcast_to(self.acting, shape)[where],
+        )
 
 
 def solve_slip(

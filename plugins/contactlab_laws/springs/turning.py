@@ -13,7 +13,7 @@ stiffness along the first axis.
 from __future__ import annotations
 
 import math
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,7 @@ from contactlab.numeric.types import Array
 
 #: Displacements or forces of the tangent plane, as complex numbers; along one line real ones.
 Vectors: TypeAlias = NDArray[np.number]
+Some = TypeVar("Some", Array, Vectors)
 
 #: Share of the step after which springs are cut first, and what that cut weighs at the end.
 EARLY = 1.0 - math.sqrt(0.5)

@@ -30,7 +30,7 @@ from contactlab_laws.springs.kelvin_voigt import (
     place_springs,
 )
 from contactlab_laws.springs.slip_velocity import Slip
-from contactlab_laws.springs.turning import TINY
+from contactlab_laws.springs.turning import TINY, Some
 
 #: Rates below this times that at first touch say nothing of A: the law is asked at this one.
 SLOWEST = 1e-3
@@ -210,11 +210,12 @@ def fields(state: State) -> dict[str, Any]:
     places = place_springs(memory.size, springs)
     limit = limit_springs(places * places, memory.edge, memory.excess)
     force = state.direction.cut(memory.deflection + memory.lead, limit)
-    rows: Any = (
-        np.broadcast_to(each, (springs, items)).T.reshape(*shape, springs)
-        for each in (places * scales.radius, memory.deflection, force, limit)
-    )
-    radius, deflection, traction, most = rows
+
+    def rows(each: Some) -> Some:
+        return np.broadcast_to(each, (springs, items)).T.reshape(*shape, springs)
+
+    radius, most = rows(places * scales.radius), rows(limit)
+    deflection, traction = rows(memory.deflection), rows(force)
     metres = np.asarray(scales.metres).reshape(*shape, 1)
     acting = spring_fields(radius, traction, most, metres=metres)
     relaxed = spring_fields(radius, deflection, most, metres=metres)["displacement"]

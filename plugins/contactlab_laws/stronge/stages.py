@@ -19,7 +19,7 @@ FLAT, TINY = 1e-14, 1e-15
 class Half(NamedTuple):
     """Compression, p = sin x, or restitution, p = cos x, with theta = scale x, x in [0, pi/2]."""
 
-    scale: Any
+    scale: float
     closing: bool
 
 
@@ -71,7 +71,7 @@ def rebound(incidence: float, frequency: float, restitution: float) -> Rebound:
 
 
 def advance_stage(
-    numbers: Numbers, contact: Contact, half: Half, frequency: Any, x: Any
+    numbers: Numbers, contact: Contact, half: Half, frequency: Real, x: Real
 ) -> tuple[Contact, Any]:
     """Return contact and phase where a stage that begins at x ends; all are in slip, or none."""
     follow = _slip if (contact.sense if numbers is ONE else contact.sense.all()) else _stick
@@ -79,7 +79,7 @@ def advance_stage(
 
 
 def _slip(
-    numbers: Numbers, contact: Contact, half: Half, frequency: Any, x: Any
+    numbers: Numbers, contact: Contact, half: Half, frequency: Real, x: Real
 ) -> tuple[Contact, Any]:
     """Slip of one sign ends where psi = dp/d theta."""
     incidence, before, held, work, sense = contact
@@ -96,7 +96,7 @@ def _slip(
 
 
 def _stick(
-    numbers: Numbers, contact: Contact, half: Half, frequency: Any, x: Any
+    numbers: Numbers, contact: Contact, half: Half, frequency: Real, x: Real
 ) -> tuple[Contact, Any]:
     """Stick ends where the spring force meets the limit."""
     incidence, before, start, work, _ = contact

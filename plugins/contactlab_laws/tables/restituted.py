@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from contactlab.numeric.arrays import part_of
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Array, Mask, Real
 from contactlab_laws.tables import elastic
 from contactlab_laws.tables.file import read
 from contactlab_laws.tables.patches import Single
@@ -121,9 +121,10 @@ def full_slip(speed: Array, chi: Array, e: Real) -> Array:
     return np.asarray(speed - 2.0 * chi * (1.0 + e))
 
 
-def sticks(speed: Real, chi: Real, e: Real) -> Any:
+def sticks(speed: Real, chi: Real, e: Real) -> Mask:
     """Return whether impacts do not slip throughout."""
-    return speed < np.maximum(border(chi, e), 1.0)
+    found: Mask = speed < np.maximum(border(chi, e), 1.0)
+    return found
 
 
 def shear_loss(psi1: Array, chi: Array, restitution: Real) -> Array:

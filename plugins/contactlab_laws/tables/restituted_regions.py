@@ -12,7 +12,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab_laws.tables.file import Stored
 from contactlab_laws.tables.patches import Patches, powers_of_chebyshev
 
@@ -47,7 +47,7 @@ PER_WIDTH = np.array([1.0 / (each.high - each.low) for each in REGIONS])
 NODES = (8, 6, 6)
 
 
-def bound_restitution_error(chi: Any, restitution: Any) -> Any:
+def bound_restitution_error(chi: Real, restitution: Real) -> Array:
     """Return the bound of the error of psi2 below a restitution of 1; 0 at e = 0."""
     far = BEYOND_ERROR * np.sqrt(np.asarray(chi) / RESTITUTED_CHI[1])
     wide = np.where(chi <= RESTITUTED_CHI[1], WIDER_ERROR, far)

@@ -6,7 +6,7 @@ normal motion is computed once.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,11 +74,12 @@ class Contact(NamedTuple):
     spacing: Array
     rest: Array
 
-    def total(self, values: Array, at_edge: Array) -> Any:
+    def total(self, values: Array, at_edge: Array) -> Array:
         """Return the integral of values, 0 out of contact, by trapezoids up to the edge."""
         last = values[self.outer, np.arange(values.shape[1])]
         inner = values.sum(axis=0) - 0.5 * (values[0] + last)
-        return self.spacing * inner + self.rest * (last + at_edge)
+        whole: Array = self.spacing * inner + self.rest * (last + at_edge)
+        return whole
 
 
 @np.errstate(under="ignore", over="ignore")

@@ -120,7 +120,7 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
         if self.restitution is not None:
             return super().restitution_in(scene)
         speed = np.asarray(scene.normal_speed)
-        e: Any
+        e: Real
         if self.restitutions is None:
             e = 1.0 - (self.speed_loss or 0.0) * speed**0.2
             if np.min(e, initial=1.0) < 0.0:
@@ -136,7 +136,8 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
         """Return the rate at separation where e is below 0.01: A grows without bound."""
         if self.restitution is None and (self.speed_loss or self.restitutions) is None:
             return None
-        e: Any = self.restitution_in(scene)
+        e = self.restitution_in(scene)
+        assert e is not None
         if isinstance(e, float):
             return -e * scene.normal_speed if e < LEAST_RESTITUTION else None
         hardly = np.less(e, LEAST_RESTITUTION)
@@ -159,7 +160,7 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
         return rebound(*impact, **options)
 
     @staticmethod
-    def rebound_error(*impact: Any) -> Any:
+    def rebound_error(*impact: Any) -> Real:
         """Return that of the table, and of springs beyond it."""
         return bound_restitution_error(*impact)
 

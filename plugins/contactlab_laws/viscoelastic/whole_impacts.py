@@ -29,8 +29,7 @@ def look_up(scene: Scene, restitution: Real, *, beyond: bool) -> tuple[WholeImpa
         change = rebound(psi1, chi, restitution) - psi1
         error = float(bound_restitution_error(chi, restitution))
         known = min(max(chi, RESTITUTED_CHI[0]), RESTITUTED_CHI[1])
-        e: Any = restitution
-        shear = restituted.single_shear_loss(psi1, known, e)
+        shear = restituted.single_shear_loss(psi1, known, float(restitution))
     reason = "the answer is in the table of restitutions"
     if beyond:
         reason = "the answer is that of contactlab.rebound, as no step can follow e below 0.01"

@@ -5,12 +5,11 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from contactlab import Scene, Simulation, create
-from contactlab.numeric.types import Real
+from contactlab.numeric.types import Array, Real
 
 #: Nodes. psi1 has more of them around 1, where coupling acts most: below 1 the contact sticks at
 #: first touch, above 1 it slips. chi runs from a shell of nu = 0.5 to a ball with a dense core.
@@ -25,7 +24,7 @@ COUPLING_NUMBER = (0.25, 0.5, 1.0, 2.0, 4.0)
 RINGS, ANGLES = 32, 8
 
 
-def shift(psi1: Real, chi: Real, poisson_ratio: float, numbers: Sequence[float]) -> Any:
+def shift(psi1: Real, chi: Real, poisson_ratio: float, numbers: Sequence[float]) -> Array:
     """Return psi2 with one-way coupling less psi2 without, shape (numbers, ...)."""
     scene = {"psi1": psi1, "chi": chi, "poisson_ratio": poisson_ratio}
     like = _psi2("none", Scene.nondimensional(**scene))
@@ -50,9 +49,9 @@ def build(file: Path) -> None:
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def _psi2(coupling: str, scene: Scene) -> Any:
+def _psi2(coupling: str, scene: Scene) -> Array:
     """Return psi2 with that coupling; every step of every impact must settle."""
     law = create(
         "tangential.halfspace", coupling=coupling, rings=RINGS, angles=ANGLES, extrapolate=False
     )
-    return Simulation(tangential=law).run(scene).check().psi2
+    return np.asarray(Simulation(tangential=law).run(scene).check().psi2)
