@@ -78,7 +78,8 @@ class Motion(TangentialMotion):
         shape = normal.scene.shape
         if not (shape or axes):
             ends: NormalMotion | Ends = normal
-            exchange, compressions = 0.0, 1.0
+            exchange: Real = 0.0
+            compressions: Real = 1.0
             if tangential.normal is not None:
                 own = Ends.of(tangential.normal)
                 if not math.isnan(own.final_rate):
@@ -138,12 +139,13 @@ def _gather_ends(
     }
 
 
-def _exchange(normal: NormalMotion, own: Ends) -> Any:
+def _exchange(normal: NormalMotion, own: Ends) -> Real:
     """Return the energy in J that the normal motion lost, and the normal law did not take."""
     speed: Real = normal.scene.normal_speed
     rate = own.final_rate
     lost = 0.5 * normal.scene.pair.normal_mass * (speed * speed - rate * rate)
-    return lost - own.dissipation
+    moved: Real = lost - own.dissipation
+    return moved
 
 
 #: What a law that answers both motions together must know.

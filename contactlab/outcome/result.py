@@ -126,8 +126,7 @@ class ImpactResult(Answer, Generic[Each]):
     @property
     def psi1(self) -> Each:
         """Local angle of incidence of the paper's eq. (29), without unit."""
-        psi1: Any = of_each(self.scene.psi1, self.scene.shape)
-        return psi1
+        return of_each(self.scene.psi1, self.scene.shape)  # type: ignore[return-value]
 
     @property
     def psi_change(self) -> Each:
@@ -153,8 +152,8 @@ class ImpactResult(Answer, Generic[Each]):
     @property
     def couple(self) -> Each:
         """Angular impulse on the target about the normal, of the batch shape, in N m s."""
-        couple: Any = -kinetics.normal_inertia(self.scene) * self.motion.normal_spin_change
-        return couple
+        inertia = kinetics.normal_inertia(self.scene)
+        return -inertia * self.motion.normal_spin_change  # type: ignore[return-value]
 
     @property
     def normal_velocity(self) -> Each:
@@ -243,17 +242,15 @@ class ImpactResult(Answer, Generic[Each]):
         """
         axes = self.scene.frame
         if axes is None:
-            before: Any = self.scene.normal_spin
-            return before + self.motion.normal_spin_change
+            return self.scene.normal_spin + self.motion.normal_spin_change  # type: ignore[return-value]
         relative = self._in_space("spin") - self._in_space("target_spin")
-        spin: Any = plain(np.einsum("...i,...i->...", relative, axes[..., 0, :]))
-        return spin
+        spin = np.einsum("...i,...i->...", relative, axes[..., 0, :])
+        return plain(spin)  # type: ignore[return-value]
 
     @property
     def w2(self) -> Each:
         """W = kappa omega_n a/(mu v1) of the spin about the normal after the impact, theory §17."""
-        w2: Any = kinetics.rim(self.scene, self.rebound_normal_spin)
-        return w2
+        return kinetics.rim(self.scene, self.rebound_normal_spin)  # type: ignore[return-value]
 
     @property
     def target_rebound_normal_velocity(self) -> Each | Any:
@@ -318,8 +315,7 @@ class ImpactResult(Answer, Generic[Each]):
             normal, along = _see(scene, scene.encounter.velocity)
             return _angle(along, normal)
         speed = kinetics.along_slip(scene, scene.tangential_velocity)
-        angle: Any = of_each(_angle(speed, scene.normal_speed), scene.shape)
-        return angle
+        return of_each(_angle(speed, scene.normal_speed), scene.shape)  # type: ignore[return-value]
 
     @property
     def rebound_angle(self) -> Each | Any:

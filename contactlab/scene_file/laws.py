@@ -7,10 +7,12 @@ import re
 from collections.abc import Mapping
 from inspect import signature
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, overload
 
 import attrs
 
+from contactlab.contracts import Integrator, NormalLaw, TangentialLaw
+from contactlab.contracts.law import Law
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
@@ -129,14 +131,15 @@ class LawChoice:
             if name not in KINDS:  # check options of laws that are not chosen too
                 REGISTRY.create(name, **options)
         named = frozenset(kind for kind in KINDS if getattr(self, kind) or kind in self.options)
-        laws = composition.Laws(*(choice.make(kind) for kind in KINDS)).change(named=named)
+        made = choice.make("normal"), choice.make("tangential"), choice.make("integrator")
+        laws = composition.Laws(*made).change(named=named)
         composition.check(laws)
         return Simulation.of(laws)
 
     def resolve(self) -> LawChoice:
         """Return the choice with every law named."""
         choice = attrs.evolve(self, normal=self.normal or composition.DEFAULT_NORMAL)
-        made = [choice.make("normal")]
+        made: list[Law] = [choice.make("normal")]
         named = () if self.integrator is None else (choice.make("integrator"),)
         for kind in ("tangential", "integrator"):
             if getattr(choice, kind) is None:
@@ -173,7 +176,15 @@ class LawChoice:
         laws = {kind: type(choice.make(kind)) for kind in KINDS}
         return [f"{kind}.{name}" for kind in KINDS for name in signature(laws[kind]).parameters]
 
-    def make(self, kind: str) -> Any:
+    @overload
+    def make(self, kind: Literal["normal"]) -> NormalLaw: ...
+    @overload
+    def make(self, kind: Literal["tangential"]) -> TangentialLaw: ...
+    @overload
+    def make(self, kind: Literal["integrator"]) -> Integrator: ...
+    @overload
+    def make(self, kind: str) -> Law: ...
+    def make(self, kind: str) -> Law:
         """Return the law of one kind with its options."""
         name = full_name(kind, getattr(self, kind))
         options = dict(self.options.get(kind, {}))

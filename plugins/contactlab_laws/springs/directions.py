@@ -24,9 +24,10 @@ class Line(NamedTuple):
         """Return numbers of a batch in the arrangement of ``row``."""
         return row(value)
 
-    def restore_shape(self, force: Vectors, shape: tuple[int, ...]) -> Any:
+    def restore_shape(self, force: Vectors, shape: tuple[int, ...]) -> Real:
         """Return forces in the shape of the batch."""
-        return shape_as(force, shape)
+        restored: Real = shape_as(force, shape)
+        return restored
 
     def stretch(self, move: Vectors) -> Vectors:
         """Return displacements times the stiffness over that along the first axis."""
@@ -72,7 +73,7 @@ class Plane(NamedTuple):
         value = np.asarray(value)
         return row(value[..., 0]) + 1j * row(value[..., 1])
 
-    def restore_shape(self, force: Vectors, shape: tuple[int, ...]) -> Any:
+    def restore_shape(self, force: Vectors, shape: tuple[int, ...]) -> Real:
         """Return forces in the shape of the batch, (..., 2)."""
         return np.stack((force.real, force.imag), axis=-1).reshape(*shape, 2)
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, overload
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab_laws.tables.file import Stored, read
 from contactlab_laws.tables.patches import (
     Patches,
@@ -123,7 +123,17 @@ def load_table() -> Table:
     return Table.of(read(SHIPPED))
 
 
-def rebound(psi1: Any, chi: Any, *, derivatives: bool = False) -> Any:
+@overload
+def rebound(psi1: float, chi: float, *, derivatives: Literal[False] = ...) -> float: ...
+@overload
+def rebound(psi1: Array, chi: Array, *, derivatives: Literal[False] = ...) -> Array: ...
+@overload
+def rebound(psi1: Real, chi: Real, *, derivatives: Literal[False] = ...) -> Real: ...
+@overload
+def rebound(
+    psi1: Array, chi: Array, *, derivatives: Literal[True]
+) -> tuple[Array, Array, Array]: ...
+def rebound(psi1: Any, chi: Any, *, derivatives: bool = False) -> object:
     """Return psi2, odd in psi1 to the last bit, |psi2| <= |psi1|.
 
     Parameters

@@ -171,11 +171,12 @@ def _horner_text(terms: Sequence[object], argument: str) -> str:
     return text
 
 
-def _compile(arguments: str, *lines: str) -> Any:
+def _compile(arguments: str, *lines: str) -> Callable[..., float]:
     """Return a function of the lines."""
     names: dict[str, Any] = {}
     exec("\n ".join((f"def function({arguments}):", *lines)), names)
-    return names["function"]
+    function: Callable[..., float] = names["function"]
+    return function
 
 
 def compile_polynomial(terms: Array) -> Callable[[float], float]:
