@@ -7,7 +7,6 @@ import hashlib
 import os
 from functools import cache
 from importlib import resources
-from typing import Any
 
 #: 0 in this variable leaves the library out, at the build and at run time.
 VARIABLE = "CONTACTLAB_COMPILED"
@@ -31,7 +30,7 @@ def digest() -> str:
     return content.hexdigest()
 
 
-def library() -> Any:
+def library() -> ctypes.CDLL | None:
     """Return the library, or None where there is none or it is left out."""
     return _library(_wants_library())[0]
 
@@ -47,7 +46,7 @@ def _wants_library() -> bool:
 
 
 @cache
-def _library(wanted: bool) -> tuple[Any, str]:
+def _library(wanted: bool) -> tuple[ctypes.CDLL | None, str]:
     """Return the library, or None, and words about it."""
     if not wanted:
         return None, f"{VARIABLE}=0 leaves the compiled solver out"

@@ -87,6 +87,7 @@ def follow_one(
 ) -> tuple[Array, int, Array]:
     """Return what one impact leaves, its status, and its steps as rows of ``steps.Steps``."""
     law, given = library(), np.array(numbers, dtype=np.float64)
+    assert law is not None
     out, status, count = np.empty(7), ctypes.c_int(), ROOM
     rows = np.empty((0, law.contactlab_impact_width()))
     while count > len(rows):

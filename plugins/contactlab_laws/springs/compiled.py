@@ -24,7 +24,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat, spread_object
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import AnyArray, Array, Real
 from contactlab_laws.compiled import library
 from contactlab_laws.jaeger.partial_slip import Scales
 from contactlab_laws.march.contacts import tell_still_closing
@@ -120,7 +120,7 @@ def _first(value: Real | str | NDArray[np.object_], scene: Scene) -> NDArray[Any
     return whole if scene.links is None else whole[..., 0]
 
 
-def _of_contacts(words: list[Status] | list[str] | NDArray[np.intc], scene: Scene) -> Any:
+def _of_contacts(words: list[Status] | list[str] | NDArray[np.intc], scene: Scene) -> AnyArray:
     """Return entries of the scenes of a flat batch for each of their contacts."""
     kind = object if isinstance(words, list) else None
     told = np.array(words, dtype=kind).reshape(kinetics.batch_of(scene))

@@ -84,6 +84,7 @@ def _follow_springs(speed: Array, chi: Array, e: Array) -> Array:
 def _follow_in_c(psi1: Array, chi: Array, number: Real, *, springs: int, steps: int) -> Array:
     """Return psi2 of psi1 >= 0 by the compiled march, as ``batch.rebound`` does."""
     found, psi2 = library(), np.empty_like(psi1)
+    assert found is not None
     rows = [np.ascontiguousarray(each) for each in (psi1, chi, number)]
     samples, work = np.empty((steps, SAMPLE)), np.empty(ROWS * (springs + LANES))
     width = max(AT_A_TIME // (springs * steps), 1)  # Ctrl-C is heard between two calls
