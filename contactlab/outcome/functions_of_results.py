@@ -6,24 +6,36 @@ import math
 import warnings
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 
+from contactlab.impact.scene import Scene
 from contactlab.registration.hooks import short, shorten
 from contactlab.registration.installed import PluginWarning
 
-if TYPE_CHECKING:
-    from contactlab.outcome.columns import WithScene
-
 HISTORY = "history"
+
+
+class Read(Protocol):
+    """What a function of a plug-in reads: one impact, or a batch of them."""
+
+    @property
+    def scene(self) -> Scene:
+        """The scene."""
+
+    @property
+    def history(self) -> object:
+        """The history, false if there is none."""
+
+    def __getitem__(self, index: int, /) -> Read: ...
 
 
 def values_of(
     name: str,
     value: Callable[[Any], object],
     needs: Sequence[str],
-    result: WithScene,
+    result: Read,
     *,
     words: bool = False,
 ) -> object:
@@ -42,7 +54,7 @@ def values_of(
     return values
 
 
-def _numbers(value: Callable[[WithScene], object], result: WithScene) -> object:
+def _numbers(value: Callable[[Read], object], result: Read) -> object:
     """Return the numbers of a function of a result, or refuse what is none, or of another shape."""
     given = value(result)
     shape = result.scene.shape
@@ -57,7 +69,7 @@ def _numbers(value: Callable[[WithScene], object], result: WithScene) -> object:
     return given
 
 
-def _each(value: Callable[[WithScene], object], result: WithScene, said: list[str]) -> object:
+def _each(value: Callable[[Read], object], result: Read, said: list[str]) -> object:
     """Return the values of a function; where it fails for a batch it is asked for each impact."""
     shape = result.scene.shape
     try:
