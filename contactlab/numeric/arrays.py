@@ -205,9 +205,9 @@ def spread(value: Real, shape: tuple[int, ...]) -> Real:
     """Return ``value`` as a float for one impact, or as an array of ``shape`` for a batch."""
     if not shape:
         return float(value)
-    if isinstance(value, np.ndarray) and value.shape == shape:  # broadcasting is slower
-        return value.copy()
-    return np.array(np.broadcast_to(value, shape))
+    if isinstance(value, np.ndarray):  # broadcasting is slower
+        return value.copy() if value.shape == shape else np.array(np.broadcast_to(value, shape))
+    return np.full(shape, value)
 
 
 def of_each(value: Real, shape: tuple[int, ...]) -> Real:
@@ -216,8 +216,14 @@ def of_each(value: Real, shape: tuple[int, ...]) -> Real:
 
 
 def zeros(shape: tuple[int, ...]) -> Real:
-    """Return 0 for one impact, or read-only zeros of a batch that take no memory and no time."""
-    return np.broadcast_to(0.0, shape) if shape else 0.0
+    """Return 0 for one impact, or read-only zeros of a batch."""
+    return shared(0.0, shape)
+
+
+@lru_cache(maxsize=32)
+def shared(value: float, shape: tuple[int, ...]) -> Real:
+    """Return a number for one impact, or a read-only array of a batch that takes no memory."""
+    return np.broadcast_to(value, shape) if shape else value
 
 
 def are_zeros(value: Real) -> bool:

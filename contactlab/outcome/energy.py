@@ -13,7 +13,7 @@ from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import magnitude, of_each, plain, some
+from contactlab.numeric.arrays import are_zeros, magnitude, of_each, plain, some
 from contactlab.numeric.names import tell_attributes
 from contactlab.numeric.types import Each, Json, Mask, Real
 from contactlab.outcome.motion import Motion, all_finite
@@ -192,13 +192,17 @@ def judge_books(
 ) -> tuple[Motion, Real]:
     """Return ``motion`` with status ``UNBALANCED`` where the energy books do not balance.
 
-    Beside it stands the imbalance over the energy at the start. It fails above ``bound`` and
-    ``cancels``, or above 1 if the bound is infinite. Or a loss or work is below zero by more than
-    rounding and what is declared; or the bodies slip faster than at first touch. If friction
-    changed the normal motion, as in motions of both ``coupled``, or the spin about the normal, one
-    of the two may gain what the other loses, and the sum of both energies is judged.
+    Beside it stands the imbalance over the energy at the start, 0 where none exceeds ``bound``. It
+    fails above ``bound`` and ``cancels``, or above 1 if the bound is infinite. Or a loss or work is
+    below zero by more than rounding and what is declared; or the bodies slip faster than at first
+    touch. If friction changed the normal motion, as in motions of both ``coupled``, or the spin
+    about the normal, one of the two may gain what the other loses, and the sum of both energies is
+    judged.
     ``restitution_error`` is declared, NaN if it is not.
     """
+    changed = not are_zeros(motion.exchange) or not are_zeros(motion.normal_spin_change)
+    if not (coupled or changed or _spoils(motion, scene, bound)):
+        return motion, 0.0
     alone = (motion.exchange == 0.0) & (motion.normal_spin_change == 0.0) & (not coupled)
     gain = OF_THE_RATE * restitution_error + ROUNDING
     return _mark_imbalance(motion, scene, np.maximum(bound, cancels), alone, gain)
@@ -222,6 +226,24 @@ def raise_errors(
         own = columns.restitution_error
         restitution = np.where(doubted, np.maximum(own, rate), own)
     return columns._replace(psi2_error=plain(psi2), restitution_error=plain(restitution))
+
+
+@np.errstate(all="ignore")
+def _spoils(motion: Motion, scene: Scene, bound: Real) -> bool:
+    """Return whether any judge of ``_mark_imbalance`` fails an impact that slip alone changed."""
+    change: Any = motion.slip_velocity_change
+    start, _, lost = kinetics.energies(scene, motion.normal_velocity, change)
+    work: Any = motion.friction_work
+    least: Any = -(np.minimum(bound, STEPS_LEAVE) + ROUNDING) * start
+    bad = work < least
+    if not are_zeros(shear_loss := motion.shear_loss):
+        bad |= shear_loss < least
+        work = work + shear_loss
+    bad |= abs(lost - work) > np.where(bound == math.inf, LARGEST_UNDECLARED, bound) * start
+    slip: Any = scene.slip_velocity
+    after = kinetics.size_of(scene, slip + change)
+    bad |= after > LARGEST_SLIP * kinetics.size_of(scene, slip)
+    return some(bad)
 
 
 @np.errstate(all="ignore")

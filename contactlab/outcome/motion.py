@@ -15,7 +15,15 @@ from contactlab.contracts.sampled_motion import Ends
 from contactlab.contracts.status import Status
 from contactlab.contracts.tangential_motion import TangentialMotion
 from contactlab.contracts.whole_impact import WholeImpact
-from contactlab.numeric.arrays import are_zeros, choose, finite, lock_arrays, spread, zeros
+from contactlab.numeric.arrays import (
+    are_zeros,
+    choose,
+    finite,
+    lock_arrays,
+    shared,
+    spread,
+    zeros,
+)
 from contactlab.numeric.types import Array, Either, Real
 
 #: Entries of ``Motion`` by the name of their source in a normal motion.
@@ -101,19 +109,21 @@ class Motion(TangentialMotion):
                 compressions=float(compressions),
             )
         entries: dict[str, Any] = {name: getattr(normal, source) for name, source in ENDS.items()}
-        entries |= {"exchange": 0.0, "compressions": 1.0}
+        usual = {"exchange": zeros(shape), "compressions": shared(1.0, shape)}
         if tangential.normal is not None:
             entries |= _gather_ends(normal, tangential, entries)
+            usual = {}
         entries["friction_work"] = tangential.friction_work
-        entries["shear_loss"] = tangential.shear_loss
-        change, turned = tangential.slip_velocity_change, tangential.normal_spin_change
-        given: dict[str, Any] = {
+        for name in ("shear_loss", "normal_spin_change"):
+            if are_zeros(value := getattr(tangential, name)):
+                usual[name] = zeros(shape)
+            else:
+                entries[name] = value
+        change = tangential.slip_velocity_change
+        given: dict[str, Any] = usual | {
             name: lock_arrays(spread(value, shape)) for name, value in entries.items()
         }
         return cls(
-            normal_spin_change=zeros(shape)
-            if are_zeros(turned)
-            else lock_arrays(spread(turned, shape)),
             **given,
             slip_velocity_change=lock_arrays(spread(change, (*shape, *axes))),
             status=lock_arrays(tangential.status),

@@ -67,7 +67,9 @@ def answers(
     left = separates(normal)
     given = []
     for answer in tangential.whole_impacts(scene, normal):
-        where = left & np.broadcast_to(answer.where, shape)
+        where = left & answer.where
+        if where.shape != shape:
+            np.broadcast_to(answer.where, shape)  # raises what is wrong
         if not always:
             where &= np.logical_not(_falls_short(answer, history, largest_error))
         if where.any():

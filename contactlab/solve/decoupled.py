@@ -200,10 +200,7 @@ def _join_answers(normal: NormalMotion, answered: list[Answered]) -> TangentialM
         else np.full(shape, math.nan)
         for name in SELDOM
     }
-    status, detail = (
-        np.array(np.broadcast_to(np.asarray(entry, dtype=object), shape))
-        for entry in (normal.status, normal.detail)
-    )
+    status, detail = (np.full(shape, each, dtype=object) for each in (normal.status, normal.detail))
     counters: Counter[str] = Counter()
     for where, answer in answered:
         np.copyto(change, answer.slip_velocity_change, where=where)

@@ -31,7 +31,7 @@ from contactlab.study.posed import pose
 from contactlab.study.stability_references import converges
 
 #: What is timed: nothing is left to prepare.
-Call: TypeAlias = Callable[[], Any]
+Call: TypeAlias = Callable[[], object]
 #: Calls of C on one impact that are timed as one, so that the way into C does not count.
 IN_C = 1000
 #: Impacts in C by numbers: of spheres with e, and of bodies in a plane.
