@@ -16,6 +16,7 @@ from contactlab.impact import shapes
 from contactlab.impact.bodies import HalfSpace
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.material import Material, entry, names
+from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.checks import refuse
 from contactlab.runs.simulation import Simulation
 
@@ -34,26 +35,38 @@ PARTS = {
     "CLASS": "contactlab_pages/class.js", "PAGE": "contactlab_pages/explore.js",
     "ROD": "contactlab_pages/rod.js",
 }  # fmt: skip
-#: Tilts of the rod from the vertical in degrees, and its friction coefficient.
-TILTS, ROD_FRICTION = range(76), 0.3
+#: Tilts of the rod from the vertical in degrees, its friction coefficient and restitutions.
+TILTS, ROD_FRICTION, RESTITUTIONS = range(76), 0.3, (1.0, 0.8, 0.6, 0.4)
 
 
 @cache
-def rod_table() -> list[list[list[float]]]:
-    """Return how a rod that falls at 1 m/s leaves: [law][tilt][velocity x, z, spin], in SI."""
+def rod_table() -> list[list[list[list[float]]]]:
+    """Return how a rod that falls at 1 m/s leaves: [e][law][tilt][velocity x, z, spin], in SI."""
     steel, down = Material.named("steel"), np.array([0.0, 0.0, -1.0])
-    rows: list[list[list[float]]] = [[], []]
-    for angle in np.radians(TILTS):
-        axis = [np.sin(angle), 0.0, np.cos(angle)]
-        body, contact = shapes.rod(length=1.0, radius=0.02, material=steel, normal=down, axis=axis)
-        met = Encounter(
-            body, HalfSpace(steel), ROD_FRICTION, normal=down, velocity=down, contact=contact
+    rods = [
+        shapes.rod(
+            length=1.0, radius=0.02, material=steel, normal=down,
+            axis=[np.sin(angle), 0.0, np.cos(angle)],
         )
-        for law, simulation in zip(rows, (None, Simulation(tangential="coulomb")), strict=True):
-            after = collide(met, simulation).check()
-            left = after.velocity[0], after.velocity[2], after.spin[1]
-            law.append([round(float(number), 3) + 0.0 for number in left])
-    return rows
+        for angle in np.radians(TILTS)
+    ]  # fmt: skip
+    bodies = RigidBody(
+        mass=rods[0][0].mass,
+        inertia=np.stack([body.inertia for body, _ in rods]),
+        material=steel,
+        curvature_radius=0.02,
+    )
+    contacts = np.stack([contact for _, contact in rods])
+    met = Encounter(
+        bodies, HalfSpace(steel), ROD_FRICTION, normal=down, velocity=down, contact=contacts
+    )
+    table = []
+    for e in RESTITUTIONS:
+        laws = Simulation(restitution=e), Simulation(tangential="coulomb", restitution=e)
+        after = [collide(met, each).check() for each in laws]
+        left = [np.column_stack((each.velocity[:, ::2], each.spin[:, 1])) for each in after]
+        table.append([(each.round(3) + 0.0).tolist() for each in left])
+    return table
 
 
 def explore_page(
@@ -123,6 +136,7 @@ def explore_page(
         "/*MATERIALS*/null": json.dumps({name: entry(name).numbers() for name in names()}),
         "/*FIRST*/null": json.dumps(first),
         "/*TABLE*/null": json.dumps(rod_table(), separators=(",", ":")),
+        "/*BOUNCES*/null": json.dumps(RESTITUTIONS),
         "/*SPRINGS*/0": str(SPRINGS),
         "/*STEPS*/0": str(STEPS),
         "/*RANGES*/null": json.dumps(RANGES),
