@@ -39,6 +39,11 @@ class TracingLibrary(Protocol):
     def compile_late(self, function: Callable[..., Any]) -> Callable[..., Any]:
         """Return a function that may be compiled when it is called."""
 
+    def with_slopes(
+        self, value: Callable[..., Any], slopes: Callable[..., Any], fixed: int
+    ) -> Callable[..., Any]:
+        """Return a function; ``slopes`` by its arguments but the first, ``fixed`` ones, if used."""
+
 
 class _Jax:
     """JAX."""
@@ -64,6 +69,19 @@ class _Jax:
                 name: self.xp.asarray(each, like.dtype if each.dtype.kind == "f" else "int32")
                 for name, each in numbers.items()
             }
+
+    def with_slopes(
+        self, value: Callable[..., Any], slopes: Callable[..., Any], fixed: int
+    ) -> Callable[..., Any]:
+        """Return a function that JAX differentiates by its slopes."""
+        function = self.jax.custom_jvp(value)
+
+        @function.defjvp  # type: ignore[untyped-decorator]  # JAX may not be there
+        def slope(given: Any, moved: Any) -> Any:
+            steps = zip(slopes(*given), moved[fixed:], strict=True)
+            return function(*given), sum(steep * step for steep, step in steps)
+
+        return function  # type: ignore[no-any-return]
 
 
 class _Torch:
@@ -116,6 +134,12 @@ class _Torch:
     def compile_late(self, function: Callable[..., Any]) -> Callable[..., Any]:
         """Return the function as it is: who compiles calls torch.compile."""
         return function
+
+    def with_slopes(
+        self, value: Callable[..., Any], slopes: Callable[..., Any], fixed: int
+    ) -> Callable[..., Any]:
+        """Return a function as it is: PyTorch differentiates what it has computed."""
+        return value
 
 
 def _plain(value: Any) -> Any:

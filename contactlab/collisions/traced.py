@@ -68,9 +68,10 @@ def _tables(library: str, law: Tabulated, like: Any) -> Any:
 @cache
 def _function(library: str, law: Tabulated, joined: bool) -> Callable[..., Any]:
     """Return psi2 of tables and impacts, compiled when it is called if the library compiles."""
-    xp = find_library(library).xp
+    of = find_library(library)
+    xp = of.xp
 
     def psi2(tables: Any, *impact: Any) -> Any:
-        return law.rebound_of_arrays(xp, tables, *impact, joined=joined)
+        return law.rebound_of_arrays(xp, tables, *impact, joined=joined, with_slopes=of.with_slopes)
 
-    return find_library(library).compile_late(psi2)
+    return of.compile_late(psi2)

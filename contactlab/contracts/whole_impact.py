@@ -141,7 +141,9 @@ class Tabulated(ABC):
             As in ``rebound``, of one shape and type. Out of the range of the law psi2 is NaN.
         **options
             ``joined``: False if no restitution is near 1, so that the law may leave out what joins
-            it to elastic impacts.
+            it to elastic impacts. ``with_slopes(value, slopes, fixed)`` returns the function
+            ``value``; a library that compiles takes its derivatives from the list ``slopes`` by
+            each argument but the first ``fixed`` ones.
         """
         raise NotImplementedError("this law has no table for arrays of other libraries")
 

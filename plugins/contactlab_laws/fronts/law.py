@@ -89,11 +89,11 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
         return traced.elastic_constants()
 
     @staticmethod
-    def rebound_of_arrays(xp: Any, tables: Any, *impact: Any, **_: Any) -> Any:
+    def rebound_of_arrays(xp: Any, tables: Any, *impact: Any, **options: Any) -> Any:
         """Return psi2 of psi1 and chi; there is nothing to join."""
         from contactlab_laws.tables import traced
 
-        return traced.rebound(xp, tables, *impact)
+        return traced.rebound(xp, tables, *impact, with_slopes=options["with_slopes"])
 
     table: bool = flag(default=True)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol, TypeAlias, Union
 
 
@@ -52,6 +53,12 @@ class Library(Protocol):
 
     def where(self, condition: Traced, x1: Operand, x2: Operand, /) -> Traced:
         """Return ``x1`` where the condition holds, else ``x2``."""
+
+    def stack(self, arrays: Sequence[Traced], /, *, axis: int) -> Traced:
+        """Return arrays side by side along a new axis."""
+
+    def sum(self, x: Traced, /, *, axis: int) -> Traced:
+        """Return sums along an axis."""
 
     def ones_like(self, x: Traced, /) -> Traced:
         """Return ones of the shape and type of ``x``."""

@@ -8,9 +8,9 @@ number, so that derivatives of what is not chosen are finite.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -28,12 +28,22 @@ from contactlab_laws.tables.restituted_regions import (
     border,
 )
 
+#: A function of arrays, its slopes by each of its last arguments, and what joins the two: the
+#: first arguments, so many, are not differentiated.
+Differentiable: TypeAlias = Callable[..., Traced]
+Slopes: TypeAlias = Callable[..., list[Traced]]
+WithSlopes: TypeAlias = Callable[[Differentiable, Slopes, int], Differentiable]
 #: A harmless number in place of the argument of a root.
 HARMLESS = 0.5
 #: Regions in which the first coordinate is a root, and those in which the second is.
 ROOTS = (of.SMALL_NEAR, of.SLIP_BACK, of.SLIP_ON), (of.STUCK_ON, of.SLIP_ON)
 #: Before the names of the elastic table among those of the table of restitutions.
 ELASTIC = "elastic "
+
+
+def without(value: Differentiable, *_: Slopes | int) -> Differentiable:
+    """Return a function whose slopes the library finds itself."""
+    return value
 
 
 @cache
@@ -81,7 +91,14 @@ def list_constants() -> dict[str, Any]:
     }
 
 
-def rebound(xp: Library, constants: Mapping[str, Traced], psi1: Traced, chi: Traced) -> Traced:
+def rebound(
+    xp: Library,
+    constants: Mapping[str, Traced],
+    psi1: Traced,
+    chi: Traced,
+    *,
+    with_slopes: WithSlopes = without,
+) -> Traced:
     """Return psi2 of elastic impacts, NaN where the table ends.
 
     Parameters
@@ -92,11 +109,13 @@ def rebound(xp: Library, constants: Mapping[str, Traced], psi1: Traced, chi: Tra
         ``elastic_constants``, as arrays of that library.
     psi1, chi : array
         Numbers of the impacts, arrays of one shape and type.
+    with_slopes : callable
+        As in ``contracts.whole_impact.Tabulated``.
     """
     inside = xp.isfinite(psi1) & (chi > 0.0) & (chi <= of.LARGEST_CHI)
     sign = xp.where(psi1 < 0.0, -xp.ones_like(psi1), xp.ones_like(psi1))  # 1 at 0: odd and smooth
     speed = xp.where(inside, sign * psi1, HARMLESS)
-    psi2 = _elastic(xp, constants, speed, xp.where(inside, chi, 1.0))
+    psi2 = _elastic(xp, constants, speed, xp.where(inside, chi, 1.0), with_slopes)
     return xp.where(inside, sign * psi2, xp.nan)
 
 
@@ -108,6 +127,7 @@ def rebound_with_loss(
     e: Traced,
     *,
     joined: bool,
+    with_slopes: WithSlopes = without,
 ) -> Traced:
     """Return psi2 of impacts with a restitution, NaN where the table ends.
 
@@ -121,6 +141,8 @@ def rebound_with_loss(
         Numbers of the impacts, arrays of one shape and type.
     joined : bool
         False if no e is above ``restituted.JOINED``, where the elastic table is needed too.
+    with_slopes : callable
+        As in ``contracts.whole_impact.Tabulated``.
     """
     inside = xp.isfinite(psi1) & (e >= 0.0) & (e <= 1.0)
     inside = inside & (chi >= RESTITUTED_CHI[0]) & (chi <= RESTITUTED_CHI[1])
@@ -129,7 +151,7 @@ def rebound_with_loss(
     p = xp.where(inside, sign * psi1, HARMLESS)
     x, e = xp.where(inside, chi, 1.0), xp.where(inside, e, HARMLESS)
     full = p - 2.0 * x * (1.0 + e)
-    psi2 = _partial(xp, constants, p, x, e)
+    psi2 = _partial(xp, constants, p, x, e, with_slopes)
     if joined:
         lossless = {
             name.removeprefix(ELASTIC): each
@@ -138,7 +160,9 @@ def rebound_with_loss(
         }
         near = (e > restituted.JOINED) & (x <= of.LARGEST_CHI)
         y = xp.where(near, x, 1.0)
-        step = _elastic(xp, lossless, p, y) - _partial(xp, constants, p, y, xp.ones_like(e))
+        one = xp.ones_like(e)
+        step = _elastic(xp, lossless, p, y, with_slopes)
+        step = step - _partial(xp, constants, p, y, one, with_slopes)
         psi2 = psi2 + xp.where(near, restituted._share(e) * step, 0.0)
     rest = xp.where(x < 0.5, 1.0 - 2.0 * x, 1.0)
     slow = xp.where((p > 0.0) & (p < 1.0), p, 1.0)
@@ -151,7 +175,9 @@ def rebound_with_loss(
     return xp.where(inside, sign * psi2, xp.nan)
 
 
-def _elastic(xp: Library, constants: Mapping[str, Traced], p: Traced, x: Traced) -> Traced:
+def _elastic(
+    xp: Library, constants: Mapping[str, Traced], p: Traced, x: Traced, with_slopes: WithSlopes
+) -> Traced:
     """Return psi2 of psi1 = p >= 0 and 0 < chi <= LARGEST_CHI."""
     full = p - 4.0 * x
     slips, big = p > 1.0, x >= 0.5
@@ -210,7 +236,7 @@ def _elastic(xp: Library, constants: Mapping[str, Traced], p: Traced, x: Traced)
         for k, each in enumerate((a, b))
     ]
     count = elastic.NODES
-    g = _sum(xp, constants["terms"], patch * count**2, (count, count), local, p.shape)
+    g = _sum(xp, constants["terms"], patch, (count, count), local, p.shape, with_slopes)
     psi2 = p * (measure * g - 1.0)
     psi2 = xp.where(psi2 < full, full, psi2)
     psi2 = xp.where(psi2 > p, p, xp.where(psi2 < -p, -p, psi2))
@@ -218,7 +244,12 @@ def _elastic(xp: Library, constants: Mapping[str, Traced], p: Traced, x: Traced)
 
 
 def _partial(
-    xp: Library, constants: Mapping[str, Traced], p: Traced, x: Traced, e: Traced
+    xp: Library,
+    constants: Mapping[str, Traced],
+    p: Traced,
+    x: Traced,
+    e: Traced,
+    with_slopes: WithSlopes,
 ) -> Traced:
     """Return psi2 by the table of restitutions, of impacts that stick at some time."""
     end, slips = border(x, e), p > 1.0
@@ -244,12 +275,54 @@ def _partial(
         each - _take(xp, constants["origins"][k, ...], patch, shape)
         for k, each in enumerate((u, x, e))
     ]
-    first = patch * (NODES[0] * NODES[1] * NODES[2])
-    value = _sum(xp, constants["terms"], first, NODES, local, shape)
+    value = _sum(xp, constants["terms"], patch, NODES, local, shape, with_slopes)
     return xp.where(slips, value, p * value)
 
 
 def _sum(
+    xp: Library,
+    terms: Traced,
+    patch: Traced,
+    counts: Sequence[int],
+    local: Sequence[Traced],
+    shape: tuple[int, ...],
+    with_slopes: WithSlopes,
+) -> Traced:
+    """Return polynomials of local coordinates, whose terms are those of a patch.
+
+    Their slopes are made apart, of rows of all terms: a library that differentiates each of the
+    288 operations compiles for minutes.
+    """
+
+    def value(terms: Traced, patch: Traced, *local: Traced) -> Traced:
+        return _horner(xp, terms, patch * math.prod(counts), counts, local, shape)
+
+    def slopes(terms: Traced, patch: Traced, *local: Traced) -> list[Traced]:
+        rows = xp.take(xp.reshape(terms, (-1, math.prod(counts))), patch, axis=0)
+        powers = [_powers(xp, _flat(xp, each), n) for each, n in zip(local, counts, strict=True)]
+        found = []
+        for which in range(len(powers)):
+            factors = [each[k == which] for k, each in enumerate(powers)]
+            product = factors[0]
+            for factor in factors[1:]:
+                outer = product[:, :, None] * factor[:, None, :]
+                product = xp.reshape(outer, (factor.shape[0], -1))
+            found.append(xp.reshape(xp.sum(rows * product, axis=-1), shape))
+        return found
+
+    return with_slopes(value, slopes, 2)(terms, patch, *local)
+
+
+def _powers(xp: Library, argument: Traced, count: int) -> tuple[Traced, Traced]:
+    """Return powers of an argument, from 0 on, and their slopes, each of shape (items, count)."""
+    powers = [xp.ones_like(argument)]
+    for _ in range(count - 1):
+        powers.append(powers[-1] * argument)
+    slopes = [xp.zeros_like(argument), *(n * powers[n - 1] for n in range(1, count))]
+    return xp.stack(powers, axis=-1), xp.stack(slopes, axis=-1)
+
+
+def _horner(
     xp: Library,
     terms: Traced,
     first: Traced,
@@ -266,7 +339,7 @@ def _sum(
     for power in range(count - 1, -1, -1):
         start = first + power * width
         term = (
-            _sum(xp, terms, start, others, local[1:], shape)
+            _horner(xp, terms, start, others, local[1:], shape)
             if others
             else _take(xp, terms, start, shape)
         )
