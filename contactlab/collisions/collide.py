@@ -120,9 +120,9 @@ def collide(
     >>> collide(met).target_velocity.round(4)
     array([ 2.    , -0.1144,  0.    ])
     """
-    if type(encounter) is Gathering:
-        return _solve_gathering(encounter, simulation, restitution, separating, history=history)
     if type(encounter) is not Encounter:  # a call takes longer than this test
+        if type(encounter) is Gathering:
+            return _solve_gathering(encounter, simulation, restitution, separating, history=history)
         of_kind("encounter", encounter, Encounter, remedy="make one: Encounter(...)", meant=INSTEAD)
     if history:
         remedy = "simulation.run(encounter.scene, history=True)"

@@ -8,7 +8,7 @@ import numpy as np
 
 from contactlab.collisions.rebound import rebound
 from contactlab.impact.bodies import Pair, Sphere, inverse_turning_mass
-from contactlab.impact.body_contact import Contact
+from contactlab.impact.body_contact import VELOCITIES, Contact
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.scene import LEAST_IMPULSE
 from contactlab.numeric.arrays import choose, every, finite, lock_arrays, plain, spread
@@ -16,8 +16,6 @@ from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array, Mask, Real
 from contactlab.numeric.vectors import LEAST, components, three
 
-#: Velocities and spins of both bodies.
-VELOCITIES = ("velocity", "spin", "target_velocity", "target_spin")
 #: Attributes of a ``Collision``, by name.
 Moved: TypeAlias = dict[str, Any]
 

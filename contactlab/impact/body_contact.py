@@ -39,6 +39,8 @@ from contactlab.numeric.vectors import (
     square_root,
 )
 
+#: Velocities and spins of both bodies.
+VELOCITIES = ("velocity", "spin", "target_velocity", "target_spin")
 #: Difference of principal curvatures over their sum that is a circle's rounding.
 ROUND = 1e-9
 #: Ratio of the curvatures of a gap up to which bodies touch along a line.
@@ -195,21 +197,22 @@ def add_coupling(
     A contact is its body and its axes; with itself it is a block on the diagonal of W.
     """
     (here, axes), (there, across) = one, other
-    alone, mass, sense = here is there, here.body.mass, here.sense * there.sense
+    mass = here.body.mass
     # an impulse p turns the body by J⁻¹ (arm x p), and moves a contact by that x its arm
     moments = [cross(here.arm, axis) for axis in axes]
-    turns = turn_body(
-        here.body, *(moments if alone else [cross(there.arm, axis) for axis in across])
-    )
-    for i, moment in enumerate(moments):
-        if alone:
-            inverse[i][i] = inverse[i][i] + 1.0 / mass
-        for j, turn in enumerate(turns[: i + 1] if alone else turns):
-            moved = dot(moment, turn)
-            if alone:
-                inverse[i][j] = inverse[j][i] = inverse[i][j] + moved
-            else:
-                inverse[i][j] = inverse[i][j] + sense * (dot(axes[i], across[j]) / mass + moved)
+    if here is there:
+        turns = turn_body(here.body, *moments)
+        for i, moment in enumerate(moments):
+            row = inverse[i]
+            row[i] = row[i] + 1.0 / mass
+            for j in range(i + 1):
+                row[j] = inverse[j][i] = row[j] + dot(moment, turns[j])
+        return
+    sense = here.sense * there.sense
+    turns = turn_body(here.body, *[cross(there.arm, axis) for axis in across])
+    for row, axis, moment in zip(inverse, axes, moments, strict=True):
+        for j, turn in enumerate(turns):
+            row[j] = row[j] + sense * (dot(axis, across[j]) / mass + dot(moment, turn))
 
 
 def relative_velocity(encounter: _Meeting, bodies: Sequence[Side]) -> Vector:
@@ -542,14 +545,16 @@ def push_bodies(
     ``impulse`` has components along n, t1 and t2, the rows of ``axes``, shape (..., 3). ``couple``
     is the angular impulse on the target about the normal, in N m s, of the batch shape.
     """
-    moved = {}
-    for name in ("velocity", "spin", "target_velocity", "target_spin"):
-        moved[name] = over(getattr(encounter, name), impulse.shape)
+    shape, moved = encounter.shape, {}
     for side, changes in changes_of(encounter, axes, impulse, couple):
         for entry, change in changes.items():
-            before = components(getattr(encounter, f"{side.name}{entry}"))
+            name = side.name + entry
+            before = components(getattr(encounter, name))
             after = [one + more for one, more in zip(before, change, strict=True)]
-            moved[f"{side.name}{entry}"] = join_components(after, encounter.shape)
+            moved[name] = join_components(after, shape)
+    for name in VELOCITIES:
+        if name not in moved:
+            moved[name] = over(getattr(encounter, name), impulse.shape)
     return moved
 
 
@@ -567,5 +572,5 @@ def changes_of(
         push = [-side.sense * each for each in whole]
         turn = zip(cross(side.arm, push), frame[0], strict=True)
         moment = [m - side.sense * couple * n for m, n in turn]
-        velocity = tuple(each / side.body.mass for each in push)
+        velocity = [each / side.body.mass for each in push]
         yield side, {"velocity": velocity, "spin": turn_body(side.body, moment)[0]}

@@ -27,6 +27,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.arrays import every
 from contactlab.numeric.checks import first_of, instance, refuse
+from contactlab.numeric.named import NOTHING as UNKNOWN
 from contactlab.numeric.names import state_arguments
 from contactlab.numeric.types import Array, Index, Numbers, Real
 from contactlab.numeric.vectors import (
@@ -138,7 +139,10 @@ class Encounter:
         values = numbers(self)
         shape: tuple[int, ...] = ()
         many = getattr(self.body, "shape", ()) or getattr(self.target, "shape", ())
-        more = {} if _plain(self.body, self.target) else _properties(self)
+        more: dict[str, tuple[int, ...]] = {}
+        one, other = self.body.material, self.target.material
+        if one.properties is not UNKNOWN or other.properties is not UNKNOWN:
+            more = _properties(self)
         if many or more or np.ndarray in map(type, values) or max(_DIMENSIONS(self)) > 1:
             shapes = {name: getattr(self, name).shape[:-1] for name in GIVEN} | more
             shapes |= {
@@ -164,7 +168,8 @@ class Encounter:
                 "must be zero: a half-space does not spin",
                 "give target_velocity, that of its surface at the contact",
             )
-        self._check_normal(shape)
+        if shape or not math.hypot(*self.normal.tolist()) >= LEAST:
+            self._check_normal()
         mu = self.friction_coefficient
         if self.of_slip is not None or (type(mu) is not float and is_law_of_slip(mu)):
             self._set_friction(shape)
@@ -181,10 +186,8 @@ class Encounter:
         if found is not None:
             object.__setattr__(self, "friction_coefficient", found.numbers)
 
-    def _check_normal(self, shape: tuple[int, ...]) -> None:
+    def _check_normal(self) -> None:
         """Refuse a normal without length."""
-        if not shape and math.hypot(*self.normal.tolist()) >= LEAST:
-            return
         length2 = np.einsum("...i,...i->...", self.normal, self.normal)
         if not math.sqrt(length2.min(initial=math.inf)) >= LEAST:
             where = np.argwhere(~(np.sqrt(length2) >= LEAST))
@@ -366,11 +369,6 @@ class Encounter:
         if lam >= -1.0 or not contact.slip:
             return ""
         return f"friction presses them together, lambda = {lam:.3g} below -1 (Painlevé)"
-
-
-def _plain(*bodies: Sphere | HalfSpace | RigidBody) -> bool:
-    """Return whether no material has properties."""
-    return not any(body.material.properties for body in bodies)
 
 
 def _properties(encounter: Encounter) -> dict[str, tuple[int, ...]]:

@@ -134,16 +134,7 @@ class OfSlip:
 
 def friction(*, empty: bool = False) -> Any:
     """Return the attrs field of a friction coefficient: numbers, or how they follow from slip."""
-    field = quantity("1", rule=NON_NEGATIVE, empty=empty)
-    checked = field.converter
-
-    def convert(value: object, owner: object, field: attrs.Attribute[object]) -> Any:
-        if type(value) is not float and is_law_of_slip(value):
-            return value
-        return checked.converter(value, owner, field)
-
-    field.converter = attrs.Converter(convert, takes_self=True, takes_field=True)
-    return field
+    return quantity("1", rule=NON_NEGATIVE, empty=empty, instead=is_law_of_slip)
 
 
 def is_law_of_slip(friction: object) -> bool:

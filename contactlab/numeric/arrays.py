@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections import deque
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from functools import cache, lru_cache
 from operator import attrgetter
@@ -123,10 +124,9 @@ def change_entries(tree: Tree, **entries: object) -> Tree:
     copy: Tree = object.__new__(kind)
     names, read = _entries(kind)
     put = object.__setattr__
-    for name, value in zip(names, read(tree), strict=True):
+    deque(map(put, itertools.repeat(copy), names, read(tree)), maxlen=0)  # a loop takes longer
+    for name, value in entries.items():
         put(copy, name, value)
-    for name in entries:
-        put(copy, name, entries[name])
     return copy
 
 

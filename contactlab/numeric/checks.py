@@ -5,8 +5,8 @@ A refusal is a ValueError that names the argument, the value, the rule and the r
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
+from math import isfinite
 from typing import Any, NamedTuple, TypeVar
 
 import attrs
@@ -108,7 +108,7 @@ def real(
     numbers are accepted if ``empty``.
     """
     if type(value) is float:  # the common case; numpy is slower
-        if math.isfinite(value) and rule.holds(value):
+        if isfinite(value) and rule.holds(value):
             return value
         raise refuse(argument, value, rule.sentence, remedy)
     if isinstance(value, str | bytes | bool) or value is None:
@@ -205,13 +205,15 @@ def _check_field(
     value: Numbers | None, owner: object, field: attrs.Attribute[object]
 ) -> Real | None:
     """Return the checked value of a field of ``owner``, the object that is being made."""
+    if type(value) is float and isfinite(value) and field.metadata["rule"].holds(value):
+        return value  # the remedy of a refusal takes longer to write than a number to check
     if value is None and field.default is None:
         return None
     if type(value) is Taken:
         return value  # by the author of the class
     meta = field.metadata
-    if type(value) is float and math.isfinite(value) and meta["rule"].holds(value):
-        return value  # the remedy of a refusal takes longer to write than a number to check
+    if "instead" in meta and meta["instead"](value):
+        return value  # type: ignore[return-value]  # by the author of the class
     remedy = unit_remedy(meta["unit"])
     if "unknown" in meta:
         return real_or_nan(field.name, value, rule=meta["rule"], remedy=remedy, empty=meta["empty"])
@@ -270,6 +272,7 @@ def quantity(
     unknown: bool = False,
     per_impact: bool = False,
     material: object = None,
+    instead: Callable[[object], bool] | None = None,
 ) -> Any:
     """Return an attrs field for a checked real quantity with its unit in the metadata.
 
@@ -297,12 +300,16 @@ def quantity(
     material : Combined, optional
         How an option of a law follows from the property of that name of two materials. Without a
         default the option or the properties must be given.
+    instead : callable, optional
+        True of a value that stands in place of numbers; the class makes numbers of it.
     """
     keywords: Any = {"kw_only": True} if kw_only else {}  # False would override the class
     further: dict[str, Any] = {"unknown": True} if unknown else {}
     read = ["one number, or one an impact"] if per_impact else []
     if per_impact:
         further["per_impact"] = True
+    if instead is not None:
+        further["instead"] = instead
     if material is not None:
         further |= {"material": material, "required": default is attrs.NOTHING}
         default = None if default is attrs.NOTHING else default

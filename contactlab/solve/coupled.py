@@ -9,7 +9,7 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import faults, judges
-from contactlab.contracts.law import resolution_of
+from contactlab.contracts.law import Law, resolution_of
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.restitution import restitution_of
@@ -78,20 +78,19 @@ class Coupled(Way):
     def _columns(self, normal: NormalMotion) -> PlanColumns:
         """Return the columns of the plan: who answers, and the declared errors."""
         scene, laws = self.scene, self.laws
-        law, integrator = laws.capability.coupled, laws.integrator
-        law = law if scene.links is None else None
+        law = laws.capability.coupled if scene.links is None else None
         apart, known = separates(normal), MARCHED if law is None else 0
         many = isinstance(apart, np.ndarray)
         code = np.where(apart, known, ENDLESS) if many else known if apart else ENDLESS
         errors: object
         if normal._known == "nothing":  # no law is asked about an approach that is not known
             errors = Errors()
-        elif scene.links is not None:  # what laws declare is of one contact
-            code, errors = np.full(scene.shape, MARCHED), Errors()
-        elif law is None:
-            errors = integrator.errors(scene, normal, laws.tangential)
-        else:
+        elif law is not None:
             errors = law.errors(scene, normal, np.inf, laws.capability.accuracy)
+        elif scene.links is None:
+            errors = laws.integrator.errors(scene, normal, laws.tangential)
+        else:  # what laws declare is of one contact
+            code, errors = np.full(scene.shape, MARCHED), Errors()
         judged = judges.judge_errors(laws.tangential, errors, scene.shape)
         psi2, restitution = (spread(error, scene.shape) for error in judged[:2])
         return PlanColumns(code, psi2, () if law is None else (WHOLE,), restitution)
@@ -110,14 +109,12 @@ class Coupled(Way):
 
     def _answer(self, normal: NormalMotion, observer: Observer | None) -> Motion:
         """Return the motion that law or integrator answers, or raise LawFaultError."""
-        scene, laws, able = self.scene, self.laws, self.laws.capability
-        whole = able.coupled is not None and scene.links is None
-        blamed: Any = able.coupled if whole else laws.integrator
+        scene, able = self.scene, self.laws.capability
+        law = able.coupled if scene.links is None else None
+        blamed: Law = self.laws.integrator if law is None else law
         with faults.blaming(blamed):
-            if whole:
-                assert able.coupled is not None
-                accuracy = laws.capability.accuracy
-                answer = able.coupled.solve_coupled(scene, normal, accuracy, observer)
+            if law is not None:
+                answer = law.solve_coupled(scene, normal, able.accuracy, observer)
             else:  # other laws are stood in for
                 assert able.marcher is not None
                 assert able.causal is not None
@@ -125,11 +122,12 @@ class Coupled(Way):
                 if scene.links is not None and answer.contacts is None:
                     told = "the answer is that of each contact alone, and not of the gathering"
                     raise faults.LawFaultError(Status.MALFORMED, faults.sentence(blamed, told, 1))
-            moved = check_motion(answer, scene.shape, kinetics.slip_axes(scene))
+            axes = kinetics.slip_axes(scene)
+            moved = check_motion(answer, scene.shape, axes)
             if moved.normal is None and np.any(np.asarray(moved.status) == Status.SUCCESS):
                 told = "the answer has not the ends of its normal motion"
                 raise faults.LawFaultError(Status.MALFORMED, faults.sentence(blamed, told, 1))
-            return Motion.combine(normal, moved, kinetics.slip_axes(scene))
+            return Motion.combine(normal, moved, axes)
 
     def _end_as_alone(self, motion: Motion, normal: NormalMotion) -> Motion:
         """Return a motion whose impacts without an end have the status of the approach alone."""

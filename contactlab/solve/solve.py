@@ -26,16 +26,16 @@ def ways(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
     found: list[Way] = []
     # Where slip turns laws are asked first: their refusal and its remedy hold for the batch.
     for where, part in reversed(kinetics.parts(scene, as_one=as_one)):
-        if part.inverse_mass is None and laws.capability.unfollowed is None:
-            found.append(Decoupled(where, part, laws))
-        elif part.inverse_mass is None:
-            from contactlab.solve.unfollowed import follow_apart  # most laws need none
-
-            found += [Decoupled(*each, laws) for each in follow_apart(laws, where, part)]
-        else:
+        if part.inverse_mass is not None:
             from contactlab.solve.coupled import Coupled  # spheres need none of this
 
             found.append(Coupled.of(where, part, laws))
+        elif laws.capability.unfollowed is None:
+            found.append(Decoupled(where, part, laws))
+        else:
+            from contactlab.solve.unfollowed import follow_apart  # most laws need none
+
+            found += [Decoupled(*each, laws) for each in follow_apart(laws, where, part)]
     found.reverse()
     for way in found:
         if way.laws.capability.unnamed:
