@@ -9,7 +9,7 @@ import numpy as np
 
 from contactlab.collisions import impulses
 from contactlab.collisions.collision import Collision
-from contactlab.collisions.restituted import run_by_restitution, run_in_blocks
+from contactlab.collisions.restituted import run_by_restitution
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.gathering import Gathering
@@ -19,7 +19,7 @@ from contactlab.numeric.arrays import every, some, take
 from contactlab.numeric.checks import of_kind, real, refuse
 from contactlab.numeric.types import Array, Numbers, Real
 from contactlab.numeric.vectors import LEAST
-from contactlab.runs.simulation import Simulation
+from contactlab.runs.simulation import Simulation, run_in_blocks
 
 if TYPE_CHECKING:
     from contactlab.collisions.gathered import GatheringResult
@@ -132,15 +132,12 @@ def collide(
         of_kind("simulation", simulation, Simulation, remedy=remedy, meant=INSTEAD)
     if separating not in SEPARATING:
         raise refuse("separating", separating, "must be 'refuse' or 'pass'")
-    given = restitution
-    if callable(restitution):
-        restitution = _at_speeds(restitution, encounter)
-    e = real("restitution", restitution, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
-    if not isinstance(e, float):
-        e = spread_over("restitution", e, encounter.shape)
-    if simulation is not None:
-        _alone(given, e, simulation)
-    elif encounter.of_spheres:
+    e: Real = 1.0
+    if type(restitution) is not float or restitution != 1.0:  # the default needs no check
+        e = _check_restitution(restitution, encounter)
+        if simulation is not None:
+            _alone(restitution, e, simulation)
+    if simulation is None and encounter.of_spheres:
         strict = separating == "refuse"
         moved = impulses.strike(encounter, restitution=e, strict=strict)
         return Collision(encounter=encounter, **moved, restitution=e)
@@ -184,6 +181,13 @@ def _solve_gathering(
         rule = "belongs to encounters: contacts of a gathering may separate"
         raise refuse("separating", separating, rule, "leave it out")
     return collide_all(gathering, simulation, history=history)
+
+
+def _check_restitution(given: object, encounter: Encounter) -> Real:
+    """Return a restitution that was given, one number or one for each encounter."""
+    numbers: Any = _at_speeds(given, encounter) if callable(given) else given
+    e = real("restitution", numbers, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
+    return e if isinstance(e, float) else spread_over("restitution", e, encounter.shape)
 
 
 def _alone(given: object, restitution: Real, simulation: Simulation) -> None:

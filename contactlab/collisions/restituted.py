@@ -16,16 +16,11 @@ from contactlab.outcome.motion import Motion
 from contactlab.outcome.normal_spin_words import with_normal_spin
 from contactlab.outcome.plan import Plan
 from contactlab.outcome.result import ImpactResult
-from contactlab.runs.simulation import Simulation
+from contactlab.runs.simulation import Simulation, run_in_blocks
 
 #: Different restitutions beyond which a plan has one statement, and the cautions of the least, for
 #: all impacts with loss.
 MOST_STATEMENTS = 20
-
-
-def run_in_blocks(simulation: Simulation, scene: Scene) -> ImpactResult:
-    """Return the result of a scene, by blocks if the scene has one axis."""
-    return simulation.sweep(scene) if len(scene.shape) == 1 else simulation.run(scene)
 
 
 def run_by_restitution(scene: Scene, restitution: Real) -> ImpactResult:

@@ -13,7 +13,7 @@ import numpy as np
 from contactlab.contracts.integrator import Integrator
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
-from contactlab.contracts.status import succeeded
+from contactlab.contracts.status import Status, succeeded
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import take
@@ -401,6 +401,11 @@ class Simulation:
         return try_normal(laws, scene.central)
 
 
+def run_in_blocks(simulation: Simulation, scene: Scene) -> ImpactResult:
+    """Return the result of a scene, by blocks if the scene has one axis."""
+    return simulation.sweep(scene) if len(scene.shape) == 1 else simulation.run(scene)
+
+
 def _result(
     ways: Sequence[Way],
     scene: Scene,
@@ -410,10 +415,13 @@ def _result(
     history: History | NoHistory = NO_HISTORY,
 ) -> ImpactResult:
     """Return the result of a motion, without the numbers of impacts that failed."""
+    status = motion.status
+    if status is not Status.SUCCESS and not succeeded(status):
+        motion = without_failures(motion)
     return ImpactResult(
         scene=scene,
         plan=plan,
-        motion=motion if succeeded(motion.status) else without_failures(motion),
+        motion=motion,
         laws=solve.versions_of(ways),
         history=history,
         run_time=time.perf_counter() - started,
