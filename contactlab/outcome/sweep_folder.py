@@ -11,14 +11,15 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.contracts.status import Status
 from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import nearest, tell_attributes
-from contactlab.numeric.types import AnyArray, Json
+from contactlab.numeric.types import Json
 from contactlab.outcome.answer import Checked
 from contactlab.outcome.chunk_files import (
     DAMAGED,
@@ -111,7 +112,7 @@ class _Unchanged(NamedTuple):
 
 def _read(
     path: Path, form: Form, statuses: Sequence[str], about: About, names: Sequence[str]
-) -> dict[str, AnyArray]:
+) -> dict[str, NDArray[Any]]:
     """Return columns of a chunk by name, statuses by their words."""
     with columns_of(path, form, statuses, about.sums) as content:
         columns = {name: np.broadcast_to(content[name], about.chunk.size) for name in names}
@@ -217,7 +218,7 @@ class SweepFolder(Checked):
         """Return the number of impacts in finished chunks."""
         return sum(about.chunk.size for _, about in self._abouts)
 
-    def chunks(self, *names: str) -> Iterator[tuple[slice, dict[str, AnyArray]]]:
+    def chunks(self, *names: str) -> Iterator[tuple[slice, dict[str, NDArray[Any]]]]:
         """Yield the place of each finished chunk in the sweep, and its columns by name.
 
         Parameters
@@ -246,14 +247,14 @@ class SweepFolder(Checked):
                 raise refuse("column", name, "is not a column of the sweep", remedy)
         return wanted
 
-    def _columns(self, *names: str) -> dict[str, AnyArray]:
+    def _columns(self, *names: str) -> dict[str, NDArray[Any]]:
         """Return columns of all impacts by name; no chunk may be missing."""
         if self.missing:
             first, stop = self.missing[0]
             rule = f"impacts {first} to {stop} are missing"
             remedy = "run the same sweep into the folder again, or read chunks()"
             raise refuse("path", str(self.path), rule, remedy)
-        columns: dict[str, AnyArray] = {}
+        columns: dict[str, NDArray[Any]] = {}
         for place, part in self.chunks(*names):
             for name, values in part.items():
                 if name not in columns:
@@ -338,7 +339,7 @@ class SweepFolder(Checked):
         x, y = x or "psi1", y or "psi2"
         return draw_sheet(axes, self._sheet(*dict.fromkeys((x, y))), x, y, width=width)
 
-    def __getitem__(self, name: str) -> AnyArray:
+    def __getitem__(self, name: str) -> NDArray[Any]:
         """Return a column of the sweep up to its last chunk, shape (n,); no chunk may be missing.
 
         An unfinished sweep has fewer impacts: ``check`` tells.
