@@ -89,6 +89,10 @@ def impulse(inverse: Array, change: Vector) -> tuple[Any, Any, Any]:
 
 def unit_slip(slip: Array) -> Array:
     """Return unit vectors along slip velocities, shape (..., 2); t1 where there is no slip."""
+    if slip.ndim == 1:
+        x, y = slip.tolist()
+        length = float(np.hypot(x, y))
+        return np.array([x / length, y / length] if length > 0.0 else [1.0, 0.0])
     size = np.hypot(slip[..., 0], slip[..., 1])[..., None]
     moving = size > 0.0
     return np.where(moving, slip / np.where(moving, size, 1.0), np.array([1.0, 0.0]))

@@ -292,19 +292,42 @@ def largest_chi(scene: Motions) -> Real:
     """Return the largest eigenvalue of chi, of the batch shape."""
     if scene.planar:
         return scene.chi
-    root = np.sqrt(scene._sides)  # the symmetric tensor with the same eigenvalues
-    symmetric = scene.chi * (root[..., None, :] / root[..., None])
-    return np.asarray(np.linalg.eigvalsh(symmetric), dtype=np.float64)[..., -1]
+    inverse: Any = scene.inverse_mass
+    W = rows(inverse)
+    ratio = 0.5 * scene.pair.stiffness_ratio / W[0][0]
+    cross = scene.pair.cross_stiffness_ratio
+    # the symmetric tensor with the same eigenvalues
+    along, across, both = ratio * W[1][1], ratio * cross * W[2][2], ratio * cross**0.5 * W[1][2]
+    largest = 0.5 * (along + across) + hypotenuse(0.5 * (along - across), both)
+    return batch.of_each(largest, scene.shape)
 
 
 def free_share(scene: Motions) -> Real:
     """Return the share of W_nn that an unchanged slip leaves, 1 - W_nt²/(W_nn W_tt) in a plane."""
     if scene.inverse_mass is None:
         return 1.0
-    W, size = scene.inverse_mass, 2 if scene.planar else 3
-    minor = np.linalg.det(W[..., 1:size, 1:size])
-    share: Real = np.linalg.det(W[..., :size, :size]) / (W[..., 0, 0] * minor)
-    return share
+    (a, b, c), (_, d, e), (_, _, f) = rows(scene.inverse_mass)
+    if scene.planar:
+        return (a * d - b * b) / (a * d)
+    minor = d * f - e * e
+    return (a * minor - b * (b * f - c * e) + c * (b * e - c * d)) / (a * minor)
+
+
+def sizes(scene: Motions) -> tuple[Real, Real, Real]:
+    """Return the magnitudes of lam, eta and psi1, of the batch shape."""
+    if scene.shape or scene.planar:
+        lam, eta, psi1 = (size_of(scene, each) for each in (scene.lam, scene.eta, scene.psi1))
+        return lam, eta, psi1
+    inverse: Any = scene.inverse_mass  # plain numbers are ten times as fast
+    slip: Any = scene.slip_velocity
+    (W, along, across), (x, y) = inverse[0].tolist(), slip.tolist()
+    cross, mu, scale = scene.pair.cross_stiffness_ratio, scene.friction_coefficient, scene.psi_scale
+    eta = quotient(scene.pair.stiffness_ratio, mu)
+    return (
+        hypotenuse(mu * along / W, mu * across / W),
+        hypotenuse(eta * along / W, eta * across / W * cross),
+        hypotenuse(x and x * scale, y and y * (scale * cross)),
+    )
 
 
 def coupling(scene: Motions, factor: Real) -> Real:
@@ -413,7 +436,14 @@ def energies(scene: Motions, rate: Real, change: Real) -> tuple[Real, Real, Real
         return scene.pair.energies(speed, scene.slip_velocity, rate, change)
     before = scene._components(speed, scene.slip_velocity)
     moved = scene._components(rate - speed, change)
-    taken, given = (inverse_mass.impulse(scene.inverse_mass, each) for each in (moved, before))
+    taken = inverse_mass.impulse(scene.inverse_mass, moved)
     mean = [one + 0.5 * more for one, more in zip(before, moved, strict=True)]
     lost = 0.5 * scene.pair.normal_mass * (speed - rate) * (speed + rate)
-    return -0.5 * dot(given, before), lost, dot(taken, mean) - lost
+    return energy_at_start(scene), lost, dot(taken, mean) - lost
+
+
+def energy_at_start(scene: Motions) -> Real:
+    """Return the energy of approach and slip in J, of bodies whose contact couples them."""
+    inverse: Any = scene.inverse_mass
+    before = scene._components(scene.normal_speed, scene.slip_velocity)
+    return -0.5 * dot(inverse_mass.impulse(inverse, before), before)

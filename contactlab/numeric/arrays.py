@@ -264,6 +264,12 @@ def greater(one: Real, other: float) -> Real:
     return max(one, other) if isinstance(one, float) else np.maximum(one, other)
 
 
+def lesser(one: Real, other: Real) -> Real:
+    """Return the lesser of two numbers, NaN if the first is NaN."""
+    floats = isinstance(one, float) and isinstance(other, float)
+    return min(one, other) if floats else np.minimum(one, other)
+
+
 def spread_object(value: object, shape: tuple[int, ...]) -> Any:
     """Return ``value`` for one impact, or an object array of ``shape`` filled with it."""
     return np.full(shape, value, dtype=object) if shape else value

@@ -33,7 +33,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
-from contactlab.numeric.arrays import choose, lock_arrays, spread_object
+from contactlab.numeric.arrays import choose, lock_arrays, some, spread_object
 from contactlab.numeric.types import Mask, Real
 from contactlab_laws.march import coupled_steps
 from contactlab_laws.march.contacts import TouchingContacts, join, whole
@@ -62,7 +62,7 @@ def march_coupled(
     whose approach without friction has no end is followed as long as in ``usual`` steps at most.
     """
     possible = np.isfinite(count)
-    if not np.any(possible):
+    if not some(possible):
         return TangentialMotion.nothing(scene.shape, *refused, axes=kinetics.slip_axes(scene))
     divided = divide(scene, normal, count, usual)
     if observer is None:

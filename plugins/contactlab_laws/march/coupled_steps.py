@@ -11,7 +11,9 @@ from contactlab.contracts import CausalTangentialLaw, NormalMotion, Scene, judge
 from contactlab.contracts.status import Status, succeeded
 from contactlab.impact import kinetics
 from contactlab.impact.hertz import DURATION_CONSTANT
+from contactlab.numeric.arrays import choose, greater, lesser, quotient
 from contactlab.numeric.types import Mask, Real
+from contactlab.numeric.vectors import entry, square_root
 from contactlab_laws.march import contacts
 from contactlab_laws.march.division import resolving
 
@@ -39,10 +41,10 @@ def find_least_steps(scene: Scene, normal: NormalMotion, law: CausalTangentialLa
         return _find_largest_need(scene, normal, law, (normal_stiffness, tangential))
     W = scene.inverse_mass
     assert W is not None
-    inertia = W[..., 1, 1]
+    inertia = entry(W, 1, 1)
     if not scene.planar:
-        inertia = inertia + scene.pair.cross_stiffness_ratio * W[..., 2, 2]
-    omega = np.sqrt(normal_stiffness * W[..., 0, 0] + tangential * inertia)
+        inertia = inertia + scene.pair.cross_stiffness_ratio * entry(W, 2, 2)
+    omega = np.sqrt(normal_stiffness * entry(W, 0, 0) + tangential * inertia)
     return resolving(omega * approach_duration(normal) * deepest(scene) ** 0.1, law)
 
 
@@ -60,6 +62,8 @@ def _find_largest_need(
 
 def _come_to_an_end(normal: NormalMotion) -> Mask:
     """Return the impacts whose approach without friction came to an end."""
+    if isinstance(normal.status, Status):
+        return normal.status is Status.SUCCESS
     return np.asarray(np.asarray(normal.status, dtype=object) == Status.SUCCESS)
 
 
@@ -87,14 +91,11 @@ def deepest(scene: Scene) -> Real:
         approach = 0.5 * scene.pair.normal_mass * np.square(scene.normal_speed)
         most: Real = np.clip(scene.links.energy / approach, 1.0, DEEPEST)
         return most
-    unmoved = 0.0 * np.asarray(scene.slip_velocity)
-    energy, _, _ = kinetics.energies(scene, scene.normal_speed, unmoved)
-    alone = 0.5 * scene.pair.normal_mass * np.square(scene.normal_speed)
-    drag = kinetics.size_of(scene, np.asarray(scene.lam))
-    with np.errstate(divide="ignore"):
-        held = np.where(drag < 1.0, 1.0 / np.maximum(1.0 - drag, 0.0), np.inf)
-    bound: Real = np.clip(np.minimum(energy / alone, held), 1.0, DEEPEST)
-    return bound
+    speed = scene.normal_speed
+    alone = 0.5 * scene.pair.normal_mass * (speed * speed)
+    held = quotient(1.0, greater(1.0 - kinetics.sizes(scene)[0], 0.0))
+    bound = lesser(kinetics.energy_at_start(scene) / alone, held)
+    return lesser(greater(bound, 1.0), DEEPEST)
 
 
 class Division(NamedTuple):
@@ -121,16 +122,15 @@ class Division(NamedTuple):
 def divide(scene: Scene, normal: NormalMotion, count: Real, usual: float) -> Division:
     """Return the steps of impacts, ``count`` and ``usual`` as of ``march_coupled``."""
     with np.errstate(invalid="ignore"):
-        step = np.where(
-            np.isfinite(count), _count_duration(scene, normal) / np.asarray(count), math.nan
-        )
-    leading = np.ceil(LEADING * np.asarray(count))
+        followed = np.isfinite(count)
+        step = choose(followed, _count_duration(scene, normal) / count, math.nan)
+    leading = np.ceil(LEADING * count)
     if scene.links is not None:
         most = contacts.most_steps(scene, approach_duration(normal), step)
         return Division(step, leading, math.inf, most)
-    longest = LONGEST / np.sqrt(np.maximum(kinetics.free_share(scene), LEAST_SHARE))
+    longest = LONGEST / square_root(greater(kinetics.free_share(scene), LEAST_SHARE))
     # steps raised for a contact that grows without end are no reason to follow it longer
-    lasting = np.where(_come_to_an_end(normal), count, np.minimum(count, usual))
+    lasting = choose(_come_to_an_end(normal), count, lesser(count, usual))
     return Division(step, leading, longest, longest * lasting)
 
 

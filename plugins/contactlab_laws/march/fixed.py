@@ -29,7 +29,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import choose, every, for_share
+from contactlab.numeric.arrays import choose, every, for_share, greater
 from contactlab.numeric.checks import count, flag
 from contactlab.numeric.types import Real
 from contactlab_laws.march import coupled, coupled_steps
@@ -55,7 +55,10 @@ def find_least_steps(normal: NormalMotion, law: TangentialLaw, scene: Scene | No
     assert isinstance(law, SteppedTangentialLaw)
     if scene is not None and scene.inverse_mass is not None:
         assert isinstance(law, CausalTangentialLaw)
-        return np.maximum(coupled_steps.find_least_steps(scene, normal, law), float(LEAST_STEPS))
+        steps: Real = greater(
+            coupled_steps.find_least_steps(scene, normal, law), float(LEAST_STEPS)
+        )
+        return steps
     scene = normal.scene
     stiffness = judges.stiffness_of(law, scene, normal)
     if not scene.shape and isinstance(stiffness, float):
@@ -88,8 +91,10 @@ def _most(needed: Real) -> float:
 
 def refusals(steps: int, needed: Real) -> str | NDArray[np.object_]:
     """Return the detail of ``TOO_FEW_STEPS`` for each impact."""
-    told = [f"steps = {steps}; this scene needs at least {each:.6g}." for each in np.ravel(needed)]
-    return np.array(told, dtype=object).reshape(np.shape(needed)) if np.ndim(needed) else told[0]
+    told = f"steps = {steps}; this scene needs at least {{:.6g}}.".format
+    if isinstance(needed, float):
+        return told(needed)
+    return np.array(list(map(told, np.ravel(needed))), dtype=object).reshape(np.shape(needed))
 
 
 def in_groups(
@@ -156,14 +161,15 @@ class FixedSteps(CoupledIntegrator):
         if type(declared) is not Errors:
             return declared  # and refused where it is judged
         psi2, restitution, _ = declared
-        if not every(followed := np.less_equal(needed, taken) & np.isfinite(taken)):
+        if not every(followed := (needed <= taken) & (taken < math.inf)):
             psi2, restitution = (choose(followed, each, math.nan) for each in (psi2, restitution))
         return Errors(psi2, restitution, steps)
 
     def _take_coupled(self, needed: Real) -> Real:
         """Return the steps of each impact in the approach without friction; infinite if refused."""
         most = MOST_STEPS if self.refine else self._steps
-        return np.where(needed <= most, np.maximum(self._steps, needed), np.inf)
+        taken: Real = choose(needed <= most, greater(needed, float(self._steps)), math.inf)
+        return taken
 
     def cautions(
         self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw

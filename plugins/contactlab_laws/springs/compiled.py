@@ -23,8 +23,9 @@ from contactlab.contracts.law import Law
 from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import flat, spread_object
+from contactlab.numeric.arrays import flat, spread, spread_object
 from contactlab.numeric.types import AnyArray, Array, Real
+from contactlab.numeric.vectors import over
 from contactlab_laws.compiled import library
 from contactlab_laws.jaeger.partial_slip import Scales
 from contactlab_laws.march.contacts import tell_still_closing
@@ -33,6 +34,9 @@ from contactlab_laws.springs import viscous
 
 #: Numbers of a contact, of an end, of a step of a known motion, and of an impact along it.
 CONTACT, END, SAMPLE, IMPACT = 17, 22, 7, 7
+#: Gap and pull of one contact alone, and its block of W by rows: starts and columns.
+STILL = (0.0, 0.0, 0.0, 0.0)
+ONE_BLOCK, FIRST_COLUMN = np.array([0, 1], np.intc), np.zeros(1, np.intc)
 #: Names of the classes that are compiled: to compare names loads none that nobody uses.
 LAW = "contactlab_laws.springs.law.Springs"
 COMPILED = {
@@ -89,11 +93,10 @@ def march(
     contacts = 1 if links is None else scene.shape[-1]
     c = _contacts(scene, normal, bundle.shear_loss if loss else None)
     row, column, block = _blocks(scene, contacts)
-    deepest = np.empty(scene.shape)
-    deepest[...] = DEEPEST**0.4 * np.asarray(normal.maximum_approach)
+    deepest = np.array(spread(DEEPEST**0.4 * normal.maximum_approach, scene.shape))
     numbers = np.empty((3, items))
     for place, each in enumerate((divided.step, divided.leading, divided.most)):
-        numbers[place] = _first(each, scene).ravel()
+        numbers[place] = _first(each, scene).ravel() if scene.shape else each
     end, steps, status = np.empty((*scene.shape, END)), np.empty(items), np.empty(items, np.intc)
     left = np.zeros(found.contactlab_march_room(contacts, springs) // 8 + 1)
     arguments = (
@@ -104,14 +107,17 @@ def march(
     )  # fmt: skip
     while found.contactlab_march_scenes(*arguments) < items:
         pass
-    if np.any((status == INPUT) & ~np.isnan(numbers[0])):
-        return None
     statuses, details = spread_object(Status.SUCCESS, scene.shape), spread_object("", scene.shape)
-    if (status != 0).any():
+    if status.any():
+        if np.any((status == INPUT) & ~np.isnan(numbers[0])):
+            return None
         told = _tell(law, divided, refused, end.reshape(items, contacts, END), steps, status, scene)
         statuses, details = (_of_contacts(each, scene) for each in told)
         end[_of_contacts(status, scene) != 0] = math.nan
-    return _motion(scene, c[..., 0], end, (statuses, details), int(steps.max()))
+    counters = {"steps": int(steps.max())}
+    if not scene.shape:
+        return _single(scene, c.item(0), end.tolist(), (statuses, details), counters)
+    return _motion(scene, c[..., 0], end, (statuses, details), counters)
 
 
 def _first(value: Real | str | NDArray[np.object_], scene: Scene) -> NDArray[Any]:
@@ -134,16 +140,15 @@ def _motion(
     rate: Array,
     end: Array,
     told: tuple[NDArray[np.object_], NDArray[np.object_]],
-    steps: int,
+    counters: dict[str, int],
 ) -> TangentialMotion:
     """Return the motion by the ends of contacts, rows as of ``contactlab_march_end``."""
 
     def column_of(place: int) -> Real:
-        return np.array(end[..., place]) if scene.shape else float(end[place])
+        return np.array(end[..., place])
 
     slip = column_of(1) if scene.planar else np.array(end[..., 1:3])
-    change = column_of(0)
-    after = rate + change if scene.shape else float(rate) + change
+    after = rate + column_of(0)
     contacts = None
     if scene.links is not None:
         contacts = Contacts(
@@ -163,14 +168,50 @@ def _motion(
         normal=Ends(column_of(9), after, *map(column_of, (10, 11, 12, 8, 13))),
         status=statuses,
         detail=details,
-        counters={"steps": steps},
+        counters=counters,
         contacts=contacts,
+    )
+
+
+def _single(
+    scene: Scene,
+    rate: float,
+    end: list[float],
+    told: tuple[Status, str],
+    counters: dict[str, int],
+) -> TangentialMotion:
+    """Return the motion of one impact, as of ``_motion``: plain numbers are faster."""
+    change, along, across, _, _, _, work, shear, loss, duration, radius, approach, force, turns = (
+        end[:14]
+    )
+    return TangentialMotion(
+        slip_velocity_change=along if scene.planar else np.array((along, across)),
+        friction_work=work,
+        shear_loss=shear,
+        normal=Ends(duration, rate + change, radius, approach, force, loss, turns),
+        status=told[0],
+        detail=told[1],
+        counters=counters,
     )
 
 
 def _contacts(scene: Scene, normal: NormalMotion, shear_loss: float | None) -> Array:
     """Return the contacts at the start, rows as of ``contactlab_march_contact``."""
     pair = scene.pair
+    columns = (
+        scene.friction_coefficient, pair.radius, pair.effective_modulus,
+        2.0 * pair.effective_shear_modulus,
+        1.0 if scene.planar else pair.cross_stiffness_ratio,
+        normal.maximum_radius, scene.normal_speed,
+    )  # fmt: skip
+    loss: tuple[Real, Real] = (0.0, 0.0)
+    if shear_loss is not None:
+        parts: Any = normal.law.start(normal.scene)  # type: ignore[attr-defined]
+        loss = parts.time, shear_loss
+    if not scene.shape:  # plain numbers are faster
+        slip: Any = scene.slip_velocity
+        slip = (slip, 0.0) if scene.planar else slip.tolist()
+        return np.array((scene.normal_speed, *slip, *STILL, *columns, *loss, 0.0))
     c = np.zeros((*scene.shape, CONTACT))
     if scene.links is not None:
         c[..., :3], c[..., 3], c[..., 4:7] = (
@@ -183,17 +224,8 @@ def _contacts(scene: Scene, normal: NormalMotion, shear_loss: float | None) -> A
             c[..., 1] = scene.slip_velocity
         else:
             c[..., 1:3] = scene.slip_velocity
-    columns = (
-        scene.friction_coefficient, pair.radius, pair.effective_modulus,
-        2.0 * pair.effective_shear_modulus,
-        1.0 if scene.planar else pair.cross_stiffness_ratio,
-        normal.maximum_radius, scene.normal_speed,
-    )  # fmt: skip
-    for place, value in enumerate(columns, start=7):
+    for place, value in enumerate((*columns, *loss), start=7):
         c[..., place] = value
-    if shear_loss is not None:
-        parts: Any = normal.law.start(normal.scene)  # type: ignore[attr-defined]
-        c[..., 14], c[..., 15] = parts.time, shear_loss
     return c
 
 
@@ -202,8 +234,8 @@ def _blocks(scene: Scene, contacts: int) -> tuple[NDArray[np.intc], NDArray[np.i
     if scene.links is None:
         inverse = scene.inverse_mass
         assert inverse is not None
-        block = np.ascontiguousarray(np.broadcast_to(inverse, (*scene.shape, 3, 3)), dtype=float)
-        return np.array([0, 1], np.intc), np.zeros(1, np.intc), block
+        block = np.ascontiguousarray(over(inverse, (*scene.shape, 3, 3)), dtype=float)
+        return ONE_BLOCK, FIRST_COLUMN, block
     W = scene.links.inverse_mass
     if not isinstance(W, np.ndarray):
         W = W.tobsr((3, 3))

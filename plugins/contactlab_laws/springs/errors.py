@@ -14,8 +14,9 @@ import numpy as np
 from contactlab.contracts import Errors
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import plain
+from contactlab.numeric.arrays import choose, greater, lesser, plain
 from contactlab.numeric.types import Real
+from contactlab.numeric.vectors import square_root
 from contactlab_laws.march.coupled_steps import deepest
 
 #: Error of psi2 by springs, over x/n².
@@ -56,11 +57,12 @@ def resolve(scene: Scene) -> tuple[Real, Real]:
     With a loss it is 2.4e-3, as steps are graded. No less will do: near slip throughout 50 springs
     and 200 steps were off by up to 0.15 from x = 30 on, in 900 random impacts, e 0.3 to 0.98.
     """
-    x = np.asarray(kinetics.largest_chi(scene) + kinetics.size_of(scene, np.asarray(scene.eta)))
+    lam, eta, _ = kinetics.sizes(scene)
+    x = np.asarray(kinetics.largest_chi(scene) + eta)
     # the infinite eta of an impact without friction is none
     x = np.clip(np.where(np.isfinite(x), x, 0.0), LEVEL**-1, LARGEST)
     x = np.minimum(LEVEL ** np.ceil(np.log(x) / math.log(LEVEL) - 1e-9), LARGEST)
-    wide = kinetics.size_of(scene, np.asarray(scene.lam)) > OUTGROWS
+    wide = lam > OUTGROWS
     fewest = np.maximum(SPRINGS * np.sqrt(x), FEWEST_SPRINGS)
     springs = 2.0 * np.ceil(0.5 * np.where(wide, 2.0 * fewest, fewest))
     return plain(springs), plain(np.ceil(np.maximum(STEPS * x**0.75, FEWEST_STEPS)))
@@ -108,31 +110,28 @@ def _leave(error: Real, chi: Real, restitution: Real) -> Real:
 def of_bodies(scene: Scene, springs: int, steps: Real, *, shared: bool) -> Errors:
     """Return the errors of impacts whose approach friction changes, or whose slip turns."""
     chi = kinetics.largest_chi(scene)
-    lam, eta, psi1 = (
-        kinetics.size_of(scene, np.asarray(each)) for each in (scene.lam, scene.eta, scene.psi1)
-    )
+    lam, eta, psi1 = kinetics.sizes(scene)
     x = chi + eta
     depth: Real = deepest(scene)
-    jams = lam > JAMS
-    known = (lam <= LARGEST_LAM) & ~(jams & (kinetics.free_share(scene) < LEAST_FREE))
-    known &= np.isfinite(x) & np.isfinite(psi1)
+    free = (lam <= JAMS) | (kinetics.free_share(scene) >= LEAST_FREE)
+    known = (lam <= LARGEST_LAM) & free & (x < math.inf) & (psi1 < math.inf)
     # the contact radius grows as the fifth root of the energy that presses it
-    doublings = np.ceil(np.log2(np.maximum(depth**0.2 / SPANNED, 1.0)))
+    doublings = np.ceil(np.log2(greater(depth**0.2 / SPANNED, 1.0)))
     by_springs = BY_SPRINGS * x * 4.0**doublings / springs**2
     even = BY_GRADED_STEPS if shared else BY_STEPS
-    by_steps = _by_steps(x, steps, even, BY_ENTERING) * np.where(jams, np.sqrt(depth), 1.0)
-    psi2: Real = (by_springs + by_steps) * np.minimum((psi1 + eta) / LITTLE_SLIP, 1.0)
-    psi2 = np.where(known, psi2, math.nan)
+    root = square_root(depth)
+    by_steps = _by_steps(x, steps, even, BY_ENTERING) * choose(lam > JAMS, root, 1.0)
+    psi2: Real = (by_springs + by_steps) * lesser((psi1 + eta) / LITTLE_SLIP, 1.0)
+    psi2 = plain(choose(known, psi2, math.nan))
     if not shared:
         return Errors(psi2)
-    known = known & (chi <= LOSS_CHI) & np.equal(scene.pair.cross_stiffness_ratio, 1.0)
-    own = LOSS_BY_SPRINGS / springs**2 + LOSS_BY_STEPS / np.square(steps)
-    restitution = np.where(known, own * np.sqrt(depth), math.nan)
-    return Errors(np.fmin(psi2, 0.5 * (1.0 + x) * restitution), restitution)
+    known = known & (chi <= LOSS_CHI) & (scene.pair.cross_stiffness_ratio == 1.0)
+    own = LOSS_BY_SPRINGS / springs**2 + LOSS_BY_STEPS / (steps * steps)
+    restitution = plain(choose(known, own * root, math.nan))
+    return Errors(plain(np.fmin(psi2, 0.5 * (1.0 + x) * restitution)), restitution)
 
 
 def _by_steps(x: Real, steps: Real, even: float, entering: float) -> Real:
     """Return the error by steps."""
-    steps = np.asarray(steps, dtype=float)
-    graded, entered = even * x**1.5 / steps**2, entering * np.minimum(x, 1.0) / steps**1.5
-    return np.maximum(graded, entered)
+    whole, entered = even * x**1.5 / steps**2, entering * lesser(x, 1.0) / steps**1.5
+    return max(whole, entered) if isinstance(whole, float) else np.maximum(whole, entered)
