@@ -69,7 +69,7 @@ def _open(law: NormalLaw, scene: Scene) -> NormalMotion:
 
     if "similar" in claims(law):
         one = _unit_impact()
-        alone = _find_table(law, one)
+        alone = _find_table(law, one, SIMILAR)
         if alone is not None and alone.status[0] is Status.SUCCESS:
             return SolvedMotion(law, scene, alone, one)
     if (found := _of_restitutions(law, scene)) is not None:
@@ -120,19 +120,22 @@ def _of_restitutions(law: NormalLaw, scene: Scene) -> MotionTable | None:
     tables = []
     for e in few.tolist():
         alone: Any = attrs.evolve(law, restitution=e)  # type: ignore[misc]  # attrs classes
-        table = _find_table(alone, _unit_impact()) if "similar" in claims(alone) else None
+        table = _find_table(alone, _unit_impact(), SIMILAR) if "similar" in claims(alone) else None
         if table is None or table.status[0] is not Status.SUCCESS:
             return None
         tables.append(table)
     return MotionTable.join(tables).take(which.reshape(scene.shape))
 
 
-def _find_table(law: NormalLaw, single: Scene) -> MotionTable | None:
-    """Return the table of one impact without friction, or None if the law takes a batch alone."""
-    key = law, single
+def _find_table(law: NormalLaw, single: Scene, name: str | None = None) -> MotionTable | None:
+    """Return the table of one impact without friction, or None if the law takes a batch alone.
+
+    A ``name`` stands for the impact, which is slow to compare.
+    """
+    key = law, name or single
     try:
-        if key in _TABLES:
-            return _TABLES[key]
+        if (kept := _TABLES.get(key)) is not None:
+            return kept
     except TypeError:  # a law, or a body of a law's own, that cannot be hashed
         return None
     try:
@@ -151,4 +154,6 @@ def _find_table(law: NormalLaw, single: Scene) -> MotionTable | None:
 #: Tables of the last normal motions, by law and scene: solving takes milliseconds, and the same
 #: impact is often run under several friction laws. A table takes some 50 kB.
 MOST_KEPT = 16
-_TABLES: dict[tuple[NormalLaw, Scene], MotionTable] = {}
+_TABLES: dict[tuple[NormalLaw, Scene | str], MotionTable] = {}
+#: Name of the impact to which similar ones are scaled.
+SIMILAR = "similar"

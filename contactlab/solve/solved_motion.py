@@ -42,7 +42,7 @@ class MotionTable:
     shape : tuple of int
         Shape of the batch; () if one motion serves the whole batch.
     shared : dict
-        What motions of this table share, by the number of axes of their batches.
+        What motions of this table share: their ends, and by the number of axes of their batches.
     edges : array, shape (items, S + 1)
         Ends of the steps, in units of ``unit``. An item with fewer steps than another has steps
         of zero width at separation.
@@ -194,18 +194,19 @@ class SolvedMotion(NormalMotion):
         self.alike = not table.shape
         if units is None:
             units = Units() if first is None else units_over(first, scene)
-        unit = self.units = units
-        self.duration = table.restore_shape(table.ends * table.unit) * unit.time
-        self.final_rate = table.restore_shape(table.last[:, RATE]) * unit.rate
-        self.total_load_impulse = table.restore_shape(table.last[:, LOAD_IMPULSE]) * (
-            unit.force * unit.time
-        )
-        self.maximum_approach = table.restore_shape(table.largest[:, APPROACH]) * unit.approach
-        self.maximum_force = table.restore_shape(table.largest[:, FORCE]) * unit.force
-        largest = _radius(table.largest[:, RADIUS_SQUARED])
-        self.maximum_radius = table.restore_shape(largest) * unit.radius
-        self.status = batch.spread_object(table.restore_shape(table.status), scene.shape)
-        self.detail = batch.spread_object(table.restore_shape(table.detail), scene.shape)
+        self.units = units
+        ends = table.shared.get("ends")
+        if ends is None:
+            ends = table.shared["ends"] = _ends_of(table)
+        duration, final_rate, load_impulse, approach, force, radius, status, detail = ends
+        self.duration = duration * units.time
+        self.final_rate = final_rate * units.rate
+        self.total_load_impulse = load_impulse * (units.force * units.time)
+        self.maximum_approach = approach * units.approach
+        self.maximum_force = force * units.force
+        self.maximum_radius = radius * units.radius
+        self.status = batch.spread_object(status, scene.shape)
+        self.detail = batch.spread_object(detail, scene.shape)
 
     @property
     def shared(self) -> dict[Any, Any] | None:
@@ -252,6 +253,21 @@ class SolvedMotion(NormalMotion):
             table = table.take(np.arange(math.prod(table.shape)).reshape(table.shape)[part])
         units = Units._make(batch.take(each, self.scene.shape, part) for each in self.units)
         return SolvedMotion(self.law, scene, table, self.first, units)
+
+
+def _ends_of(table: MotionTable) -> tuple[Any, ...]:
+    """Return the ends of a table: numbers, status and detail, in the shape of its batch."""
+    columns = (
+        table.ends * table.unit,
+        table.last[:, RATE],
+        table.last[:, LOAD_IMPULSE],
+        table.largest[:, APPROACH],
+        table.largest[:, FORCE],
+        _radius(table.largest[:, RADIUS_SQUARED]),
+        table.status,
+        table.detail,
+    )
+    return tuple(map(table.restore_shape, columns))
 
 
 def _radius(squared: Array) -> Array:

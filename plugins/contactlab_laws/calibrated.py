@@ -9,12 +9,18 @@ from contactlab.numeric.taken import Taken
 
 #: What a law offers that loses energy, and what it offers if a restitution gives the loss.
 OF_LOSS = frozenset({"viscous", "similar"})
+#: What does not hold of it, by whether there is a loss, and one number e.
+WAIVED = {
+    (True, True): frozenset[str](),
+    (True, False): frozenset({"similar"}),
+    (False, True): frozenset({"viscous"}),
+    (False, False): OF_LOSS,
+}
 
 
 def waives_of_loss(restitution: object, loses: bool) -> frozenset[str]:
     """Return the words of ``OF_LOSS`` that do not hold."""
-    words = ("viscous", loses), ("similar", isinstance(restitution, float))
-    return frozenset(word for word, holds in words if not holds)
+    return WAIVED[loses, isinstance(restitution, float)]
 
 
 def root(function: Callable[[float], float], low: float, high: float) -> float:

@@ -12,7 +12,9 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.numeric.arrays import choose
 from contactlab.numeric.types import Array, Real
+from contactlab.numeric.vectors import square_root
 from contactlab_laws.tables.file import Stored
 from contactlab_laws.tables.patches import Patches, powers_of_chebyshev
 
@@ -47,12 +49,12 @@ PER_WIDTH = np.array([1.0 / (each.high - each.low) for each in REGIONS])
 NODES = (8, 6, 6)
 
 
-def bound_restitution_error(chi: Real, restitution: Real) -> Array:
+def bound_restitution_error(chi: Real, restitution: Real) -> Real:
     """Return the bound of the error of psi2 below a restitution of 1; 0 at e = 0."""
-    far = BEYOND_ERROR * np.sqrt(np.asarray(chi) / RESTITUTED_CHI[1])
-    wide = np.where(chi <= RESTITUTED_CHI[1], WIDER_ERROR, far)
-    near = np.where(np.asarray(chi) <= NEARER, RESTITUTED_ERROR, wide)
-    return np.where(np.equal(restitution, 0.0), 0.0, near)
+    far = BEYOND_ERROR * square_root(chi / RESTITUTED_CHI[1])
+    wide = choose(chi <= RESTITUTED_CHI[1], WIDER_ERROR, far)
+    near = choose(chi <= NEARER, RESTITUTED_ERROR, wide)
+    return choose(restitution == 0.0, 0.0 * near, near)
 
 
 def border(chi: Any, e: Any) -> Any:

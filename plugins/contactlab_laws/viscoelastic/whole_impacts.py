@@ -19,15 +19,16 @@ from contactlab_laws.viscoelastic.rebound import rebound
 def look_up(scene: Scene, restitution: Real, *, beyond: bool) -> tuple[WholeImpact, ...]:
     """Return the answer for the impacts whose chi is in the table, or for all; or nothing."""
     low, high = (0.0, math.inf) if beyond else RESTITUTED_CHI
-    where: Mask = (scene.chi >= low) & (scene.chi <= high) & np.isfinite(scene.psi1)
+    psi1: Any = scene.psi1
+    chi: Any = scene.chi
+    where: Mask = (chi >= low) & (chi <= high) & (abs(psi1) < math.inf)
     if not some(where):
         return ()
     if scene.shape:
         change, error, shear = _look_up_many(scene, restitution, where)
     else:  # plain numbers take a third of the time
-        where, psi1, chi = True, float(scene.psi1), float(scene.chi)
         change = rebound(psi1, chi, restitution) - psi1
-        error = float(bound_restitution_error(chi, restitution))
+        error = bound_restitution_error(chi, restitution)
         known = min(max(chi, RESTITUTED_CHI[0]), RESTITUTED_CHI[1])
         shear = restituted.single_shear_loss(psi1, known, float(restitution))
     reason = "the answer is in the table of restitutions"

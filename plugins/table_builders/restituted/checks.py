@@ -38,9 +38,8 @@ def verify(count: int, seed: int) -> int:
             psi1 = 1.0 + (border(chi, e) - 1.0) * u if region.slips else u
             found = rebound(psi1, chi, float(e))
             off = np.abs(found - extrapolate_steps(psi1, chi, number_of(float(e)), **GRID))
-            rows += zip(
-                off, bound_restitution_error(chi, e), psi1, chi, np.full(size, e), strict=True
-            )
+            declared = np.broadcast_to(bound_restitution_error(chi, e), size)
+            rows += zip(off, declared, psi1, chi, np.full(size, e), strict=True)
         worst, bound, *at = max(rows)
         rms = float(np.sqrt(np.mean([row[0] ** 2 for row in rows])))
         kind = "slips first" if region.slips else "sticks"
