@@ -25,7 +25,12 @@ CENTRAL, PLANAR, SPATIAL = 0, 1, 2
 
 def check(inverse: Array) -> None:
     """Refuse a W that is not positive definite."""
-    if every(_is_definite(rows(inverse))):
+    if inverse.ndim == 2:  # plain numbers warn of nothing
+        definite = _is_definite(rows(inverse))
+    else:
+        with np.errstate(all="ignore"):
+            definite = every(_is_definite(rows(inverse)))
+    if definite:
         return
     with np.errstate(all="ignore"):
         diagonal = np.sqrt(np.einsum("...ii->...i", inverse))
@@ -35,7 +40,6 @@ def check(inverse: Array) -> None:
         raise refuse("inverse_mass", inverse.tolist(), rule)
 
 
-@np.errstate(all="ignore")
 def _is_definite(tensor: Rows) -> Any:
     """Return where W is positive definite without a look at its eigenvalues, which takes longer."""
     x: Any  # checkers know no type of abs of a number or an array
@@ -69,8 +73,7 @@ def ways(tensor: Rows, speed: Real, slip: Vector, cross_stiffness_ratio: Real = 
     y: Any
     W: Any
     W, (x, y) = tensor, slip
-    size = square_root(W[0][0] * 0.5 * (W[1][1] + W[2][2]))
-    pressed = hypotenuse(W[0][1], W[0][2]) > ROUNDING * size
+    size, pressed = _coupled_size(W), presses(W)
     turned = abs((W[1][1] * x + W[1][2] * y) * y - (W[2][1] * x + W[2][2] * y) * x)
     leaves = abs(y) > ROUNDING * (abs(x) + abs(speed))
     moved = x * x + y * y
@@ -79,6 +82,17 @@ def ways(tensor: Rows, speed: Real, slip: Vector, cross_stiffness_ratio: Real = 
     turns = turns | (leaves & (cross_stiffness_ratio != 1.0))
     leaves = leaves | (abs(W[0][2]) > ROUNDING * size) | (abs(W[1][2]) > ROUNDING * W[1][1])
     return choose(pressed | turns, choose(leaves, SPATIAL, PLANAR), CENTRAL)
+
+
+def presses(tensor: Rows) -> Any:
+    """Return where friction changes the approach by more than rounding, by the rows of W."""
+    return hypotenuse(tensor[0][1], tensor[0][2]) > ROUNDING * _coupled_size(tensor)
+
+
+def _coupled_size(tensor: Rows) -> Any:
+    """Return what entries of W that couple approach and slip are compared with, in 1/kg."""
+    W: Any = tensor
+    return square_root(W[0][0] * 0.5 * (W[1][1] + W[2][2]))
 
 
 def impulse(inverse: Array, change: Vector) -> tuple[Any, Any, Any]:

@@ -395,6 +395,8 @@ def parts(scene: AnyScene, *, as_one: bool = False) -> list[tuple[Any, AnyScene]
     """
     if scene.inverse_mass is None:
         return [(..., scene)]
+    if not scene.shape and scene.planar and inverse_mass.presses(rows(scene.inverse_mass)):
+        return [(..., scene)]  # as it is, whichever way its slip goes
     found = scene._ways()
     if not scene.shape:
         return [(..., scene._going(found))]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from functools import partial
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,6 +26,8 @@ Mask = NDArray[np.bool_]
 
 #: The mask of a single impact: NumPy takes longer to make one than to say what it says.
 ONE: Mask = lock_arrays(np.array(True))
+#: The numbers of a whole-impact answer: one call is faster than a loop over names.
+_numbers = attrgetter("slip_velocity_change", "friction_work", "shear_loss", "normal_spin_change")
 #: Instants in the history of an impact that is not marched.
 INSTANTS = 201
 
@@ -160,8 +163,7 @@ def _check_answer(answer: WholeImpact, law: TangentialLaw, shape: tuple[int, ...
     LawFaultError
         If it is not.
     """
-    for name in ("slip_velocity_change", "friction_work", "shear_loss", "normal_spin_change"):
-        entry = getattr(answer, name)
+    for entry in _numbers(answer):
         if type(entry) is not float and faults.is_malformed(entry, shape):
             sentence = faults.sentence(law, f"the answer {quote(entry)} to a whole impact", 1)
             raise faults.LawFaultError(Status.MALFORMED, sentence)
