@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from contactlab import Encounter, HalfSpace, Material, RigidBody, Scene
+from contactlab.impact import kinetics
 
 
 @pytest.mark.parametrize("size", [3, 4])
@@ -66,3 +67,26 @@ def turned_poles(count, *slip):
 def test_a_slip_that_is_rounding_turns_by_nothing(slip, central):
     """Its rounding has no direction beside the axes of W: the impact is central, and exact."""
     assert (turned_poles(50, *slip).scene.inverse_mass is None) == central
+
+
+@pytest.mark.parametrize("ratio", [1.0, 0.7])
+def test_groups_of_one_impact_are_those_of_its_batch(ratio):
+    """One is asked in plain numbers; determinants tell the share of W_nn that friction leaves."""
+    random = np.random.default_rng(4)
+    given = {
+        "psi1": random.uniform(-2.0, 2.0, (30, 2)),
+        "lam": random.uniform(-0.3, 0.3, (30, 2)),
+        "chi": np.diag([1.3, 1.6 * ratio]),
+    }
+    many = Scene.nondimensional(**given, rho=0.4, cross_stiffness_ratio=ratio)
+    W = many.inverse_mass
+    share = np.linalg.det(W) / (W[:, 0, 0] * np.linalg.det(W[:, 1:, 1:]))
+    assert kinetics.free_share(many) == pytest.approx(share, rel=1e-12)
+    groups = (many.lam, many.eta, many.psi1)
+    lengths = np.stack([np.linalg.norm(each, axis=-1) for each in groups])
+    assert np.stack(kinetics.sizes(many)) == pytest.approx(lengths, rel=1e-14)
+    for place in range(30):
+        one = many.take(place)
+        assert kinetics.sizes(one) == pytest.approx(lengths[:, place], rel=1e-14)
+        assert kinetics.free_share(one) == pytest.approx(share[place], rel=1e-12)
+        assert kinetics.largest_chi(one) == pytest.approx(kinetics.largest_chi(many)[place])

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import Scene, Simulation, Status
+from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, Status
 from contactlab.contracts import AllStepsResponse, AllStepsTangentialLaw, TangentialResponse
 from contactlab.solve.normal_motion import normal_motion
 from contactlab.testing.impacts import all_steps
@@ -27,6 +27,24 @@ def test_batches_of_one_scaled_contact_are_taken_at_once(monkeypatch):
     normal = normal_motion(contactlab.create("normal.hertz"), grid)
     monkeypatch.setenv("CONTACTLAB_COMPILED", "0")
     assert law.advance_all(grid, normal, midpoints(normal, 20)) is None
+
+
+@pytest.mark.parametrize("name", ["tsuji", "linear", "viscoelastic", "kuwabara_kono"])
+@pytest.mark.parametrize("speed", [0.3, np.array([0.3, 4.0])])
+def test_steps_in_units_of_their_own_have_the_force_of_the_law(name, speed):
+    """Impacts that are one but for their units share samples; the law itself tells the forces."""
+    law = contactlab.create(f"normal.{name}", restitution=0.6)
+    steel = Material.named("steel")
+    scene = Scene(Sphere(0.01, steel), HalfSpace(steel), 0.2, speed, 0.5)
+    normal = normal_motion(law, scene)
+    for steps in (midpoints(normal, 40, graded=True), midpoints(normal, 40)):
+        asked, _ = law.respond(law.start(scene), steps.approach, steps.rate)
+        for entry, most in (("force", normal.maximum_force), ("radius", normal.maximum_radius)):
+            off = abs(getattr(asked, entry) - getattr(steps.contact, entry))
+            assert np.all(off < 1e-5 * np.asarray(most))
+        impulse = np.sum(steps.kick * steps.friction_load, axis=0)
+        assert impulse == pytest.approx(normal.total_load_impulse, rel=1e-9)
+        assert np.sum(steps.kick, axis=0) == pytest.approx(normal.duration, rel=1e-3)
 
 
 @attrs.frozen(kw_only=True)
