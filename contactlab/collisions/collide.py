@@ -17,7 +17,7 @@ from contactlab.impact.of_speed import numbers_at, spread_over
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import every, some, take
 from contactlab.numeric.checks import of_kind, real, refuse
-from contactlab.numeric.types import Array, Numbers, Real
+from contactlab.numeric.types import AnyArray, Array, Mask, Numbers, Real
 from contactlab.numeric.vectors import LEAST
 from contactlab.runs.simulation import Simulation, run_in_blocks
 
@@ -58,7 +58,7 @@ def collide(
     restitution: Numbers | Callable[[float], Numbers] | Callable[[Array], Numbers] = 1.0,
     separating: str = "refuse",
     history: bool = False,
-) -> Any:
+) -> Collision | GatheringResult:
     """Return velocities and spins of both bodies after an encounter, or after each of a batch.
 
     Of a ``Gathering`` it returns those of all bodies and what each contact went through: the
@@ -141,7 +141,7 @@ def collide(
         strict = separating == "refuse"
         moved = impulses.strike(encounter, restitution=e, strict=strict)
         return Collision(encounter=encounter, **moved, restitution=e)
-    met: Any = np.ones(encounter.shape, dtype=bool) if encounter.shape else True
+    met: Mask = np.ones(encounter.shape, dtype=bool) if encounter.shape else True
     if separating == "pass":  # else the scene refuses bodies that separate
         met = encounter.approaching
     about: dict[str, Any] = {"simulation": simulation, "restitution": e}
@@ -201,7 +201,7 @@ def _alone(given: object, restitution: Real, simulation: Simulation) -> None:
         raise refuse("restitution", given, "stands in place of a simulation", remedy)
 
 
-def _at_speeds(restitution: Callable[..., Numbers], encounter: Encounter) -> Real:
+def _at_speeds(restitution: Callable[..., Numbers], encounter: Encounter) -> AnyArray:
     """Return the restitution at the normal speed of each encounter; 1 where bodies separate."""
     shape, approach = encounter.shape, encounter.meeting().approach
     apart = np.broadcast_to(~(np.asarray(approach) >= LEAST), shape)

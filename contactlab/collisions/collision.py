@@ -24,7 +24,7 @@ from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.arrays import every, of_each, plain, spread_object, take
 from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import tell_attributes
-from contactlab.numeric.types import Array, Each, Json, Labelled, Mask, Numbers, Real
+from contactlab.numeric.types import Array, Each, Json, Labelled, Mask, Numbers, Real, Vector
 from contactlab.numeric.vectors import NOTHING, components, cross, join_components
 from contactlab.outcome.answer import Answer
 from contactlab.outcome.columns import components as parts_of
@@ -103,9 +103,9 @@ class Collision(Answer, Generic[Each]):
     target_velocity: Array
     target_spin: Array
     normal_velocity: Each
-    slip_velocity_change: Any
+    slip_velocity_change: Real
     friction_work: Each
-    collided: Any
+    collided: Mask
     restitution: Real = 1.0
     simulation: Simulation | None = None
     known: ImpactResult | None = None
@@ -125,7 +125,7 @@ class Collision(Answer, Generic[Each]):
         ValueError
             If the result has another scene.
         """
-        met: Any = encounter.approaching
+        met = encounter.approaching
         part = encounter if np.all(met) else encounter.take(met)
         rule = "must be the result of encounter.scene"
         remedy = "run that: simulation.run(encounter.scene)"
@@ -252,7 +252,7 @@ class Collision(Answer, Generic[Each]):
         if known is not None:
             unchecked = np.logical_not(known.energy.checked)
             told = known.motion.exchange, known.motion.shear_loss, unchecked
-        exchange, shear, unchecked = self._spread(*told)
+        exchange, shear, unread = self._spread(*told)
         after = self.normal_velocity, self.slip_velocity_change
         with np.errstate(over="ignore", under="ignore", invalid="ignore"):
             start, lost, slip = self.encounter.pair.energies(contact.approach, contact.slip, *after)
@@ -261,9 +261,9 @@ class Collision(Answer, Generic[Each]):
                 whole, rubbed = self._spread(*kinetics.spin_energies(scene, change))
                 start, slip = start + whole, slip + rubbed
             energies = of_each(start, self.encounter.shape), lost, slip
-            return books(energies, (self.friction_work, shear), exchange, unchecked == 0.0)
+            return books(energies, (self.friction_work, shear), exchange, unread == 0.0)
 
-    def _spread(self, *quantities: Real) -> list[Any]:
+    def _spread(self, *quantities: Real | Mask) -> list[Real]:
         """Return quantities of the encounters that collided as those of all, else 0."""
         return [plain(row) for row in _columns(self.encounter, self.collided, *quantities)]
 
@@ -273,13 +273,13 @@ class Collision(Answer, Generic[Each]):
             return self.known.energy
         names = ("start", "end", "normal_loss", "friction_work", "shear_loss", "imbalance")
         told: dict[str, Any] = dict.fromkeys(names, 0.0)
-        unchecked: Any = False
+        unchecked: Mask = False
         if self.known is not None:
             books = self.known.energy
             told = {name: getattr(books, name) for name in names}
             unchecked = np.logical_not(books.checked)
-        *entries, unchecked = self._spread(*told.values(), unchecked)
-        return EnergyLedger(**dict(zip(names, entries, strict=True)), checked=unchecked == 0.0)
+        *entries, unread = self._spread(*told.values(), unchecked)
+        return EnergyLedger(**dict(zip(names, entries, strict=True)), checked=unread == 0.0)
 
     @property
     def impulse(self) -> Array:
@@ -288,7 +288,8 @@ class Collision(Answer, Generic[Each]):
         if not self.encounter.of_spheres:
             impulse = np.zeros((*shape, 3))
             if self.known is not None:
-                axes: Any = self.known.scene.frame
+                axes = self.known.scene.frame
+                assert axes is not None
                 impulse[self.collided] = -in_space(axes, self.known.impulse)
             return impulse
         contact, pair = self.encounter.meeting(), self.encounter.pair
@@ -310,7 +311,7 @@ class Collision(Answer, Generic[Each]):
     def _rim(self, side: int, body: Sphere | HalfSpace | RigidBody, spin: Array) -> Array:
         """Return the velocity in m/s, relative to the centre, of the surface at the contact."""
         encounter = self.encounter
-        arm: Any = components(encounter.target_contact if side else encounter.contact)
+        arm: Vector = components(encounter.target_contact if side else encounter.contact)
         if isinstance(body, Sphere):
             radius = -body.radius if side else body.radius
             arm = [radius * each for each in encounter.meeting().normal]
@@ -360,7 +361,7 @@ class Collision(Answer, Generic[Each]):
         if self.known is not None and np.all(self.collided):
             own: Statuses = self.known.status
             return own
-        status = spread_object(Status.SUCCESS, self.encounter.shape)
+        status: Any = spread_object(Status.SUCCESS, self.encounter.shape)
         if self.known is not None:
             status[self.collided] = self.known.status
         found: Statuses = status
@@ -413,7 +414,7 @@ class Collision(Answer, Generic[Each]):
         return super()._draw(axes, x, y, width)
 
 
-def _columns(encounter: Encounter, met: Mask, *quantities: Real) -> Array:
+def _columns(encounter: Encounter, met: Mask, *quantities: Real | Mask) -> Array:
     """Return quantities of the encounters that met as rows, 0 without a collision."""
     columns = np.zeros((len(quantities), *encounter.shape))
     for k, quantity in enumerate(quantities):
@@ -424,7 +425,8 @@ def _columns(encounter: Encounter, met: Mask, *quantities: Real) -> Array:
 def _attributes(encounter: Encounter, result: ImpactResult, met: Mask) -> dict[str, Any]:
     """Return the attributes of a collision of bodies that are no spheres."""
     motion, part = result.motion, encounter if every(met) else encounter.take(met)
-    axes: Any = result.scene.frame
+    axes = result.scene.frame
+    assert axes is not None
     moved: dict[str, Any] = push_bodies(part, axes, result.impulse, result.couple) | {
         "normal_velocity": motion.normal_velocity,
         "slip_velocity_change": motion.slip_velocity_change,

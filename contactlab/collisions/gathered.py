@@ -97,7 +97,7 @@ class GatheringResult(Answer):
         told = bool(self.history)
         return plan_of_gathering(self.gathering, laws, self._way, self._motion, history=told)
 
-    def _shape(self, value: Real, *trailing: int) -> Any:
+    def _shape(self, value: Real, *trailing: int) -> Array:
         """Return what each gathering has in the batch shape."""
         return np.asarray(value).reshape(*self.gathering.shape, *trailing)
 
@@ -393,16 +393,16 @@ class _ContactsRecorder(Recorder):
     def __call__(self, sample: Sample) -> None:
         """Keep the sample of one instant, over one axis."""
         time, approach, rate, contact, slip, force, *_ = sample
-        alone = [_flat(each) for each in (time, approach, rate)]
+        time, approach, rate = (_flat(each) for each in (time, approach, rate))
         flat = NormalContact(*(_flat(each) for each in contact))
-        vectors = [np.asarray(each).reshape(-1, 2) for each in (slip, force)]
-        super().__call__(Sample(*alone, flat, *vectors))  # type: ignore[call-arg]
+        slip, force = (np.asarray(each).reshape(-1, 2) for each in (slip, force))
+        super().__call__(Sample(time, approach, rate, flat, slip, force))
 
     def history(self) -> History:
         """Return the history, whose last axis are the contacts."""
         return attrs.evolve(super().history(), last_axis="contact")
 
 
-def _flat(value: Real) -> Any:
+def _flat(value: Real) -> Real:
     """Return numbers of gatherings and contacts over one axis."""
     return value if np.ndim(value) == 0 else np.reshape(value, -1)

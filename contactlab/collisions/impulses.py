@@ -35,7 +35,7 @@ def pass_through(encounter: Encounter) -> Moved:
 
 def rebounding(
     part: Encounter, contact: Contact, pair: Pair, restitution: Real
-) -> tuple[Any, Any, Any]:
+) -> tuple[Real, Real, Real]:
     """Return rebound rate (m/s), slip change (m/s) and friction work (J) by ``rebound``."""
     # From psi1 = 4 chi + 1 on bodies slip throughout, eq. (46), and the change of psi is
     # constant. So psi1 is cut there: it stays finite, with all digits, at any slip and friction.

@@ -21,7 +21,7 @@ MODULES = {"xarray": "xarray", "pandas": "pandas", "dask": "dask.array"}
 
 def by_labels(
     function: Callable[..., object], answers: int, arguments: Mapping[str, object]
-) -> Any:
+) -> object:
     """Return what a function of arrays answers to labelled or lazy arrays, labelled or lazy too.
 
     Parameters
@@ -73,7 +73,7 @@ def _library(arguments: Mapping[str, object]) -> tuple[str, str]:
 
 def _by_dimensions(
     xarray: Any, function: Callable[..., object], answers: int, arguments: Mapping[str, object]
-) -> Any:
+) -> object:
     """Return ``DataArray``s over every dimension of the arguments; lazy ones of lazy ones."""
     labelled = [value for value in arguments.values() if library_of(value)]
     try:
@@ -95,9 +95,9 @@ def _by_dimensions(
 
 def _by_index(
     pandas: Any, function: Callable[..., Any], answers: int, arguments: Mapping[str, Any]
-) -> Any:
+) -> object:
     """Return ``Series`` with the index of the first one; the others follow in its order."""
-    index: Any = None
+    index = None
     columns = []
     for value in arguments.values():
         if not library_of(value):
@@ -129,7 +129,7 @@ def _like_levels(labels: Any, index: Any) -> Any:
     return labels.reorder_levels(wanted) if same else None
 
 
-def _places(labels: Any, index: Any) -> Any:
+def _places(labels: Any, index: Any) -> object:
     """Return the place of each label of an index; None where labels differ or repeat."""
     if labels is None or len(labels) != len(index) or not (labels.is_unique and index.is_unique):
         return None
@@ -141,7 +141,7 @@ def _places(labels: Any, index: Any) -> Any:
 
 def _lazily(
     dask_array: Any, function: Callable[..., object], answers: int, arguments: Mapping[str, Any]
-) -> Any:
+) -> object:
     """Return dask arrays of the broadcast shape; bad numbers are refused when they are computed."""
     for name, value in arguments.items():
         if any(map(math.isnan, np.shape(value))):
@@ -162,7 +162,7 @@ def _lazily(
     )
 
 
-def _one_or_all(answers: Iterable[object]) -> Any:
+def _one_or_all(answers: Iterable[object]) -> object:
     """Return a single answer, or all as a tuple."""
     one, *others = answers
     return (one, *others) if others else one

@@ -49,9 +49,9 @@ class _Jax:
     """JAX."""
 
     def __init__(self) -> None:
-        self.jax: Any = importlib.import_module("jax")
-        self.xp: Any = importlib.import_module("jax.numpy")
-        self.compile_late: Any = self.jax.jit
+        self.jax = importlib.import_module("jax")
+        self.xp = importlib.import_module("jax.numpy")
+        self.compile_late: Callable[..., Any] = self.jax.jit
 
     def arrays(self, values: Iterable[object]) -> list[Any]:
         """Return numbers and arrays as arrays of one type, that of the arrays among them."""
@@ -88,8 +88,8 @@ class _Torch:
     """PyTorch, whose names are those of the standard but for ``take`` and ``astype``."""
 
     def __init__(self) -> None:
-        self.torch: Any = importlib.import_module("torch")
-        self.xp: Any = self
+        self.torch = importlib.import_module("torch")
+        self.xp = self
 
     def __getattr__(self, name: str) -> Any:
         """Return a function of PyTorch."""

@@ -319,7 +319,7 @@ def _restitution(value: object) -> Real:
 
 def _rebound_with_labels(
     psi1: object, chi: object, tolerance: float, derivatives: bool, restitution: object
-) -> Any:
+) -> object:
     """Return ``rebound`` of labelled or lazy arrays, with their labels."""
     arguments, three = {"psi1": psi1, "chi": chi}, restitution is not None
     if three:
@@ -329,7 +329,7 @@ def _rebound_with_labels(
         return _by_standard(library, arguments, derivatives)
     from contactlab.collisions.labelled import by_labels  # only for arrays of other libraries
 
-    def answer(*columns: Real) -> Any:
+    def answer(*columns: Real) -> object:
         e = columns[2] if three else None
         return rebound(*columns[:2], tolerance=tolerance, derivatives=derivatives, restitution=e)
 
@@ -341,7 +341,7 @@ def traceable(values: Iterable[object]) -> str:
     return next((name for name in map(library_of, values) if name in DIFFERENTIATE), "")
 
 
-def _by_standard(library: str, arguments: dict[str, object], derivatives: bool) -> Any:
+def _by_standard(library: str, arguments: dict[str, object], derivatives: bool) -> object:
     """Return ``rebound`` of arrays of JAX or PyTorch, traced or not."""
     from contactlab.collisions.traced import by_standard  # only for such arrays
 

@@ -23,7 +23,7 @@ def by_standard(
     rules: Mapping[str, Rule],
     *,
     joined: bool,
-) -> Any:
+) -> object:
     """Return psi2 as an array of a library, of the broadcast shape.
 
     Parameters

@@ -12,9 +12,9 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlab.contracts.status import Status
+from contactlab.contracts.status import Details, Status
 from contactlab.numeric.arrays import are_zeros, consecutive, merge_parts, spread_object, zeros
-from contactlab.numeric.types import AnyArray, Mask, Real
+from contactlab.numeric.types import Mask, Real
 
 #: Entries of motions that are no numbers.
 NO_NUMBERS = ("status", "detail", "counters", "normal", "contacts")
@@ -32,14 +32,14 @@ class BatchMotion:
     """
 
     status: Any = Status.SUCCESS
-    detail: Any = ""
+    detail: Details = ""
     counters: Mapping[str, int] = attrs.field(factory=dict)
 
     def __attrs_post_init__(self) -> None:
         if isinstance(self.status, Status):
             return  # one impact: np.ndim is slower than this test
         if isinstance(self.detail, str) and np.ndim(self.status):
-            details = spread_object("", np.shape(self.status))
+            details = np.full(np.shape(self.status), "", dtype=object)
             if self.detail:
                 details[self.status != Status.SUCCESS] = self.detail
             object.__setattr__(self, "detail", details)
@@ -48,14 +48,14 @@ class BatchMotion:
     @cache
     def numbers(cls) -> tuple[str, ...]:
         """Return the names of the entries that are numbers."""
-        fields: Any = attrs.fields(cls)
+        fields = attrs.fields(cls)
         return tuple(field.name for field in fields if field.name not in NO_NUMBERS)
 
     @classmethod
     @cache
     def _entries_with(cls, word: str) -> frozenset[str]:
         """Return the names of the entries that have a word: ``vectors`` of the plane, ``rare``."""
-        fields: Any = attrs.fields(cls)
+        fields = attrs.fields(cls)
         return frozenset(field.name for field in fields if word in field.metadata)
 
     @classmethod
@@ -137,7 +137,7 @@ class BatchMotion:
             detail=detail if isinstance(detail, str) else np.array(detail, dtype=object),
         )
 
-    def failing(self, where: Mask, status: Status, detail: str | AnyArray) -> Self:
+    def failing(self, where: Mask, status: Status, detail: Details) -> Self:
         """Return this motion with another status for the successful impacts that ``where`` marks.
 
         Parameters
@@ -149,7 +149,7 @@ class BatchMotion:
         detail : str or array of str
             One sentence for all these impacts, or one for each impact of the batch.
         """
-        statuses: Any = np.array(self.status, dtype=object)
+        statuses = np.array(self.status, dtype=object)
         failing = np.asarray(where) & (statuses == Status.SUCCESS)
         if not failing.any():
             return self

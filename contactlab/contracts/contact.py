@@ -62,8 +62,8 @@ def without_tension(force: Real, radius: Real, approach: Real) -> NormalContact:
     approach : float or array, shape (...,)
         Approach in m, positive in compression.
     """
-    pushing: Any
-    size: Any
+    pushing: Real
+    size: Real
     if isinstance(force, float) and isinstance(approach, float):  # many times faster
         pushing, size = not force <= 0.0, abs(approach)
     else:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, Self
+from typing import Self
 
 import attrs
 
@@ -55,7 +55,7 @@ class Contacts:
             As of ``BatchMotion.merge``.
         """
 
-        def column(name: str) -> Any:
+        def column(name: str) -> Array:
             trailing = (3,) if name in VECTORS else ()
             values = [
                 (where, math.nan if part is None else getattr(part, name)) for where, part in parts

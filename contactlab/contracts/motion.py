@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts.law import Law, claims
-from contactlab.contracts.status import Status
+from contactlab.contracts.status import Details, Status
 from contactlab.numeric.types import Index, Real
 
 if TYPE_CHECKING:
@@ -39,11 +39,11 @@ class NormalSample(NamedTuple):
         Integral of the friction load since first touch, in N s.
     """
 
-    time: Any
-    approach: Any
-    rate: Any
+    time: Real
+    approach: Real
+    rate: Real
     contact: NormalContact
-    load_impulse: Any
+    load_impulse: Real
 
 
 class Units(NamedTuple):
@@ -108,7 +108,7 @@ class NormalMotion(ABC):
     final_rate: Real
     total_load_impulse: Real
     status: Any = Status.SUCCESS
-    detail: Any = ""
+    detail: Details = ""
     #: Declared relative error of the load impulse; NaN, the default, means not declared.
     accuracy: float = math.nan
     #: True if the motions of all impacts are one but for their scale.

@@ -35,7 +35,7 @@ class NormalLaw(Law, kind="normal"):
     """
 
     @abstractmethod
-    def start(self, scene: Scene) -> Any:
+    def start(self, scene: Scene) -> object:
         """Return the state before first touch; None for a law without memory."""
 
     @abstractmethod

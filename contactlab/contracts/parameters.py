@@ -13,7 +13,7 @@ from contactlab.impact.material import Material
 from contactlab.impact.of_speed import spread_over
 from contactlab.impact.scene import Scene
 from contactlab.numeric.named import split_heading
-from contactlab.numeric.types import Real
+from contactlab.numeric.types import Array, Real
 
 
 class Combined(NamedTuple):
@@ -49,7 +49,7 @@ GEOMETRIC_MEAN = Combined(
 )
 
 
-def number_in(law: Law, option: str, scene: Scene) -> Any:
+def number_in(law: Law, option: str, scene: Scene) -> Real:
     """Return an option of a law for the impacts of a scene, or of a part of it.
 
     A law reads an option so that is marked ``quantity(..., per_impact=True)``.
@@ -72,11 +72,12 @@ def number_in(law: Law, option: str, scene: Scene) -> Any:
     ValueError
         If the option has another shape than the scene.
     """
-    value = getattr(law, option)
+    value: Real = getattr(law, option)
     if not isinstance(value, np.ndarray):
         return value
     name = f"{law_kind(law)}.{option}"
     for heading, each in scene._options.items():
         if split_heading(heading)[0] == name:
-            return each.numbers
+            numbers: Array = each.numbers
+            return numbers
     return spread_over(name, value, scene.shape)

@@ -127,13 +127,13 @@ class Ends(NamedTuple):
         How often the approach grew: 1, or more where friction presses the bodies together again.
     """
 
-    duration: Any
-    final_rate: Any
-    maximum_radius: Any
-    maximum_approach: Any
-    maximum_force: Any
-    dissipation: Any
-    compressions: Any = 1.0
+    duration: Real
+    final_rate: Real
+    maximum_radius: Real
+    maximum_approach: Real
+    maximum_force: Real
+    dissipation: Real
+    compressions: Real = 1.0
 
     @classmethod
     def of(cls, normal: NormalMotion | Ends | None) -> Ends:

@@ -36,9 +36,9 @@ class Sampled(NamedTuple):
 
     approach: Real
     rate: Real
-    slip: Any
-    force: Any
-    mobility: Any
+    slip: Real
+    force: Real
+    mobility: Real
 
 
 class Increment(NamedTuple):
@@ -283,12 +283,12 @@ class Steps(NamedTuple):
     """
 
     contact: Any
-    drift: Any
-    kick: Any
-    friction_load: Any
-    time: Any
-    approach: Any
-    rate: Any
+    drift: Array
+    kick: Array
+    friction_load: Array
+    time: Array
+    approach: Array
+    rate: Array
 
 
 class AllStepsResponse(NamedTuple):

@@ -43,8 +43,8 @@ class Sample(NamedTuple):
     approach: Real
     normal_velocity: Real
     contact: NormalContact
-    slip_velocity: Any
-    tangential_force: Any
+    slip_velocity: Real
+    tangential_force: Real
     fields: Callable[[], Mapping[str, Any]] = no_fields
 
 

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts.motion import NormalMotion
-from contactlab.contracts.status import Status
+from contactlab.contracts.status import Status, Statuses
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import choose
+from contactlab.numeric.arrays import choose, magnitude
 from contactlab.numeric.types import Array, Mask, Real
 
 
@@ -74,7 +74,7 @@ class WholeImpact:
     course: Callable[[Any, Any], tuple[Any, Any]] | None = None
     fields: Callable[[Any], Mapping[str, NDArray[Any]]] | None = None
     psi2_error: Real = math.nan
-    status: Any = Status.SUCCESS
+    status: Statuses = Status.SUCCESS
     detail: str = ""
     normal: NormalMotion | None = None
     balanced: bool = False
@@ -147,7 +147,7 @@ class Tabulated(ABC):
         """
         raise NotImplementedError("this law has no table for arrays of other libraries")
 
-    def solved(self, psi1: Array, chi: Array) -> Any:
+    def solved(self, psi1: Array, chi: Array) -> Array | None:
         """Return psi2 - psi1 beyond the table; None, the default, where impacts are marched.
 
         Parameters
@@ -191,8 +191,8 @@ def from_change(
         Energy lost in shear, over m_t (mu v1/kappa)²/2.
     """
     unit = scene.friction_coefficient * scene.normal_speed / scene.pair.stiffness_ratio
-    change: Any = psi_change * unit
-    lost: Any = -scene.pair.tangential_mass * change * (scene.slip_velocity + 0.5 * change)
+    change = psi_change * unit
+    lost = -scene.pair.tangential_mass * change * (scene.slip_velocity + 0.5 * change)
     lost = choose(lost < 0.0, 0.0, lost)
     shear: Real = 0.0
     if in_shear is not None:
@@ -230,10 +230,10 @@ def sliding(
         False it acts until separation, as in gross slip of an elastic contact, eq. (45).
     """
     friction, mass = scene.friction_coefficient, scene.pair.tangential_mass
-    slip: Any = scene.slip_velocity
-    speed: Any = abs(slip)
+    slip = scene.slip_velocity
+    speed = magnitude(slip)
 
-    def after(impulse: Real, lesser: Any) -> tuple[Any, Any]:
+    def after(impulse: Real, lesser: Callable[..., Real]) -> tuple[Real, Real]:
         """Return the speed lost in m/s, and the friction work in J, after ``impulse`` in N s."""
         lost = impulse / mass
         if stops:
@@ -252,7 +252,7 @@ def sliding(
 
     def course(load_impulse: Real, load: Real) -> tuple[Real, Real]:
         change = friction * load_impulse / mass
-        acting: Real = 1.0
+        acting: Real | Mask = 1.0
         if stops:
             acting = change < speed
             change = np.minimum(change, speed)

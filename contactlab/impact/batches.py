@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from contactlab.impact.kinetics import Motions, batch_of
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.checks import check_place, refuse
-from contactlab.numeric.types import Array, Index, Numbers
+from contactlab.numeric.types import Array, Index, Numbers, Places
 
 
 class NoIndexError(LookupError):
@@ -34,7 +34,7 @@ class Batches(Motions):
         unit_friction: bool
         has_units: bool
         _of_slip: Any
-        _index: Any
+        _index: int | Places | None
         _axes: tuple[tuple[str, Array], ...]
         _varied: tuple[tuple[str, Array], ...]
         _shapes: Any
@@ -201,7 +201,7 @@ class Batches(Motions):
         return tuple((name, batch.lock_arrays(values[place])) for (name, values), place in places)
 
     @property
-    def index(self) -> Any:
+    def index(self) -> int | Places:
         """Index of each impact in the whole batch, integers of the batch shape; 0 for one impact.
 
         ``take``, blocks, chunks and workers keep the index, which a law may use as a random seed.

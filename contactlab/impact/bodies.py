@@ -220,7 +220,9 @@ class Pair:
         """
         return 2.0 * self.effective_shear_modulus * radius
 
-    def energies(self, speed: Real, slip: Real, rate: Real, change: Real) -> tuple[Any, Any, Any]:
+    def energies(
+        self, speed: Real, slip: Real, rate: Real, change: Real
+    ) -> tuple[Real, Real, Real]:
         """Return the energy at the start, and what approach and slip lose of it, in J.
 
         Parameters
@@ -324,9 +326,9 @@ def _inverse_tangential_mass(sphere: Sphere) -> Real:
     return (1.0 + 1.0 / sphere.gyration_ratio**2) / sphere.mass
 
 
-def inverse_turning_mass(sphere: Sphere, radius: Real) -> Any:
+def inverse_turning_mass(sphere: Sphere, radius: Real) -> Real:
     """Return radius²/J of a sphere, in 1/kg; J of a tiny sphere would underflow."""
-    share: Any = radius / (sphere.gyration_ratio * sphere.radius)
+    share = radius / (sphere.gyration_ratio * sphere.radius)
     return share * share / sphere.mass
 
 

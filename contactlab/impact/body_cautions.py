@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -83,7 +82,7 @@ def _of_solid(body: Sphere | RigidBody) -> Array:
     times the mean squares of x, y and z of its mass. Of a cylinder it has 1.08 of the volume,
     whatever the length, and of a box 1.13.
     """
-    density: Any = body.material.density
+    density = body.material.density
     if density is None:
         return np.ones(1)
     if isinstance(body, Sphere):
@@ -102,7 +101,8 @@ def _spring(scene: Scene, body: Sphere) -> str:
     Reissner, J. Math. Phys. 25 (1946) 279-300: F = 4 E h²/(R sqrt(3 (1 - nu²))) times the
     deflection under a force at a point, until the wall buckles at about its thickness.
     """
-    density: Any = body.material.density
+    density = body.material.density
+    assert density is not None
     wall = np.asarray(body.mass) / (4.0 * math.pi * np.asarray(body.radius) ** 2 * density)
     nu = body.material.poisson_ratio
     young = 2.0 * body.material.shear_modulus * (1.0 + nu)

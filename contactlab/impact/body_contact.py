@@ -23,7 +23,7 @@ from contactlab.impact.rigid_body import RigidBody
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import choose, every, magnitude, some
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.types import AnyArray, Array, Mask, Real, Vector
+from contactlab.numeric.types import AnyArray, Array, Complex, Mask, Real, Rows, Vector
 from contactlab.numeric.vectors import (
     LEAST,
     components,
@@ -93,8 +93,8 @@ class Contact(NamedTuple):
 
     normal: Vector
     along: Vector
-    approach: Any
-    slip: Any
+    approach: Real
+    slip: Real
 
 
 class Gap(NamedTuple):
@@ -110,11 +110,11 @@ class Gap(NamedTuple):
         True where the contact is no circle, and where t1 is its minor axis.
     """
 
-    least: Any
-    most: Any
-    major: Any
-    elliptic: Any
-    minor: Any = False
+    least: Real
+    most: Real
+    major: Complex
+    elliptic: Mask
+    minor: Mask = False
 
 
 class Frame(NamedTuple):
@@ -132,7 +132,7 @@ class Frame(NamedTuple):
     """
 
     axes: tuple[Vector, Vector, Vector]
-    inverse_mass: Any
+    inverse_mass: Rows
     velocity: Vector
     gap: Gap
 
@@ -307,14 +307,14 @@ def frame(encounter: _Meeting, bodies: Sequence[Side], normal: Vector) -> Frame:
         inverse_mass.ROUNDING * square_root(dot(velocity, velocity)),
     )
     candidates = ((coupling, least[0]), (slip, least[1]))
-    turn: Any = 1.0 + 0.0j
+    turn: Complex = 1.0 + 0.0j
     for vector, rounding in reversed(candidates):
-        size = abs(vector)
+        size = magnitude(vector)
         turn = choose(size > rounding, vector / (size + (size == 0.0)), turn)
     gap = gap_of(encounter, one, other)
     if some(gap.elliptic):
         turn, gap = _along_an_axis(gap, turn, candidates)
-    back = turn.conjugate()
+    back: Any = turn.conjugate()
     coupling, slip = coupling * back, slip * back
     c, s = turn.real, turn.imag
     # half the trace of the tangential part, and the rest, which turns twice as far
@@ -346,9 +346,9 @@ def gap_of(encounter: _Meeting, t1: Vector, t2: Vector) -> Gap:
     mean = 0.5 * ((one + other) + (two + another))
     elliptic: Mask = False
     if any(getattr(body, "cross_radius", None) is not None for body in bodies):
-        uneven: Any = 0.5 * ((one - other) * axis * axis + (two - another) * across * across)
-        size = abs(uneven)
-        elliptic = size > ROUND * abs(mean)
+        uneven = 0.5 * ((one - other) * axis * axis + (two - another) * across * across)
+        size = magnitude(uneven)
+        elliptic = size > ROUND * magnitude(mean)
     if not some(elliptic):
         if not every(mean > 0.0):
             rule = "one of the bodies must be curved, and both curve apart"
@@ -372,7 +372,7 @@ def gap_of(encounter: _Meeting, t1: Vector, t2: Vector) -> Gap:
 
 def _curvatures(
     body: Sphere | HalfSpace | RigidBody, t1: Vector, t2: Vector
-) -> tuple[Any, Any, Any]:
+) -> tuple[Real, Real, Complex]:
     """Return both principal curvatures of a body in 1/m, and the direction of the first."""
     if isinstance(body, RigidBody):
         return body.curvatures(t1, t2)
@@ -412,17 +412,17 @@ def _radii(body: Sphere | HalfSpace | RigidBody) -> object:
 
 def _along_an_axis(
     gap: Gap, turn: complex | AnyArray, holds: Sequence[tuple[Any, Real]]
-) -> tuple[Any, Gap]:
+) -> tuple[Complex, Gap]:
     """Return t1 along the axis of the ellipse that holds coupling and slip, and the gap there."""
     parts = [(vector * np.conj(gap.major), rounding) for vector, rounding in holds]
     along, aside = (
-        np.logical_or(*(abs(side(part)) > rounding for part, rounding in parts))
+        np.logical_or(*(magnitude(side(part)) > rounding for part, rounding in parts))
         for side in (np.real, np.imag)
     )
     minor = gap.elliptic & aside & ~along
     # t1 points along the coupling, or along the slip
     sense = [(part * np.where(minor, -1j, 1.0)).real for part, _ in parts]
-    pressed = abs(sense[0]) > parts[0][1]
+    pressed = magnitude(sense[0]) > parts[0][1]
     back = np.where(pressed, sense[0], sense[1]) < 0.0
     first = np.where(minor, 1j, 1.0) * gap.major
     first = np.where(gap.elliptic, np.where(back, -first, first), turn)
@@ -438,9 +438,7 @@ def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
     contact = elastic_numbers(encounter, gap)
     ways = inverse_mass.ways(W, speed, slip, contact.get("cross_stiffness_ratio", 1.0))
     central = ways == inverse_mass.CENTRAL
-    aside: Any = abs(slip[1])
-    whole: Any = abs(speed)
-    across = aside > inverse_mass.ROUNDING * (whole + abs(slip[0]))
+    across = magnitude(slip[1]) > inverse_mass.ROUNDING * (magnitude(speed) + magnitude(slip[0]))
     planar = not some(across | (ways == inverse_mass.SPATIAL))
     along = slip[0] if planar else join_components(slip, shape)
     tangential = W[1][1] if planar else 0.5 * (W[1][1] + W[2][2])
@@ -449,7 +447,8 @@ def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
         along, entries = hypotenuse(*slip), {}
         unit = along + (along == 0.0)
         tangential = inverse_mass.along(W, (slip[0] + (along == 0.0)) / unit, slip[1] / unit)
-    spin = _spin_alone(encounter, bodies, normal, choose(gap.elliptic, False, central))
+    round_ = central > gap.elliptic  # central, and no ellipse
+    spin = _spin_alone(encounter, bodies, normal, round_)
     if some(spin != 0.0):
         turning = turning_compliance(bodies, normal, contact["radius"])
         contact |= {"inverse_spin_mass": turning}
@@ -517,7 +516,7 @@ def in_space(axes: Array, vectors: Array) -> Array:
     return np.asarray(np.einsum("...ia,...i->...a", axes, vectors))
 
 
-def resolve_velocity(scene: Scene, velocity: Array) -> tuple[Any, Any]:
+def resolve_velocity(scene: Scene, velocity: Array) -> tuple[Real, Real]:
     """Return the components along the normal and ``scene.along`` of a velocity of the first body.
 
     They are relative to the surface that it strikes, in m/s, numbers for one impact.

@@ -79,8 +79,8 @@ def size_of_contact(scene: Scene, radius: Real) -> float:
     if np.all(np.equal(one, other)):
         major = 0.0 * major
     else:
-        axes: Any = scene.frame
-        _, t1, t2 = rows(axes)
+        assert scene.frame is not None
+        _, t1, t2 = rows(scene.frame)
         largest = minor * gap_of(encounter, t1, t2).most
     arms = encounter.contact, encounter.target_contact
     for body, arm in zip(name_bodies(scene).values(), arms, strict=True):
@@ -97,7 +97,7 @@ def path_cautions(scene: Scene, deepest: float, *, plastic: bool) -> tuple[str, 
     """Return the cautions of bodies that are pressed together by ``deepest`` m."""
     if not (name_bodies(scene) and deepest > 0.0):
         return ()
-    ratio: Any = np.sqrt(deepest / scene.pair.radius)
+    ratio = np.sqrt(deepest / scene.pair.radius)
     one, other = semi_axes(scene.pair)
     pressure = (2.0 / math.pi) * scene.pair.effective_modulus * ratio / (one * other)
     cautions = () if plastic else yielding(scene, pressure)
@@ -171,7 +171,7 @@ def tell_yield(scene: Scene) -> tuple[str, Any, Real]:
     where: dict[str, Any] = {}
     for name, body in name_bodies(scene).items():
         stress = body.material.yield_stress
-        missing: Any = True if stress is None else np.isnan(stress)
+        missing = True if stress is None else np.isnan(stress)
         if some(missing):
             where[f"the {name}"] = np.broadcast_to(missing, scene.shape) if scene.shape else missing
     if not where:
@@ -326,6 +326,6 @@ def _least(value: Real) -> float:
     return value if isinstance(value, float) else float(np.nanmin(value))
 
 
-def _most(value: Any) -> float:
+def _most(value: Real) -> float:
     """Return the largest number of a batch, or the number itself."""
     return value if isinstance(value, float) else float(np.max(value))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache, lru_cache
 from operator import attrgetter
 from typing import Any
@@ -29,7 +29,7 @@ from contactlab.numeric.arrays import every
 from contactlab.numeric.checks import first_of, instance, refuse
 from contactlab.numeric.named import NOTHING as UNKNOWN
 from contactlab.numeric.names import state_arguments
-from contactlab.numeric.types import Array, Index, Numbers, Real
+from contactlab.numeric.types import Array, Index, Mask, Numbers, Real
 from contactlab.numeric.vectors import (
     LEAST,
     NOTHING,
@@ -178,10 +178,13 @@ class Encounter:
         """Set the friction that follows from the slip; numbers that were put in its place stay."""
         slip = self.meeting().slip
         if is_law_of_slip(self.friction_coefficient):
-            found: Any = OfSlip.of(law_of_slip(self.friction_coefficient), slip, shape)
+            found: OfSlip | None = OfSlip.of(law_of_slip(self.friction_coefficient), slip, shape)
         else:
-            before: Any = self.of_slip
-            found = before.at(self.friction_coefficient, slip, shape)
+            found = (
+                None
+                if self.of_slip is None
+                else self.of_slip.at(self.friction_coefficient, slip, shape)
+            )
         object.__setattr__(self, "of_slip", found)
         if found is not None:
             object.__setattr__(self, "friction_coefficient", found.numbers)
@@ -248,7 +251,7 @@ class Encounter:
         return Pair.of(body, target) if many else _pair_of(body, target)
 
     @property
-    def approaching(self) -> Any:
+    def approaching(self) -> Mask:
         """True where the bodies approach, of the batch shape; below 1e-100 m/s they rest."""
         if not self.shape:
             return self.meeting().approach >= LEAST
@@ -257,7 +260,7 @@ class Encounter:
             approach.reshape(-1)[where] = part.meeting().approach
         return approach >= LEAST
 
-    def parts(self) -> Any:
+    def parts(self) -> Iterator[tuple[slice, Encounter]]:
         """Yield (slice, encounters): one-dimensional parts and their places in the flat batch."""
         size = math.prod(self.shape)
         flat = self.take(np.full(self.shape, True)) if len(self.shape) > 1 else self

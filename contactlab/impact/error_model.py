@@ -9,7 +9,8 @@ chi and friction coefficient, zero and huge values included.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,22 +28,22 @@ LARGEST_SHARE = 1.1
 class Range(NamedTuple):
     """Velocity of psi = 1, range of the change of slip velocity, and |v_x|; all in m/s."""
 
-    unit: Any
-    width: Any
-    speed: Any
+    unit: Real
+    width: Real
+    speed: Real
 
 
 def range_of(scene: Scene) -> Range:
     """Return the range of the change of slip velocity, in m/s, of the batch shape."""
-    speed: Any = kinetics.slip_speed(scene)
-    lesser: Any = np.minimum if scene.shape else min
+    speed = kinetics.slip_speed(scene)
+    lesser: Callable[[Real, Real], Real] = np.minimum if scene.shape else min
     with np.errstate(over="ignore", under="ignore"):
         friction: Real = scene.friction_coefficient * scene.normal_speed
         width = lesser(kinetics.most_slip_change(scene), 2.0 * speed)
         return Range(friction / scene.pair.stiffness_ratio, width, speed)
 
 
-def psi_magnitude(scene: Scene) -> Any:
+def psi_magnitude(scene: Scene) -> Real:
     """Return max(1, |psi1|), the scale of relative errors of psi2; 1 where psi1 is infinite."""
-    magnitude: Any = kinetics.size_of(scene, scene.psi1)
+    magnitude = kinetics.size_of(scene, scene.psi1)
     return greater(choose(magnitude < math.inf, magnitude, 1.0), 1.0)

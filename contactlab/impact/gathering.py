@@ -167,7 +167,7 @@ class Gathering:
     """
 
     #: As it was given, which attrs.evolve passes on.
-    _given: Any = attrs.field(alias="bodies", repr=False)
+    _given: Mapping[str, Body] | Sequence[Body] = attrs.field(alias="bodies", repr=False)
     bodies: tuple[Body, ...] = attrs.field(init=False)
     touches: tuple[Touch, ...]
     names: tuple[str, ...] = attrs.field(init=False)
@@ -180,14 +180,18 @@ class Gathering:
     ) -> None: ...
 
     def __attrs_post_init__(self) -> None:
-        bodies: Any = self._given
-        names = tuple(bodies) if isinstance(bodies, Mapping) else ()
+        given = self._given
+        names = tuple(given) if isinstance(given, Mapping) else ()
         for name in names:
             of_kind("bodies: name", name, str, remedy="give bodies by place as a list")
-        bodies = tuple(bodies.values()) if names else _as_tuple("bodies", bodies)
+        bodies = (
+            tuple(given.values())
+            if isinstance(given, Mapping) and given
+            else _as_tuple("bodies", given)
+        )
         touches = _as_tuple("touches", self.touches)
-        for name, each in zip(names or range(len(bodies)), bodies, strict=True):
-            of_kind(f"bodies[{name!r}]", each, Body, remedy="make one: Body(Sphere(...))")
+        for place, each in zip(names or range(len(bodies)), bodies, strict=True):
+            of_kind(f"bodies[{place!r}]", each, Body, remedy="make one: Body(Sphere(...))")
         for k, touch in enumerate(touches):
             of_kind(f"touches[{k}]", touch, Touch, remedy="make one: Touch(0, 1, 0.2, normal=...)")
         for name, value in (("bodies", bodies), ("names", names), ("touches", touches)):
@@ -200,7 +204,7 @@ class Gathering:
         self._check_pairs()
         self._check_load()
 
-    def _place(self, contact: int, side: str) -> Any:
+    def _place(self, contact: int, side: str) -> int | None:
         """Return the place of a body of a contact; None of a half-space."""
         named = getattr(self.touches[contact], side)
         argument = f"touches[{contact}].{side}"
@@ -221,7 +225,7 @@ class Gathering:
         rule = "must be the place or name of one body"
         raise refuse(argument, named, rule, f"there are {known}; all of a batch have one topology")
 
-    def _common_shape(self) -> Any:
+    def _common_shape(self) -> tuple[int, ...]:
         """Return the batch shape, or refuse shapes that do not broadcast."""
         shapes: dict[str, tuple[int, ...]] = {}
         alone = []
@@ -255,7 +259,8 @@ class Gathering:
         """Return the encounter that ``alone`` returns."""
         touch, (place, other) = self.touches[contact], self.places[contact]
         one, two = self.bodies[place], None if other is None else self.bodies[other]
-        target: Any = touch.second if two is None else two.shape
+        target = touch.second if two is None else two.shape
+        assert not isinstance(target, int | str)  # its place says so
         return Encounter(
             one.shape,
             target,

@@ -19,7 +19,7 @@ from contactlab.impact.body_contact import (
     sides,
 )
 from contactlab.impact.encounter import Encounter
-from contactlab.impact.links import Links, energy_of
+from contactlab.impact.links import Inverse, Links, energy_of
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import change_entries
 from contactlab.numeric.checks import first_of, refuse
@@ -80,7 +80,8 @@ class Assembly:
                 raise ValueError(f"touches[{k}]: {error}") from None
             self.frames.append(found)
             for side in bodies:
-                at: Any = gathering.places[k][side.sense < 0.0]
+                at = gathering.places[k][side.sense < 0.0]
+                assert at is not None  # a half-space has no side
                 self.reaches[at][k] = side
 
     def _flat_encounter(self, contact: int) -> Encounter:
@@ -180,7 +181,7 @@ class Assembly:
         columns = {name: [one.get(name, 1.0) for one in found] for name in names}
         return {name: join_components(column, (self.count,)) for name, column in columns.items()}
 
-    def _inverse_mass(self) -> Any:
+    def _inverse_mass(self) -> Inverse:
         """Return W, dense for few contacts and batches, else sparse."""
         contacts = len(self.frames)
         blocks: dict[tuple[int, int], Any] = {
@@ -202,7 +203,8 @@ class Assembly:
                 if one != other:
                     W[:, other, :, one] = np.swapaxes(block, -1, -2)
             return W.reshape(self.count, 3 * contacts, 3 * contacts)
-        return _sparse({place: block[0] for place, block in blocks.items()}, contacts)
+        sparse: Inverse = _sparse({place: block[0] for place, block in blocks.items()}, contacts)
+        return sparse
 
     def _check_memory(self) -> None:
         """Refuse a batch whose inverse masses fill the memory."""

@@ -19,10 +19,9 @@ MOST_IMPACTS = 10_000_000
 def axes_of(entries: Mapping[str, Numbers]) -> dict[str, Array]:
     """Return the entries that are lists, as arrays of one dimension; at least one must be."""
     axes: dict[str, Any] = {}
-    values: Any
     for name, values in entries.items():
         try:
-            varies = bool(np.ndim(values))
+            varies = bool(np.ndim(np.asarray(values)))
         except Exception:  # rows of unequal length, data sets, sparse arrays: refused below
             varies = True
         if varies:

@@ -157,7 +157,7 @@ def _rho(
     return squared
 
 
-def _by_eta(drag: Real, eta: Real, where_zero: Real) -> Any:
+def _by_eta(drag: Real, eta: Real, where_zero: Real) -> Real | None:
     """Return lam/eta; ``where_zero`` where both are zero."""
     if not np.any(drag):
         if not np.any(eta):
@@ -186,7 +186,7 @@ def _friction_and_stiffness(
 
 def _scale(
     mu: Real, kappa: Real, cross: Real, psi1: Real, chi: Real, lam: Real, in_space: bool
-) -> tuple[Any, Array]:
+) -> tuple[Real, Array]:
     """Return slip velocity and inverse mass in units with v1 = R = C = 1/W_nn = 1."""
     shapes = {"psi1": np.shape(psi1), "chi": np.shape(chi), "lam": np.shape(lam)}
     for name, trailing in (("psi1", (2,)), ("chi", (2, 2)), ("lam", (2,))) if in_space else ():

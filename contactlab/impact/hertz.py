@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from contactlab.impact.bodies import Pair
 from contactlab.impact.bodies import size_ratio as size_ratio  # a closed form too
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import greater, magnitude
-from contactlab.numeric.types import Mask, Real
+from contactlab.numeric.types import Array, Mask, Real
 
 #: 2.9432751843: duration of an elastic Hertz impact times v1/(C²R), eq. (7) unrounded.
 DURATION_CONSTANT = 4.0 * math.gamma(0.4) * math.sqrt(math.pi) / (5.0 * math.gamma(0.9))
@@ -59,9 +59,9 @@ def semi_axes(pair: Pair) -> tuple[Real, Real]:
     return axes if np.ndim(ratio) else (float(axes[0]), float(axes[1]))
 
 
-def elongation_of(pair: Pair) -> Any:
+def elongation_of(pair: Pair) -> Array:
     """Return the major over the minor semi-axis of the contact, at least 1, as an array."""
-    ratio = np.asarray(pair.axis_ratio)
+    ratio: Array = np.asarray(pair.axis_ratio)
     return np.maximum(ratio, 1.0 / ratio)
 
 

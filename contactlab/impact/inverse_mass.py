@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from contactlab.numeric.arrays import choose, every, quotient
+from contactlab.numeric.arrays import choose, every, magnitude, quotient
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.types import Array, Real, Rows, Vector
+from contactlab.numeric.types import Array, Mask, Real, Rows, Vector
 from contactlab.numeric.vectors import hypotenuse, rows, solve_tensor, square_root
 
 #: Smallest over largest eigenvalue of an inverse mass, scaled to ones on the diagonal, that is
@@ -40,22 +38,18 @@ def check(inverse: Array) -> None:
         raise refuse("inverse_mass", inverse.tolist(), rule)
 
 
-def _is_definite(tensor: Rows) -> Any:
+def _is_definite(tensor: Rows) -> Mask:
     """Return where W is positive definite without a look at its eigenvalues, which takes longer."""
-    x: Any  # checkers know no type of abs of a number or an array
-    y: Any
-    z: Any
-    a: Any
     (x, _, _), (a, y, _), (b, c, z) = tensor
-    p, q, r = (square_root(abs(each)) for each in (x, y, z))
+    p, q, r = (square_root(magnitude(each)) for each in (x, y, z))
     a, b, c = quotient(a, p * q), quotient(b, p * r), quotient(c, q * r)
     # scaled to ones on the diagonal; the sum of the eigenvalues is 3 then, so that two have at most
     # 9/4 as product, and the least is no less than 4/9 of the determinant
     determinant = 1.0 - a * a - b * b - c * c + 2.0 * a * b * c
-    return (x > 0.0) & (y > 0.0) & (z > 0.0) & (abs(a) < 1.0) & (determinant > CLEAR)
+    return (x > 0.0) & (y > 0.0) & (z > 0.0) & (magnitude(a) < 1.0) & (determinant > CLEAR)
 
 
-def ways(tensor: Rows, speed: Real, slip: Vector, cross_stiffness_ratio: Real = 1.0) -> Any:
+def ways(tensor: Rows, speed: Real, slip: Vector, cross_stiffness_ratio: Real = 1.0) -> Real:
     """Return the way of each impact: ``CENTRAL``, ``PLANAR`` or ``SPATIAL``.
 
     Parameters
@@ -69,33 +63,32 @@ def ways(tensor: Rows, speed: Real, slip: Vector, cross_stiffness_ratio: Real = 
     cross_stiffness_ratio : float or array
         That of the pair: where it is not 1, slip keeps its line along t1 only.
     """
-    x: Any  # checkers know no type of abs of a number or an array
-    y: Any
-    W: Any
     W, (x, y) = tensor, slip
     size, pressed = _coupled_size(W), presses(W)
-    turned = abs((W[1][1] * x + W[1][2] * y) * y - (W[2][1] * x + W[2][2] * y) * x)
-    leaves = abs(y) > ROUNDING * (abs(x) + abs(speed))
+    turned = magnitude((W[1][1] * x + W[1][2] * y) * y - (W[2][1] * x + W[2][2] * y) * x)
+    leaves = magnitude(y) > ROUNDING * (magnitude(x) + magnitude(speed))
     moved = x * x + y * y
     # across its line slip changes by a share of itself: a slip that is rounding turns by nothing
-    turns = turned > ROUNDING * W[1][1] * (moved + square_root(moved) * abs(speed))
+    turns = turned > ROUNDING * W[1][1] * (moved + square_root(moved) * magnitude(speed))
     turns = turns | (leaves & (cross_stiffness_ratio != 1.0))
-    leaves = leaves | (abs(W[0][2]) > ROUNDING * size) | (abs(W[1][2]) > ROUNDING * W[1][1])
+    leaves = (
+        leaves | (magnitude(W[0][2]) > ROUNDING * size) | (magnitude(W[1][2]) > ROUNDING * W[1][1])
+    )
     return choose(pressed | turns, choose(leaves, SPATIAL, PLANAR), CENTRAL)
 
 
-def presses(tensor: Rows) -> Any:
+def presses(tensor: Rows) -> Mask:
     """Return where friction changes the approach by more than rounding, by the rows of W."""
     return hypotenuse(tensor[0][1], tensor[0][2]) > ROUNDING * _coupled_size(tensor)
 
 
-def _coupled_size(tensor: Rows) -> Any:
+def _coupled_size(tensor: Rows) -> Real:
     """Return what entries of W that couple approach and slip are compared with, in 1/kg."""
-    W: Any = tensor
+    W = tensor
     return square_root(W[0][0] * 0.5 * (W[1][1] + W[2][2]))
 
 
-def impulse(inverse: Array, change: Vector) -> tuple[Any, Any, Any]:
+def impulse(inverse: Array, change: Vector) -> tuple[Real, Real, Real]:
     """Return the impulse on the target in N s that makes a change of velocity, by components."""
     p, q, r = solve_tensor(rows(inverse), change)
     return -p, -q, -r
@@ -112,7 +105,7 @@ def unit_slip(slip: Array) -> Array:
     return np.where(moving, slip / np.where(moving, size, 1.0), np.array([1.0, 0.0]))
 
 
-def along(tensor: Rows, x: Real, y: Real) -> Any:
+def along(tensor: Rows, x: Real, y: Real) -> Real:
     """Return W in 1/kg along a unit vector of the tangent plane, by its rows and components."""
     W = tensor
     return x * (W[1][1] * x + W[1][2] * y) + y * (W[2][1] * x + W[2][2] * y)

@@ -167,19 +167,21 @@ class Motions:
             self, **{name: batch.lock_arrays(each) for name, each in entries.items()}
         )
 
-    def _ways(self) -> Any:
+    def _ways(self) -> Real:
         """Return the way in which each impact is solved."""
-        W: Any = self.inverse_mass
+        W = self.inverse_mass
+        assert W is not None
         speed, *slip = self._components(self.normal_speed, self.slip_velocity)
         return inverse_mass.ways(rows(W), speed, slip, self.pair.cross_stiffness_ratio)
 
-    def _going(self, way: int) -> Self:
+    def _going(self, way: Real) -> Self:
         """Return this scene as it is solved in one way."""
         if way == inverse_mass.CENTRAL:
             return self.central
         if way == inverse_mass.SPATIAL or self.planar:
             return self
-        W: Any = self.inverse_mass
+        W = self.inverse_mass
+        assert W is not None
         pair = batch.change_entries(
             self.pair, tangential_mass=batch.lock_arrays(1.0 / entry(W, 1, 1))
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -52,11 +52,11 @@ class NormalSpin(NamedTuple):
         True where shift and loss are those of the table, or of its closed form of gross slip.
     """
 
-    acts: Any
-    w: Any
-    shift: Any
-    loss: Any
-    known: Any
+    acts: Mask
+    w: Real
+    shift: Real
+    loss: Real
+    known: Mask
 
 
 @cache
@@ -69,7 +69,7 @@ def nodes() -> Nodes:
     return Nodes((psi1, chi, w), psi2, loss)
 
 
-def shift_and_loss(psi1: Real, chi: Real, w: Real, chi_w: Real) -> tuple[Any, Any]:
+def shift_and_loss(psi1: Real, chi: Real, w: Real, chi_w: Real) -> tuple[Array, Array]:
     """Return the shift of psi2 by spin about the normal, and the loss of w; both without unit.
 
     Both are linear between the nodes of a table of half-space solutions with psi1 up to 7, chi
@@ -113,7 +113,7 @@ def shift_and_loss(psi1: Real, chi: Real, w: Real, chi_w: Real) -> tuple[Any, An
     return np.copysign(1.0, psi1) * shift, np.copysign(1.0, w) * taken
 
 
-def gross_slip(psi1: Array, chi: Array, w: Array) -> tuple[Any, Any]:
+def gross_slip(psi1: Array, chi: Array, w: Array) -> tuple[Array, Array]:
     """Return shift of psi2 and loss of w over chi_w of an impact that slips throughout.
 
     Exact for w far below psi1, psi1 at least 4 chi. There friction is mu P (1 - eps²/10) and its

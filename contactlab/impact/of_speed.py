@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Mapping
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, overload
 
 import attrs
 import numpy as np
 
 from contactlab.numeric.arrays import spread
 from contactlab.numeric.checks import NON_NEGATIVE, check_place, quantity, real, refuse
-from contactlab.numeric.types import Array, Numbers, Real
+from contactlab.numeric.types import AnyArray, Array, Numbers, Real
 
 #: A friction coefficient as a function of the slip speed in m/s, or as a table by it.
 LawOfSlip: TypeAlias = (
@@ -28,7 +28,7 @@ SAME_SLIP = 1e-12
 
 def numbers_at(
     argument: str, function: Callable[..., Numbers], speed: Real, shape: tuple[int, ...]
-) -> Any:
+) -> AnyArray:
     """Return what a function gives at speeds in m/s, as an array of ``shape``; unchecked numbers.
 
     The function takes one float, or an array of ``shape``.
@@ -42,7 +42,11 @@ def numbers_at(
     return spread_over(argument, found, shape)
 
 
-def spread_over(argument: str, numbers: Numbers, shape: tuple[int, ...]) -> Any:
+@overload
+def spread_over(argument: str, numbers: Real, shape: tuple[int, ...]) -> Array: ...
+@overload
+def spread_over(argument: str, numbers: Numbers, shape: tuple[int, ...]) -> AnyArray: ...
+def spread_over(argument: str, numbers: Numbers, shape: tuple[int, ...]) -> AnyArray:
     """Return numbers of the shape of the impacts, read-only, or refuse those of another."""
     try:
         return np.broadcast_to(np.asarray(numbers), shape)
@@ -74,7 +78,7 @@ def speed_pairs(argument: str, table: object, what: str) -> Array:
     return pairs.T
 
 
-def interpolate(argument: str, pairs: Array, speed: Real, what: str) -> Any:
+def interpolate(argument: str, pairs: Array, speed: Real, what: str) -> Real:
     """Return the numbers of a table at speeds, linear between its own, or refuse one outside."""
     known, values = pairs
     wrong = (np.asarray(speed) < known[0]) | (np.asarray(speed) > known[-1])
@@ -82,7 +86,8 @@ def interpolate(argument: str, pairs: Array, speed: Real, what: str) -> Any:
         rule = f"has speeds from {known[0]:g} to {known[-1]:g} m/s, and an impact has "
         rule += f"{np.asarray(speed)[wrong].flat[0]:.4g} m/s"
         raise refuse(argument, pairs.T.tolist(), rule, f"add its {what} to the table")
-    return np.interp(speed, known, values)
+    found: Real = np.interp(speed, known, values)
+    return found
 
 
 @attrs.frozen(eq=False)
@@ -99,7 +104,9 @@ class OfSlip:
         The slip speeds in m/s for which they hold.
     """
 
-    law: Any = attrs.field(metadata={"marks": False})  # a sweep is known by its numbers
+    law: Callable[..., Numbers] | Array | None = attrs.field(
+        metadata={"marks": False}
+    )  # a sweep is known by its numbers
     numbers: Real
     slip: Real
 
@@ -116,7 +123,7 @@ class OfSlip:
         """Return the friction coefficients at slip speeds, checked, one of each impact."""
         name = "friction_coefficient"
         if callable(law):
-            found = numbers_at(name, law, slip, shape)
+            found: AnyArray | Real = numbers_at(name, law, slip, shape)
         else:
             found = interpolate(name, law, spread(slip, shape), "mu")
         numbers = real(name, found, rule=NON_NEGATIVE, remedy="it has no unit", empty=True)
@@ -142,7 +149,7 @@ def is_law_of_slip(friction: object) -> bool:
     return callable(friction) or isinstance(friction, Mapping)
 
 
-def law_of_slip(friction: object) -> Any:
+def law_of_slip(friction: object) -> Callable[..., Numbers] | Array:
     """Return the function, or the speeds and coefficients of a table {slip speed: mu}, sorted."""
     if callable(friction):
         return friction

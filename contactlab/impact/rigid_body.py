@@ -11,7 +11,7 @@ import numpy as np
 
 from contactlab.impact.bodies import MOST_RADIUS
 from contactlab.impact.material import A_MATERIAL, Material
-from contactlab.numeric.arrays import choose, common_shape, none_for_nan, some, take
+from contactlab.numeric.arrays import choose, common_shape, magnitude, none_for_nan, some, take
 from contactlab.numeric.checks import (
     POSITIVE,
     Rule,
@@ -24,7 +24,7 @@ from contactlab.numeric.checks import (
 )
 from contactlab.numeric.names import state_arguments
 from contactlab.numeric.taken import Taken
-from contactlab.numeric.types import Array, Either, Index, Numbers, Real
+from contactlab.numeric.types import Array, Complex, Either, Index, Mask, Numbers, Real, Vector
 from contactlab.numeric.vectors import components, dot
 
 #: Asymmetry of an inertia, and excess of a principal moment over the sum of the other two, that
@@ -92,7 +92,7 @@ def _radius(value: Numbers | None, field: attrs.Attribute[object]) -> Real | Non
     return np.where(flat, np.inf, checked) if np.ndim(checked) else np.inf
 
 
-def _flat(value: object) -> Any:
+def _flat(value: object) -> Mask:
     """Return where a number or an array of numbers is infinite; False of anything else."""
     if isinstance(value, float):
         return math.isinf(value)
@@ -157,16 +157,16 @@ class RigidBody:
     """
 
     mass: Either = quantity("kg", rule=POSITIVE)
-    _inertia: Any = _array("kg m²", (3, 3))
+    _inertia: Array | None = _array("kg m²", (3, 3))
     material: Material = instance(Material, remedy=A_MATERIAL)
     curvature_radius: Either = _curvature_field(default=None)
-    principal: Any = _array("kg m²", (3,))
-    axes: Any = _array("1", (3, 3))
+    principal: Array | None = _array("kg m²", (3,))
+    axes: Array | None = _array("1", (3, 3))
     cross_radius: Either = _curvature_field(default=None)
-    curvature_axis: Any = _array("1", (3,))
+    curvature_axis: Array | None = _array("1", (3,))
     bending_period: Either = quantity("s", rule=POSITIVE, default=None, unknown=True)
     #: Inertia about the centre of mass, in kg m², shape (..., 3, 3), whatever was given.
-    inertia: Any = attrs.field(init=False, eq=False, repr=False)
+    inertia: Array = attrs.field(init=False, eq=False, repr=False)
     #: Batch shape of mass, inertia and curvature together.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
 
@@ -203,6 +203,7 @@ class RigidBody:
             inertia.flags.writeable = False
         elif self.axes is not None:
             raise refuse("axes", self.axes, "belong to principal moments", "leave axes out")
+        assert inertia is not None  # one of the two was given
         _check_inertia(inertia, "inertia" if self.principal is None else "principal")
         object.__setattr__(self, "inertia", inertia)
         shapes = {name: np.shape(getattr(self, name)) for name in ("mass", "curvature_radius")}
@@ -247,7 +248,7 @@ class RigidBody:
         """Radius of curvature across ``curvature_axis``, in m."""
         return self.curvature_radius if self.cross_radius is None else self.cross_radius
 
-    def curvatures(self, t1: Any, t2: Any) -> tuple[Any, Any, Any]:
+    def curvatures(self, t1: Vector, t2: Vector) -> tuple[Real, Real, Complex]:
         """Return both principal curvatures in 1/m, and the direction of the first.
 
         Parameters
@@ -271,8 +272,8 @@ class RigidBody:
             return one, other, 1.0 + 0.0j
         axis = self.curvature_axis / np.abs(self.curvature_axis).max(axis=-1)[..., None]
         parts = (dot(components(axis), each) for each in (t1, t2))
-        seen: Any = next(parts) + 1j * next(parts)
-        size = abs(seen)
+        seen = next(parts) + 1j * next(parts)
+        size = magnitude(seen)
         if some((size < LOST) & (one != other)):
             rule = "is at right angles to the surface: it has no part in the tangent plane"
             remedy = "give the direction in which curvature_radius is measured"

@@ -28,7 +28,7 @@ from contactlab.numeric.checks import (
 )
 from contactlab.numeric.named import NOTHING
 from contactlab.numeric.names import state_arguments
-from contactlab.numeric.types import Array, Each, Index, Number, Numbers, Real
+from contactlab.numeric.types import Array, Each, Index, Number, Numbers, Places, Real
 from contactlab.numeric.vectors import entry, over
 
 if TYPE_CHECKING:
@@ -198,7 +198,7 @@ class Scene(_SceneArguments, Batches, Generic[Each]):
     links: Links | None = attrs.field(default=None, eq=False, repr=False, kw_only=True)
     #: Batch shape: () for one impact.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
-    _index: Any = attrs.field(init=False, eq=False, repr=False)
+    _index: int | Places | None = attrs.field(init=False, eq=False, repr=False)
     _axes: tuple[tuple[str, Array], ...] = attrs.field(init=False, eq=False, repr=False, default=())
     _varied: tuple[tuple[str, Array], ...] = attrs.field(
         init=False, eq=False, repr=False, default=()
@@ -354,7 +354,8 @@ class Scene(_SceneArguments, Batches, Generic[Each]):
             if given.shape[-len(trailing) :] != trailing:
                 raise refuse(f"{name}.shape", given.shape, f"must end with {trailing}")
             object.__setattr__(self, name, batch.lock_arrays(over(given, (*self.shape, *trailing))))
-        W: Any = self.inverse_mass
+        W = self.inverse_mass
+        assert W is not None
         inverse_mass.check(W)
         normal, along, across = (entry(W, k, k) for k in range(3))
         tangential = along if self.planar else 0.5 * (along + across)

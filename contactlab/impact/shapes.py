@@ -11,7 +11,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Mapping
-from typing import Any, TypeVar
+from typing import Any, Never, TypeVar
 
 import attrs
 import numpy as np
@@ -53,7 +53,7 @@ NEEDLE = 8.206954742
 DISC = 1.62
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> Never:
     """Refuse a name with the shape that is meant."""
     meant = SHAPES.get(name.lower())
     told = f"that body is made by {meant}; " if meant else ""
@@ -64,7 +64,7 @@ def _pose_each(one: Maker) -> Maker:
     """Return a function of one pose as one of many."""
 
     @functools.wraps(one)
-    def posed(*values: Any, **given: Any) -> Any:
+    def posed(*values: Any, **given: Any) -> tuple[RigidBody, Array]:
         poses = {name: given[name] for name in POSE if given.get(name) is not None}
         try:
             arrays = {name: np.asarray(real(name, pose)) for name, pose in poses.items()}
@@ -97,14 +97,14 @@ def _stack(made: list[tuple[RigidBody, Array]], shape: tuple[int, ...]) -> tuple
         "curvature_radius": _radii([body.curvature_radius for body in bodies], shape),
     }
     if bodies[0].cross_radius is not None:
-        columns["cross_radius"] = np.reshape([body.cross_radius for body in bodies], shape)
+        columns["cross_radius"] = np.array([body.cross_radius for body in bodies]).reshape(shape)
         axes = [body.curvature_axis for body in bodies]
-        columns["curvature_axis"] = np.reshape(axes, (*shape, 3))
+        columns["curvature_axis"] = np.array(axes).reshape(*shape, 3)
     body = attrs.evolve(bodies[0], principal=None, axes=None, **columns)
     return body, np.reshape([contact for _, contact in made], (*shape, 3))
 
 
-def _radii(radii: list[Real], shape: tuple[int, ...]) -> Any:
+def _radii(radii: list[Real], shape: tuple[int, ...]) -> Real:
     """Return radii as an array, or one number that nobody gave."""
     taken = [isinstance(each, Taken) for each in radii]
     if any(taken) and not all(taken):
@@ -172,8 +172,8 @@ def rod(
     contact = radius * outward if side else along * (0.5 * length - end) + end * outward
     volume, lengthwise, across = _revolve(length, radius, end, dome)
     mass = _mass(mass, material, volume)
-    density: Any = mass / volume
-    inner: Any = 0.0
+    density = mass / volume
+    inner = 0.0
     if material.density is not None and density < material.density:  # a tube, of radius² inner
         inner = radius * radius * (1.0 - density / material.density)
         density = material.density
@@ -500,13 +500,13 @@ def ellipsoid(
 
 def _bending(
     length: float, gyration: float, material: Material, density: Real, *, number: float = FREE_ENDS
-) -> Any:
+) -> Real:
     """Return the period in s of the first bending of a slender body with free ends.
 
     ``gyration`` is that of the section in the middle, in m, and ``density`` mass over volume.
     """
-    young: Any = 2.0 * material.shear_modulus * (1.0 + material.poisson_ratio)
-    speed = np.sqrt(young / density) * gyration
+    young = 2.0 * material.shear_modulus * (1.0 + material.poisson_ratio)
+    speed: Real = np.sqrt(young / density) * gyration
     return 2.0 * math.pi * length * length / (number * speed)
 
 

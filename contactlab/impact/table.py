@@ -5,11 +5,10 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Array, Places, Real
 
 
 def read_rows(file: Path) -> tuple[list[str], Array]:
@@ -48,7 +47,7 @@ def between_nodes(entries: Sequence[Real], axes: Sequence[Array], values: Array)
     return found
 
 
-def _place(entry: Real, axis: Array) -> tuple[Any, Any]:
+def _place(entry: Real, axis: Array) -> tuple[Places, Real]:
     """Return the node below each entry, clipped, and the share of the way on."""
     entry = np.clip(entry, axis[0], axis[-1])
     low = np.clip(np.searchsorted(axis, entry, side="right") - 1, 0, len(axis) - 2)

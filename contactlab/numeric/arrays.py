@@ -20,13 +20,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlab.numeric.named import Named
-from contactlab.numeric.types import AnyArray, Array, Index, Kind, Mask, Real, Tree
+from contactlab.numeric.types import AnyArray, Array, Complex, Index, Kind, Mask, Real, Tree
 
 #: Numbers in the array that ``keep_freed_memory`` releases: 8 MB, the tables of most batches.
 RELEASED = 1_000_000
 if TYPE_CHECKING:  # checkers take ``abs`` of a number or an array for an object
 
-    def magnitude(value: Kind) -> Kind: ...  # noqa: D103
+    @overload
+    def magnitude(value: Kind) -> Kind: ...
+    @overload
+    def magnitude(value: Complex) -> Real: ...
+    def magnitude(value: object) -> object: ...  # noqa: D103
 else:
     magnitude = abs
 
@@ -133,7 +137,7 @@ def change_entries(tree: Tree, **entries: object) -> Tree:
 @cache
 def _entries(kind: Hashable) -> tuple[tuple[str, ...], Callable[[object], Any]]:
     """Return the names of the entries of a class of trees, and what reads them all at once."""
-    fields: Any = attrs.fields(kind)  # type: ignore[arg-type]
+    fields = attrs.fields(kind)  # type: ignore[arg-type]
     names = tuple(field.name for field in fields)
     if len(names) > 1:
         return names, attrgetter(*names)
@@ -259,7 +263,7 @@ def part_of(value: Real, part: Index) -> Real:
     return value[part] if isinstance(value, np.ndarray) else value
 
 
-def greater(one: Real, other: float) -> Real:
+def greater(one: Kind, other: float) -> Kind:
     """Return the greater of two numbers, NaN if the first is NaN; ``max`` is faster for floats."""
     return max(one, other) if isinstance(one, float) else np.maximum(one, other)
 
@@ -270,7 +274,7 @@ def lesser(one: Real, other: Real) -> Real:
     return min(one, other) if floats else np.minimum(one, other)
 
 
-def spread_object(value: object, shape: tuple[int, ...]) -> Any:
+def spread_object(value: Tree, shape: tuple[int, ...]) -> Tree | NDArray[np.object_]:
     """Return ``value`` for one impact, or an object array of ``shape`` filled with it."""
     return np.full(shape, value, dtype=object) if shape else value
 
@@ -286,14 +290,14 @@ def every(mask: Mask) -> bool:
 
 
 @overload
+def choose(condition: bool, if_true: float, if_false: float) -> float: ...
+@overload
+def choose(condition: NDArray[np.bool_], if_true: Real, if_false: Real) -> Array: ...
+@overload
 def choose(condition: Mask, if_true: Real, if_false: Real) -> Real: ...
 @overload
-def choose(
-    condition: Mask, if_true: Real | complex, if_false: Real | complex
-) -> Real | complex | NDArray[np.complex128]: ...
-def choose(
-    condition: Mask, if_true: Real | complex, if_false: Real | complex
-) -> Real | complex | NDArray[np.complex128]:
+def choose(condition: Mask, if_true: Complex, if_false: Complex) -> Complex: ...
+def choose(condition: Mask, if_true: Complex, if_false: Complex) -> Complex:
     """Return ``np.where`` for arrays; a plain condition is decided by ``if``, ten times as fast."""
     if isinstance(condition, np.ndarray):
         return np.where(condition, if_true, if_false)

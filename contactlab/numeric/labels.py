@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from contactlab.numeric.types import AnyArray
+
 #: Packages of arrays that NumPy would pair by position, compute at once or lose the trace of, by
 #: the package of their classes.
 LIBRARIES = {
@@ -48,16 +50,17 @@ def _library(kind: type) -> str:
     return ""
 
 
-def numbers_of(value: Any) -> Any:
+def numbers_of(value: Any) -> AnyArray | None:
     """Return the numbers of an array of JAX or PyTorch; None if it is traced, by jit or vmap."""
     if library_of(value) == "jax":
         return None if isinstance(value, sys.modules["jax"].core.Tracer) else np.asarray(value)
     plain = value.detach()
     plain = plain.double() if plain.is_floating_point() else plain  # NumPy has no bfloat16
     try:
-        return plain.cpu().numpy()
+        numbers: AnyArray = plain.cpu().numpy()
     except RuntimeError:  # a tensor of torch.func
         return None
+    return numbers
 
 
 def counts_rows(index: Sized) -> bool:

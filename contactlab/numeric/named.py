@@ -68,7 +68,7 @@ class OfImpacts:
         A hash of the whole array, by which its own parts are known.
     """
 
-    numbers: Any
+    numbers: Array
     whole: str
 
     @classmethod

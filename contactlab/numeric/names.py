@@ -139,7 +139,7 @@ def tell_function(call: Function) -> Function:
 def tell_attributes(made: Class) -> Class:
     """Return a class of results that refuses a wrong attribute with the nearest, or all names."""
 
-    def __getattr__(self: object, name: str) -> Any:  # noqa: N807
+    def __getattr__(self: object, name: str) -> object:  # noqa: N807
         if name.startswith("_") or hasattr(made, name):
             return object.__getattribute__(self, name)  # an error in a property is its own
         public = [each for each in dir(self) if not each.startswith("_")]
@@ -223,7 +223,7 @@ def import_on_use(
         or that it is, if the module has no such name.
     """
 
-    def __getattr__(name: str) -> Any:  # noqa: N807
+    def __getattr__(name: str) -> object:  # noqa: N807
         """Return a public name, imported on first use and kept."""
         if name not in modules:
             hint = "" if name.startswith("_") else f"; {nearest(name, modules)}".rstrip("; ")

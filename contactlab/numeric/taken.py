@@ -18,7 +18,7 @@ class Taken(float):
     __slots__ = ()
 
 
-def list_assumptions(law: Any) -> dict[str, float]:
+def list_assumptions(law: object) -> dict[str, float]:
     """Return the numbers that a law took as nobody gave them, by the names of its options."""
     law_class: Any = type(law)
     names = _options(law_class)

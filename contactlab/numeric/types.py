@@ -25,6 +25,8 @@ Array: TypeAlias = NDArray[np.float64]
 Real: TypeAlias = float | Array
 #: A bool or an array of bool.
 Mask: TypeAlias = bool | np.bool_ | NDArray[np.bool_]
+#: Vectors of a plane as complex numbers: one, or one for each impact; those along x are real.
+Complex: TypeAlias = complex | NDArray[np.inexact]
 #: Indices in an array.
 Places: TypeAlias = NDArray[np.intp]
 #: A ``Real`` of a body, a material or a motion, which programs read: checkers take it for either.

@@ -138,7 +138,7 @@ class Manager(pluggy.PluginManager):
         self._since[str(given)] = self.changes
         return given
 
-    def unregister(self, plugin: object = None, name: str | None = None) -> Any:
+    def unregister(self, plugin: object = None, name: str | None = None) -> object:
         """Take out a plug-in, or the class of a law, by itself or by its name."""
         named = [law for law in self.laws if name == law or plugin is self.laws[law]]
         taken = self.laws.pop(named[0]) if named else super().unregister(plugin, name)
@@ -168,7 +168,7 @@ class Manager(pluggy.PluginManager):
         name = self.get_name(plugin) or ""
         return self._infos.get(name) or PluginInfo(name, HERE, "", name, False)
 
-    def plugin(self, info: PluginInfo) -> Any:
+    def plugin(self, info: PluginInfo) -> object:
         """Import the plug-in of an entry point, register it, and return it.
 
         Raises
@@ -225,7 +225,7 @@ class Manager(pluggy.PluginManager):
                 super().register(each[1], each[0])
         return plugin
 
-    def ask(self, info: PluginInfo, **arguments: object) -> Any:
+    def ask(self, info: PluginInfo, **arguments: object) -> object:
         """Return what the plug-in of one entry point answers: a law's class, or a command's run."""
         hook, plugin = HOOKS[info.kind], self.plugin(info)
         if info.kind in KINDS and not isinstance(plugin, ModuleType):

@@ -81,7 +81,7 @@ def _each(name: str, unit: str, value: Array, scene: Scene) -> OfImpacts:
     return OfImpacts.of(value, spread_over(name, value, scene.shape))
 
 
-def _from_materials(law: Law, option: Read, scene: Scene) -> Any:
+def _from_materials(law: Law, option: Read, scene: Scene) -> Law:
     """Return a law with an option that two materials give.
 
     It is as it is if they have none, or if another option stands in its place.
@@ -118,10 +118,10 @@ def _from_materials(law: Law, option: Read, scene: Scene) -> Any:
         rule = f"is missing, and the {' and '.join(found)} has it"
         remedy = f"give {told}; 0 for a body that has nothing of it"
         raise refuse(f"{lacking[0]}.material: {name}", None, rule, remedy)
-    materials: Any = tuple(body.material for body in bodies.values())
+    one, other = (body.material for body in bodies.values())
     assert option.material is not None
     first, second = found.values()
-    value = option.material.of(first, second, materials)
+    value = option.material.of(first, second, (one, other))
     where = f"{name} of {' and '.join(found)}"
     value = real(where, value, rule=option.rule, remedy=unit_remedy(unit))
     if isinstance(value, np.ndarray):
@@ -133,7 +133,8 @@ def _from_materials(law: Law, option: Read, scene: Scene) -> Any:
     if given is not None and not isinstance(given, Taken) and not _same(given, value):
         rule = f"is given to the law, and {' and '.join(found)} have it as a property too"
         raise refuse(place, given, rule, "leave out the option, or the property")
-    return attrs.evolve(changed, **{name: value})
+    bound: Law = attrs.evolve(changed, **{name: value})
+    return bound
 
 
 def _same(given: Real, value: Real) -> bool:

@@ -251,7 +251,7 @@ def _fits(*parts: Law) -> bool:
     return misfit(*parts) is None
 
 
-def misfit(normal: Law, tangential: Any, integrator: Any = None) -> str | None:
+def misfit(normal: Law, tangential: Law, integrator: Law | None = None) -> str | None:
     """Return why laws do not fit, with the names of both; None if they fit."""
     if "elastic_hertz" in claims(normal) and "closed" not in normal._ways:
         return (

@@ -30,7 +30,7 @@ class Option:
     """
 
     name: str
-    default: Any
+    default: object
     unit: str
     rule: str
     meaning: str
@@ -52,7 +52,7 @@ class Option:
 def options(law: type) -> list[Option]:
     """Return the options of a class of laws, in the order of its signature."""
     # Fields made by ``contactlab.numeric.checks`` carry unit and range.
-    fields: Any = attrs.fields_dict(law) if attrs.has(law) else {}
+    fields = attrs.fields_dict(law) if attrs.has(law) else {}
     by_name = meanings(law)
     listed = []
     for name, parameter in inspect.signature(law).parameters.items():

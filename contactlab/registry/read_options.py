@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import attrs
 
@@ -38,7 +38,7 @@ class Read(NamedTuple):
 @lru_cache(maxsize=128)
 def options_read(law_class: type[Law]) -> tuple[Read, ...]:
     """Return the options of a law that materials give, or that each impact has its own of."""
-    fields: Any = attrs.fields(law_class) if attrs.has(law_class) else ()
+    fields = attrs.fields(law_class) if attrs.has(law_class) else ()
     return tuple(
         Read(
             field.name,

@@ -67,7 +67,7 @@ def answers(
         if always:
             raise _complain_of_gaps(tangential)
         return []
-    left = separates(normal)
+    left = np.asarray(separates(normal))
     given = []
     for answer in tangential.whole_impacts(scene, normal):
         where = left & answer.where
@@ -85,7 +85,7 @@ def answers(
     return given
 
 
-def separates(normal: NormalMotion) -> Any:
+def separates(normal: NormalMotion) -> bool | Mask:
     """Return the impacts that the normal motion ends: a bool, or of a batch a new array."""
     shape = normal.scene.shape
     if not shape:
@@ -127,7 +127,7 @@ def show(normal: NormalMotion, answered: Sequence[Answered], observer: Observer)
         observer(Sample(time, approach, rate, touching, velocity, acting, fields))
 
 
-def _columns(normal: NormalMotion, phases: Real) -> list[Any]:
+def _columns(normal: NormalMotion, phases: Real) -> list[Real]:
     """Return time, approach, rate, the entries of the contact, and load impulse."""
     time, approach, rate, contact, impulse = normal.at(phases)
     return [time, approach, rate, *contact, impulse]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Self
+from typing import Self
 
 import attrs
 import numpy as np
@@ -178,7 +178,7 @@ class Coupled(Way):
         slips = self._slips()
         return self._at_slip(np.maximum(np.minimum(*slips), LITTLE * np.maximum(*slips)))
 
-    def _slips(self) -> tuple[Any, Any]:
+    def _slips(self) -> tuple[Real, Real]:
         """Return the slip speed at first touch, and that which pressure alone leaves."""
         scene = self.scene
         drag = kinetics.coupling(scene, 2.0 * np.asarray(scene.normal_speed))

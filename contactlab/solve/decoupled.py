@@ -78,7 +78,7 @@ class Decoupled(Way):
     def solve(self, prepared: Prepared, recorder: Recorder | None) -> Motion:
         """Return the motion by whole-impact answers where there are any, else marched."""
         normal, answered, columns, _ = prepared
-        marched: Any = columns.code == MARCHED
+        marched = columns.code == MARCHED
         return Motion.combine(normal, self._tangential(normal, answered, marched, recorder))
 
     def line(self, scene: Scene) -> Array:
@@ -93,7 +93,7 @@ class Decoupled(Way):
         shape = normal.scene.shape
         if not shape:
             code: Any = MARCHED if separates(normal) else ENDLESS
-            marched: Any = code == MARCHED and not answered
+            marched = code == MARCHED and not answered
             code = 0 if answered else code
         else:
             code = np.where(separates(normal), MARCHED, ENDLESS)
@@ -114,7 +114,7 @@ class Decoupled(Way):
 
     def _error(
         self, normal: NormalMotion, answered: list[Answered], marched: Mask, size: Real
-    ) -> Any:
+    ) -> Real:
         """Return the declared error of psi2: of one impact a float, of a batch an array."""
         scene = normal.scene
         rounding = CLOSED_FORM * size + normal.accuracy * 4.0 * scene.chi
@@ -122,7 +122,7 @@ class Decoupled(Way):
             return float(rounding + answered[0].answer.psi2_error if answered else rounding)
         if not scene.shape:
             return plain(self._declare(normal))
-        error: Any = spread(rounding, scene.shape)
+        error = spread(rounding, scene.shape)
         for one in answered:
             error = error + np.where(one.where, one.answer.psi2_error, 0.0)
         return plain(np.where(marched, self._declare(normal), error) if some(marched) else error)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import attrs
 import numpy as np
@@ -80,8 +79,8 @@ def _finer(law: Law, errors: Array) -> Law:
     times = float(np.nanmax(errors)) / (0.5 * LEFT)
     if times <= 1.0 or law.resolution is None:
         return law
-    value: Any = getattr(law, law.resolution)
-    finer: Any = value / times
+    value = getattr(law, law.resolution)
+    finer = value / times
     if (
         law.resolution != "tolerance"
     ):  # errors fall as its square; a doubling grid needs an even one

@@ -87,7 +87,7 @@ def _fill(
             errors[:, place] = np.where(distance == 0.0, errors[:, place], distance)
 
 
-def _resolution(laws: Laws, scene: Scene) -> Any:
+def _resolution(laws: Laws, scene: Scene) -> Array:
     """Return the resolution of the integrator for each impact; 0 if it has none."""
     normal = try_normal(laws, scene.central)
     resolution = resolution_for(laws.integrator, scene, normal, laws.tangential)
@@ -131,14 +131,14 @@ def _distance(
     return np.where(distance > 0.0, np.maximum(distance, least), distance)
 
 
-def _again(laws: Laws, scene: Scene) -> Any:
+def _again(laws: Laws, scene: Scene) -> NDArray[np.complex128]:
     """Return the answer of finer laws, NaN where the run failed."""
     _, motion = solve.outcome(solve.ways(laws, scene), scene, False, None)
     answer = _answer(scene, motion)
     return np.where(_successes(motion.status), answer, np.nan)
 
 
-def _answer(scene: Scene, motion: Motion) -> Any:
+def _answer(scene: Scene, motion: Motion) -> NDArray[np.complex128]:
     """Return slip (as a complex number) and rate of approach after impacts, shape (2, ...)."""
     change = np.asarray(motion.slip_velocity_change)
     if kinetics.slip_axes(scene):
@@ -162,7 +162,7 @@ def _finer(laws: Laws, options: Mapping[str, float], times: int) -> Laws | None:
     """Return the laws with counts ``times`` as large; None without options, or if a law refuses."""
     changed = {}
     for kind, value in options.items():
-        law: Any = getattr(laws, kind)
+        law = getattr(laws, kind)
         finer = value * times if _counts(law) else value / (TOLERANCE * times**2)
         try:
             changed[kind] = attrs.evolve(law, **{law.resolution: finer})
@@ -176,5 +176,6 @@ def _counts(law: Law) -> bool:
     return law.resolution != "tolerance"
 
 
-def _successes(status: Statuses) -> Any:
-    return np.asarray(status, dtype=object) == Status.SUCCESS
+def _successes(status: Statuses) -> NDArray[np.bool_]:
+    found: NDArray[np.bool_] = np.asarray(status, dtype=object) == Status.SUCCESS
+    return found

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import Any
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.contracts.integrator import resolution_for
 from contactlab.contracts.motion import NormalMotion
@@ -16,7 +16,7 @@ from contactlab.contracts.restitution import restitution_of
 from contactlab.impact.body_cautions import tell_radii
 from contactlab.impact.body_contact import spin_about
 from contactlab.impact.gathering import Gathering
-from contactlab.numeric.types import Array, Mask
+from contactlab.numeric.types import Array, Mask, Real
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import Clause, Clauses, Plan, Words
 from contactlab.registry.law_words import in_words, name_of, tell_assumptions
@@ -53,9 +53,9 @@ class GatheringPlan(Plan):
         Steps in the shortest contact.
     """
 
-    gap_over_depth: Any = attrs.field(kw_only=True)
-    contact_times: Any = attrs.field(kw_only=True)
-    steps: Any = attrs.field(kw_only=True)
+    gap_over_depth: Array = attrs.field(kw_only=True)
+    contact_times: Array = attrs.field(kw_only=True)
+    steps: Real = attrs.field(kw_only=True)
     _widened: Callable[[], Array] = attrs.field(kw_only=True, repr=False)
 
     @cached_property
@@ -128,7 +128,7 @@ class _Words:
         self.way, self.normal, self.motion, self.history = way, normal, motion, history
         self.speed = np.asarray(self.scene.normal_speed)[:, 0]
 
-    def _where(self, mask: Mask) -> Any:
+    def _where(self, mask: Mask) -> NDArray[np.bool_]:
         """Return a mask of gatherings in the batch shape."""
         return np.asarray(mask).reshape(self.gathering.shape)
 
@@ -136,7 +136,7 @@ class _Words:
         """Return a clause about all gatherings."""
         return Clause(text, np.ones(self.gathering.shape, dtype=bool), values or None)
 
-    def _shape_numbers(self, numbers: Array) -> Any:
+    def _shape_numbers(self, numbers: Array) -> Real:
         """Return numbers of gatherings in the batch shape, one as a float."""
         shaped = np.asarray(numbers, dtype=float).reshape(self.gathering.shape)
         return shaped if shaped.ndim else float(shaped)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -119,7 +119,7 @@ def _of_restitutions(law: NormalLaw, scene: Scene) -> MotionTable | None:
         return None
     tables = []
     for e in few.tolist():
-        alone: Any = attrs.evolve(law, restitution=e)  # type: ignore[misc]  # attrs classes
+        alone = attrs.evolve(law, restitution=e)  # type: ignore[misc]  # attrs classes
         table = _find_table(alone, _unit_impact(), SIMILAR) if "similar" in claims(alone) else None
         if table is None or table.status[0] is not Status.SUCCESS:
             return None

@@ -6,12 +6,15 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import overload
+
+import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.contracts import faults
 from contactlab.contracts.status import Status
-from contactlab.numeric.arrays import choose, greater
-from contactlab.numeric.types import Mask, Real
+from contactlab.numeric.arrays import choose, greater, magnitude
+from contactlab.numeric.types import Array, Kind, Mask, Real
 from contactlab.solve.scaled_normal_law import ScaledNormalLaw
 
 #: Error of approach, rate and load impulse in a step, over their scales: far below the default
@@ -45,29 +48,39 @@ LEAST_ROOT = SAFETY / GROWTH
 SHORTEST = 1e-15
 
 
-def doubt(error: Real, width: Real) -> Any:
+def doubt(error: Kind, width: Kind) -> Kind:
     """Return the uncertainty of an event's place over the way to it; 1 if it cannot be located."""
-    blur: Any = DOUBT * TOLERANCE * error / choose(width > 0.0, width, 1.0)
+    blur = DOUBT * TOLERANCE * error / choose(width > 0.0, width, 1.0)
     least = choose(blur < MOST_DOUBT, blur, MOST_DOUBT)
     return choose(error <= 1.0, 0.0, choose(error < TRUSTED, least, 1.0))
 
 
-def sure_part(until: Real, doubt: Real) -> Any:
+def sure_part(until: Kind, doubt: Kind) -> Kind:
     """Return the fraction of a step that is surely before an event ``until`` its fraction."""
     return choose(until < 1.0, until * (1.0 - doubt), 1.0)
 
 
-def sets_width(missed: Mask, sure: Real, width: Real, allowed: Real) -> Any:
+@overload
+def sets_width(missed: bool, sure: float, width: float, allowed: float) -> bool: ...
+@overload
+def sets_width(
+    missed: NDArray[np.bool_], sure: Array, width: Array, allowed: Array
+) -> NDArray[np.bool_]: ...
+def sets_width(missed: Mask, sure: Real, width: Real, allowed: Real) -> object:
     """Return whether a step sets the next width: none that an event shortened, or missed over."""
     return choose(missed, sure == 1.0, width == allowed)
 
 
-def next_width(width: Real, factor: Real) -> Any:
+def next_width(width: Kind, factor: Kind) -> Kind:
     """Return the width after a step, by the factor that its error allows."""
     return width * choose(factor > GROWTH, GROWTH, greater(factor, SHRINKAGE))
 
 
-def next_event(width: Real, sure: Real, rejected: Mask) -> Any:
+@overload
+def next_event(width: float, sure: float, rejected: bool) -> float: ...
+@overload
+def next_event(width: Array, sure: Array, rejected: NDArray[np.bool_]) -> Array: ...
+def next_event(width: Real, sure: Real, rejected: Mask) -> Real:
     """Return the time until the event over which a step was rejected; infinite without one."""
     return choose(rejected, choose(sure < 1.0, sure * width, math.inf), math.inf)
 
@@ -79,12 +92,10 @@ def too_short(law: ScaledNormalLaw) -> faults.LawFaultError:
     return law.fault(Status.NON_FINITE, "a force that is not finite")
 
 
-def is_endless(turns: Real, rate: Real, change: Real, approach: Real, radius: Real) -> Any:
+def is_endless(turns: Real, rate: Real, change: Real, approach: Real, radius: Real) -> Mask:
     """Return whether a contact does not end.
 
     ``change`` is that of the rate by the present force over the time since first touch.
     """
-    speed: Any = abs(rate)
-    slowed: Any = abs(change)
-    at_rest = (speed < AT_REST) & (slowed < AT_REST)
+    at_rest = (magnitude(rate) < AT_REST) & (magnitude(change) < AT_REST)
     return (turns > MOST_TURNS) | at_rest | (approach > DEEPEST * radius)

@@ -257,10 +257,10 @@ def _motion_of(laws: Laws, scene: Scene, motion: Motion | None, where: Mask) -> 
 
 def _books(laws: Laws, scene: Scene, motion: Motion) -> list[Clause]:
     """Return the caution of an imbalance of the energy books for which no bound is declared."""
-    undeclared: Any = laws.tangential.books_bound(scene.central) == math.inf
+    undeclared = laws.tangential.books_bound(scene.central) == math.inf
     if not some(undeclared):
         return []
-    share: Any = np.abs(ledger(scene, motion).relative_imbalance)
+    share = np.abs(ledger(scene, motion).relative_imbalance)
     where = np.asarray(undeclared & (share > BOOKS_OFF) & (motion.status == Status.SUCCESS))
     if not where.any():
         return []

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
 
 import attrs
 import numpy as np
@@ -77,7 +76,7 @@ def _with(laws: Laws, resolutions: tuple[tuple[str, float], ...], reason: str) -
 def _make(laws: Laws, resolutions: tuple[tuple[str, float], ...], reason: str) -> Laws:
     changed = {}
     for kind, value in resolutions:
-        law: Any = getattr(laws, kind)
+        law = getattr(laws, kind)
         changed[kind] = attrs.evolve(law, **{law.resolution: type(resolution_of(law))(value)})
     return laws.change(**changed, by_scene=frozenset(changed), reason=reason, asked=laws)
 

@@ -108,6 +108,6 @@ class ScaledNormalLaw:
                 raise self.fault(Status.MALFORMED, f"the answer {quote(entry)}")
         return contact, state
 
-    def _per_item(self, entry: Real) -> Any:
+    def _per_item(self, entry: Real) -> Array:
         """Return a scalar or an array of the scene's shape as an array of shape (items,)."""
         return flat(np.array(entry, dtype=np.float64), self.shape)

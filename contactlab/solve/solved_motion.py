@@ -61,8 +61,8 @@ class MotionTable:
     values: Array
     last: Array
     largest: Array
-    status: Any
-    detail: Any
+    status: NDArray[np.object_]
+    detail: NDArray[np.object_]
     shared: dict[Any, Any] = attrs.field(factory=dict, init=False)
 
     @classmethod
@@ -120,7 +120,7 @@ class MotionTable:
         taken = {name: getattr(self, name)[np.ravel(index)] for name in columns}
         return attrs.evolve(self, shape=np.shape(index), **taken)
 
-    def restore_shape(self, values: Array) -> Any:
+    def restore_shape(self, values: Array) -> Real:
         """Return values of shape (items,) in the shape of the batch, or as a plain number."""
         return shape_as(values, self.shape)
 
@@ -267,7 +267,7 @@ def _ends_of(table: MotionTable) -> tuple[Any, ...]:
         table.status,
         table.detail,
     )
-    return tuple(map(table.restore_shape, columns))
+    return tuple(shape_as(each, table.shape) for each in columns)
 
 
 def _radius(squared: Array) -> Array:

@@ -44,7 +44,7 @@ class Prepared(NamedTuple):
     normal: NormalMotion
     answered: list[Answered]
     columns: PlanColumns
-    books_bound: Any
+    books_bound: Real
 
 
 class Masks(NamedTuple):
@@ -58,7 +58,7 @@ class Masks(NamedTuple):
     @classmethod
     def of(cls, columns: PlanColumns) -> Masks:
         """Return the masks of a plan's columns."""
-        code: Any = columns.code
+        code = columns.code
         masks = code != UNKNOWN, code > ENDLESS, code == ENDLESS, code == MARCHED
         return cls(*map(np.asarray, masks))
 

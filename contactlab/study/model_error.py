@@ -69,7 +69,7 @@ def _error(law: TangentialLaw, psi1: float, chi: float) -> float:
     laws = Simulation(tangential=law).laws
     scene, normal = pose(Scene.nondimensional(psi1=psi1, chi=chi), laws), laws.normal
     exact, own = continuum(scene, law), reference_for(law, normal)(scene, law)
-    unit, width, _ = range_of(scene)
+    unit, width, _ = map(float, range_of(scene))
     uncertain = 0.0
     if isinstance(law, WholeImpactTangentialLaw):
         result = Simulation(tangential=law).run(scene)

@@ -188,7 +188,7 @@ def _of_spheres(
     simulation: Simulation, result: ImpactResult, reference: Reference
 ) -> tuple[float, float, list[str]]:
     """Return error and bound over the range of psi2, and what breaks."""
-    unit, width, _ = range_of(result.scene)
+    unit, width, _ = map(float, range_of(result.scene))
     expected, error = reference(result.scene, simulation.tangential), np.nan
     if expected is not None:
         difference = abs(float(result.motion.slip_velocity_change) - expected)
@@ -293,7 +293,7 @@ def find_breaches(
         Impulse of the friction load, in N s; by default that of an elastic impact.
     """
     scene, motion = result.scene, result.motion
-    _, width, speed = range_of(scene)
+    _, width, speed = map(float, range_of(scene))
     if load_impulse is not None:
         sliding = scene.friction_coefficient * load_impulse / scene.pair.tangential_mass
         width = min(float(sliding), 2.0 * speed)

@@ -50,7 +50,8 @@ def motion_obeys_newton(law: ClosedFormNormalLaw) -> None:
     impact = scene(0.0, 1.0)
     motion = law.motion(impact)
     phases = np.linspace(0.0, math.pi, PHASES)
-    time, approach, rate, contact, impulse = motion.at(phases)
+    *columns, contact, load_impulse = motion.at(phases)
+    time, approach, rate, impulse = map(np.asarray, (*columns, load_impulse))
     per_time = motion.maximum_approach / impact.normal_speed
     time_rate, width = np.asarray(motion.scaled(phases).time_rate) * per_time, np.diff(phases)
 

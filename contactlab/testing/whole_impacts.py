@@ -151,14 +151,14 @@ def whole_impact_form(law: TangentialLaw) -> None:
         largest = float(impact.friction_coefficient) * float(each.normal.total_load_impulse)
         gap = abs(gained[-1] - change) * mass / largest
         within(gap, ROUNDING, f"{each}: its course ends {gap:.2g} off its answer.")
-        added = -float(trapezoid(force, sample.time))
+        added = -float(trapezoid(force, np.asarray(sample.time)))
         within(
             abs(added - mass * change),
             QUADRATURE * largest,
             f"{each}: the force along its course gives an impulse of {added:.4g} N s, its "
             f"answer one of {mass * change:.4g} N s.",
         )
-        lost = float(trapezoid(force * (slip + gained), sample.time))
+        lost = float(trapezoid(force * (slip + gained), np.asarray(sample.time)))
         bound = float(np.max(law.books_bound(impact)))
         room = QUADRATURE * max(energy, largest * abs(slip))
         room += bound * energy if np.isfinite(bound) else 0.0

@@ -226,7 +226,7 @@ class Adaptive(CoupledIntegrator):
         return error
 
 
-def _rates(motion: TangentialMotion) -> tuple[Array, Array]:
+def _rates(motion: TangentialMotion) -> tuple[Real, Array]:
     """Return the rate of approach at the end, and the largest change of a slip velocity."""
     slip = np.asarray(motion.slip_velocity_change)
     if slip.ndim > np.ndim(motion.status):

@@ -185,7 +185,7 @@ def sample_steps(normal: NormalMotion, phases: Array, kick: Array, load_impulse:
     # the friction load over it in N s, both of shape (K, ...).
     time, approach, rate, contact, _ = normal.at(_column(phases, normal))
     drift = np.array(time)
-    drift[1:] -= time[:-1]
+    drift[1:] -= drift[:-1]
     sampled = np.sum(np.asarray(contact.friction_load) * kick, axis=0)
     with np.errstate(all="ignore"):
         stretch = np.where(sampled > 0.0, np.sum(load_impulse, axis=0) / sampled, 1.0)

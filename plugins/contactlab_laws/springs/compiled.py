@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple, Protocol, TypeGuard
+from typing import Any, NamedTuple, Protocol, TypeGuard, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.contacts import Contacts
 from contactlab.contracts.law import Law
-from contactlab.contracts.status import Status
+from contactlab.contracts.status import Details, Status, Statuses
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import flat, spread, spread_object
@@ -31,6 +31,8 @@ from contactlab_laws.jaeger.partial_slip import Scales
 from contactlab_laws.march.contacts import tell_still_closing
 from contactlab_laws.march.coupled_steps import DEEPEST, TOO_DEEP, Division, tell_too_long
 from contactlab_laws.springs import viscous
+
+Word = TypeVar("Word", Status, str)
 
 #: Numbers of a contact, of an end, of a step of a known motion, and of an impact along it.
 CONTACT, END, SAMPLE, IMPACT = 17, 22, 7, 7
@@ -107,12 +109,13 @@ def march(
     )  # fmt: skip
     while found.contactlab_march_scenes(*arguments) < items:
         pass
-    statuses, details = spread_object(Status.SUCCESS, scene.shape), spread_object("", scene.shape)
+    statuses: Statuses = spread_object(Status.SUCCESS, scene.shape)
+    details: Details = spread_object("", scene.shape)
     if status.any():
         if np.any((status == INPUT) & ~np.isnan(numbers[0])):
             return None
         told = _tell(law, divided, refused, end.reshape(items, contacts, END), steps, status, scene)
-        statuses, details = (_of_contacts(each, scene) for each in told)
+        statuses, details = _of_contacts(told[0], scene), _of_contacts(told[1], scene)
         end[_of_contacts(status, scene) != 0] = math.nan
     counters = {"steps": int(steps.max())}
     if not scene.shape:
@@ -126,7 +129,11 @@ def _first(value: Real | str | NDArray[np.object_], scene: Scene) -> NDArray[Any
     return whole if scene.links is None else whole[..., 0]
 
 
-def _of_contacts(words: list[Status] | list[str] | NDArray[np.intc], scene: Scene) -> AnyArray:
+@overload
+def _of_contacts(words: list[Word], scene: Scene) -> Word | NDArray[np.object_]: ...
+@overload
+def _of_contacts(words: NDArray[np.intc], scene: Scene) -> NDArray[np.intc]: ...
+def _of_contacts(words: list[Word] | NDArray[np.intc], scene: Scene) -> Word | AnyArray:
     """Return entries of the scenes of a flat batch for each of their contacts."""
     kind = object if isinstance(words, list) else None
     told = np.array(words, dtype=kind).reshape(kinetics.batch_of(scene))
@@ -139,7 +146,7 @@ def _motion(
     scene: Scene,
     rate: Array,
     end: Array,
-    told: tuple[NDArray[np.object_], NDArray[np.object_]],
+    told: tuple[Statuses, Details],
     counters: dict[str, int],
 ) -> TangentialMotion:
     """Return the motion by the ends of contacts, rows as of ``contactlab_march_end``."""
@@ -177,7 +184,7 @@ def _single(
     scene: Scene,
     rate: float,
     end: list[float],
-    told: tuple[Status, str],
+    told: tuple[Statuses, Details],
     counters: dict[str, int],
 ) -> TangentialMotion:
     """Return the motion of one impact, as of ``_motion``: plain numbers are faster."""
