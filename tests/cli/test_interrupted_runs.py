@@ -50,11 +50,11 @@ def test_compare_keeps_the_laws_that_are_done(run, monkeypatch, measured, tmp_pa
 @pytest.mark.parametrize(("done", "sources"), [(1, 0), (2, 0), *longer((2, 1))])
 def test_validate_keeps_checks_and_sources(run, monkeypatch, done, sources):
     checks = [validation._rigid] * done + [interrupting(None, 0)] * (sources == 0)
-    own = MANAGER.brought("checks")[0].info
+    own = MANAGER.gather("checks")[0].info
     told = [Told(own, check) for check in checks]
-    brought = MANAGER.brought
+    gather = MANAGER.gather
     monkeypatch.setattr(
-        MANAGER, "brought", lambda kind, **kw: told if kind == "checks" else brought(kind, **kw)
+        MANAGER, "gather", lambda kind, **kw: told if kind == "checks" else gather(kind, **kw)
     )
     monkeypatch.setattr(evidence, "evidence_of", interrupting(evidence.evidence_of, sources))
     ran = run("validate")
