@@ -125,6 +125,8 @@ def test_a_pair_is_answered_or_refused(
     for option in pair:
         if "{}" in option:
             written = tmp_path / option.rpartition("/")[2]
+            if "no figure drawn: nothing was measured" in ran.err and not written.exists():
+                continue  # the limit of time was reached before
             assert written.is_dir() or written.stat().st_size > 0
     if "--json" in pair:
         json.loads(ran.out)
