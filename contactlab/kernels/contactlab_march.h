@@ -2,17 +2,8 @@
  *
  * Hertz's contact, circular or elliptic, elastic or of Kelvin and Voigt, and springs for partial slip that share its
  * loss. The same marches as in Python (`march/together.py`, `springs/doubling.py`, `turning.py`, `viscous.py`,
- * `jaeger/step.py`), one scene after another: theory, sections 13 to 16 of `contactlab guide theory`.
- *
- *     contactlab_march_contact contact = {...};
- *     contactlab_march_progress progress;
- *     contactlab_march_run run;
- *     contactlab_march_end end;
- *     double work[CONTACTLAB_MARCH_WORK(1, 50)];
- *     int row[2] = {0, 1}, column[1] = {0}, status;
- *     contactlab_march_scene scene = {1, &contact, row, column, W, 2, 50, 0, 1, step, 0, most, NULL, &progress, work, &end};
- *     status = contactlab_march_begin(&run, &scene);
- *     while (status == CONTACTLAB_MARCH_GOING) status = contactlab_march_on(&run, 1000);
+ * `jaeger/step.py`), one scene after another: theory, sections 13 to 16 of `contactlab guide theory`. A scene to begin
+ * with stands in README.md beside this file.
  *
  * Springs gain no energy; steps do, by their own error of second order. C99 and C++, no allocation, no global; every
  * loop is bounded by springs, contacts, steps. Several threads may march several scenes. Do not compile with
@@ -36,7 +27,7 @@
 enum {
   CONTACTLAB_MARCH_DONE = 0,
   CONTACTLAB_MARCH_LONG = 1,  /* it does not end in so many steps, or a contact closes too often */
-  CONTACTLAB_MARCH_NAN = 2,   /* a velocity is not finite */
+  CONTACTLAB_MARCH_NAN = 2,   /* a velocity, or the work of friction, is not finite */
   CONTACTLAB_MARCH_DEEP = 3,  /* friction presses a contact deeper than the steps resolve */
   CONTACTLAB_MARCH_INPUT = 4, /* a number, or a count, that has no meaning */
   CONTACTLAB_MARCH_GOING = 5  /* it is not at its end: march on */
@@ -209,12 +200,10 @@ static inline double contactlab_march_elastic(int axes, int n, const contactlab_
   const double mx = moved[0], my = axes == 2 ? cross * moved[1] : 0.0, b = radius <= CONTACTLAB_MARCH_TOUCH * c->radius ? 0.0 : radius;
   const double square = b * b, earlier = before * before, per_growth = growth > 0.0 ? growth : 1.0, least = growth > 0.0 ? 0.0 : 1.0;
   double *CONTACTLAB_RESTRICT x = s->w, *CONTACTLAB_RESTRICT y = s->w + row, *CONTACTLAB_RESTRICT most = room, *CONTACTLAB_RESTRICT part = room + row, *CONTACTLAB_RESTRICT lost = room + 2 * row;
-  double merged = 0.0, cell, stiffness, far, total, steep, work;
+  const double merged = contactlab_march_fit(axes, n, s->w, &s->size, b, cross), cell = s->size / n, stiffness = c->shear * cell;
+  const double far = (b > before ? b : before) / cell + 1.0;
+  double total, steep, work;
   int i, inside = row;
-  if (b > s->size) merged = contactlab_march_fit(axes, n, s->w, &s->size, b, cross);
-  cell = s->size / n;
-  stiffness = c->shear * cell;
-  far = (b > before ? b : before) / cell + 1.0;
   if (far < n) inside = CONTACTLAB_MARCH_ROW((int) far);
   for (i = 0; i < inside; ++i) {
     const double r = (i + 0.5) * cell, in = square - r * r, p = (b - r) / per_growth, q = p > 1.0 ? 1.0 : p;
@@ -248,10 +237,6 @@ static inline double contactlab_march_elastic(int axes, int n, const contactlab_
   work = 0.5 * stiffness * contactlab_march_total(inside, lost);
   force[0] = stiffness * contactlab_march_total(inside, x);
   force[1] = axes == 2 ? stiffness * contactlab_march_total(inside, y) : 0.0;
-  if (b <= 0.0) {
-    memset(s->w, 0, (size_t) (axes * row) * sizeof *s->w);
-    force[0] = force[1] = 0.0;
-  }
   s->radius = b;
   s->steep = steep;
   return (work > 0.0 ? work : 0.0 * work) + c->shear * merged;
@@ -334,7 +319,7 @@ static inline void contactlab_march_lossy(int axes, int n, const contactlab_marc
   const double middle = s->time > 0.0 ? 0.5 * (s->time + time) : time, lead = time * d->scale, growth = edge - s->edge;
   const double decay = fmin(d->drift / fmax(middle, CONTACTLAB_MARCH_TINY), 1e300), cross = d->cross;
   const double turned[2] = {d->move[0], axes == 2 ? cross * d->move[1] : 0.0}, pull[2] = {turned[0] / decay, turned[1] / decay};
-  double one[2], at[2], sum[2], size = s->size, total, per, weight, cell, stiff;
+  double one[2], at[2] = {d->slip[0], d->slip[1]}, size = s->size, total, per, weight, cell, stiff;
   int i, k, first, count, inside, hard, turn;
   memcpy(held, s->w, (size_t) (axes * row) * sizeof *held);
   if (grown) contactlab_march_fit(axes, n, held, &size, sqrt(edge), cross);
@@ -353,10 +338,7 @@ static inline void contactlab_march_lossy(int axes, int n, const contactlab_marc
   weight = d->limit * per;
   stiff = lead * d->mobility * d->acting * per;
   hard = stiff * count > CONTACTLAB_MARCH_STIFF;
-  for (k = 0; k < 2; ++k) {
-    one[k] = d->acting > 0.0 ? force[k] / d->acting : 0.0;
-    at[k] = d->slip[k];
-  }
+  for (k = 0; k < 2; ++k) one[k] = d->acting > 0.0 ? force[k] / d->acting : 0.0;
   inside = grown ? row : CONTACTLAB_MARCH_ROW(first > count ? first : count);
   for (turn = 0; turn < (hard ? (int) CONTACTLAB_MARCH_TURNS : 1); ++turn) {
     int stuck = 0;
@@ -370,24 +352,17 @@ static inline void contactlab_march_lossy(int axes, int n, const contactlab_marc
     }
     contactlab_march_cut(axes, inside, pulled, pulled + row, most, cross, ox, oy);
     for (k = 0; k < axes; ++k) {
-      double now;
-      sum[k] = contactlab_march_total(inside, pulled + k * row) * per;
-      now = hard ? one[k] + (sum[k] - one[k]) / (1.0 + stiff * stuck) : sum[k];
+      const double sum = contactlab_march_total(inside, pulled + k * row) * per;
+      const double now = hard ? one[k] + (sum - one[k]) / (1.0 + stiff * stuck) : sum;
       at[k] += (one[k] - now) * d->mobility * d->acting;
       one[k] = now;
     }
   }
   if (!(total > 0.0)) { /* smaller than a cell: of its edge, or as it was */
-    one[0] = s->share[0];
-    one[1] = s->share[1];
-    if (excess > 0.0) {
-      double norm;
-      one[0] = lead * d->slip[0] / excess;
-      one[1] = axes == 2 ? lead * cross * d->slip[1] / excess : 0.0;
-      norm = fmax(sqrt(one[0] * one[0] + one[1] * one[1]), 1.0);
-      one[0] /= norm;
-      one[1] /= norm;
-    }
+    double norm = 1.0;
+    for (k = 0; k < 2; ++k) one[k] = excess > 0.0 ? lead * (k ? cross : 1.0) * d->slip[k] / excess : s->share[k];
+    if (excess > 0.0) norm = fmax(sqrt(one[0] * one[0] + one[1] * one[1]), 1.0);
+    for (k = 0; k < 2; ++k) one[k] /= norm;
   }
   if (work) {
     const double acted = d->kick * d->drift > 0.0 ? fmin(0.5 * d->kick / d->drift, 1.0) : 0.5;
@@ -448,7 +423,8 @@ static inline int contactlab_march_press(const contactlab_march_contact *c, doub
 /* A contact in progress. */
 typedef struct {
   contactlab_march_springs now, next;
-  double velocity[3], kick[3], force[3], approach, radius, tried[2], answered[2], work, shear;
+  const double *own; /* block of W of the contact itself */
+  double velocity[3], kick[3], force[3], approach, radius, tried[2], work, shear;
   int touching, touched;
 } contactlab_march_progress;
 
@@ -472,7 +448,7 @@ typedef struct {
 /* A scene in progress. */
 typedef struct {
   contactlab_march_scene scene;
-  double time, width;
+  double time, width, *room; /* room: work space beside the springs */
   long steps;
   int pulled; /* 1: constant forces act */
 } contactlab_march_run;
@@ -485,9 +461,9 @@ static inline int contactlab_march_sound(const contactlab_march_scene *s)
       || s->springs % 2 || !(s->step > 0.0) || !(s->step < INFINITY) || !(s->most >= 1.0) || !(s->most < INFINITY)) return 0;
   for (i = 0; i < s->contacts; ++i) {
     const contactlab_march_contact *o = s->c + i;
-    double sum = 0.0;
+    double sum = o->speed;
     for (k = 0; k < 3; ++k) sum += o->velocity[k] + o->pull[k];
-    if (!isfinite(sum) || !isfinite(o->speed) || !(o->gap >= 0.0) || !(o->friction >= 0.0) || !(o->radius > 0.0) || !(o->modulus > 0.0)
+    if (!isfinite(sum) || !(o->gap >= 0.0) || !(o->friction >= 0.0) || !(o->radius > 0.0) || !(o->modulus > 0.0)
         || !(o->shear >= 0.0) || !(o->cross > 0.0) || !(o->span > 0.0) || !(o->time >= 0.0) || !(o->share >= 0.0)
         || !isfinite(o->gap + o->friction + o->radius + o->modulus + o->shear + o->cross + o->span + o->time + o->share)) return 0;
     for (k = 0, m = s->row[i]; m < s->row[i + 1]; ++m) {
@@ -499,48 +475,50 @@ static inline int contactlab_march_sound(const contactlab_march_scene *s)
   return s->row[0] == 0;
 }
 
-/* The rate of approach to try next; `answer` is what the last one gave. By secants, as a dashpot answers a rate by so
+/* The rate of approach to try next; `answer` is what the last one gave, and is tried itself at first. By secants, as a dashpot answers a rate by so
  * much less of it that the plain iteration may run away. */
 static inline double contactlab_march_nearer(contactlab_march_progress *p, int turn, double answer)
 {
-  double rate = answer;
-  if (turn > 1) {
-    const double change = p->tried[1] - p->tried[0];
-    double slope = (answer - p->answered[1]) / (change + (change == 0.0));
-    if (slope > 0.0) slope = 0.0;
-    rate = p->tried[1] + (answer - p->tried[1]) / (1.0 - slope);
-  } else {
-    p->tried[turn] = rate;
-    p->answered[turn] = answer;
-  }
-  return rate;
+  const double change = p->tried[1] - p->tried[0];
+  double slope = (answer - p->tried[1]) / (change + (change == 0.0));
+  if (turn < 2) return p->tried[turn] = answer;
+  if (slope > 0.0) slope = 0.0;
+  return p->tried[1] + (answer - p->tried[1]) / (1.0 - slope);
 }
 
-/* Forces of a lossy contact where it moves at the rates `at`, by a displacement along the surface; friction work and loss
- * only in the `last` of several turns. */
+static inline void contactlab_march_swap(contactlab_march_springs *one, contactlab_march_springs *other)
+{
+  const contactlab_march_springs kept = *one;
+  *one = *other;
+  *other = kept;
+}
+
+/* Forces of a lossy contact where it moves at the rates `at`, by a displacement along the surface; in the `last` of several
+ * turns its friction work and loss too, and its springs move on. */
 static inline void contactlab_march_drag(const contactlab_march_run *run, int i, const double *at, const double *moved,
-                                         double mobility, double drift, int last, double *room)
+                                         double mobility, double drift, int last)
 {
   const contactlab_march_contact *c = run->scene.c + i;
   contactlab_march_progress *p = run->scene.progress + i;
   const double a = c->span, slip = c->friction * a * a / (c->shear / (2.0 * c->modulus) * c->radius);
   const double rate = fmax(fabs(at[0]), CONTACTLAB_MARCH_SLOWEST * c->speed);
   const double scale = c->friction > 0.0 ? 1.0 / slip : 0.0;
-  double edge, excess, push, time, acting, aside[3];
+  double edge, excess, push, aside[3];
   contactlab_march_press(c, p->approach, rate, aside, aside + 1, aside + 2, &push);
   p->touching = contactlab_march_press(c, p->approach, at[0], p->force, &p->radius, &edge, &excess);
-  time = c->share * (push * (a * a) / (c->radius * rate));
-  acting = c->friction * p->force[0];
   {
+    const double time = c->share * (push * (a * a) / (c->radius * rate)), acting = c->friction * p->force[0];
     const contactlab_march_drive d = {{moved[0] * scale, moved[1] * scale}, drift, run->width, {at[1], at[2]}, mobility,
                                       acting, acting, scale, c->cross};
-    contactlab_march_lossy(run->scene.axes, run->scene.springs, &p->now, &p->next, edge * edge, excess, time, &d, 1, room,
+    contactlab_march_lossy(run->scene.axes, run->scene.springs, &p->now, &p->next, edge * edge, excess, time, &d, 1, run->room,
                            p->force + 1, last ? &p->work : NULL, &p->shear);
   }
-  if (last && c->friction > 0.0) {
+  if (!last) return;
+  if (c->friction > 0.0) {
     p->work *= slip;
     p->shear *= slip;
   }
+  contactlab_march_swap(&p->now, &p->next);
 }
 
 /* Velocities in a step by forces at the contacts and by constant forces. */
@@ -562,29 +540,8 @@ static inline void contactlab_march_kicked(const contactlab_march_run *run)
   }
 }
 
-/* The block of W of a contact itself. */
-static inline const double *contactlab_march_own(const contactlab_march_run *run, int i)
-{
-  int m = run->scene.row[i];
-  while (m < run->scene.row[i + 1] && run->scene.column[m] != i) ++m;
-  return run->scene.block + 9 * (size_t) m;
-}
-
-/* Room beside the springs of all contacts. */
-static inline double *contactlab_march_spare(const contactlab_march_run *run)
-{
-  return run->scene.work + 4 * (size_t) CONTACTLAB_MARCH_ROW(run->scene.springs) * (size_t) run->scene.contacts;
-}
-
-static inline void contactlab_march_swap(contactlab_march_springs *one, contactlab_march_springs *other)
-{
-  const contactlab_march_springs kept = *one;
-  *one = *other;
-  *other = kept;
-}
-
 /* Forces of a step of an elastic contact. */
-static inline void contactlab_march_push(const contactlab_march_run *run, int i, double drift, double *room)
+static inline void contactlab_march_push(const contactlab_march_run *run, int i, double drift)
 {
   const contactlab_march_contact *c = run->scene.c + i;
   contactlab_march_progress *p = run->scene.progress + i;
@@ -594,8 +551,8 @@ static inline void contactlab_march_push(const contactlab_march_run *run, int i,
   p->force[0] = (4.0 / 3.0) * c->modulus * p->radius * x;
   p->touching = p->approach > 0.0;
   if (p->touching || p->touched)
-    p->work = contactlab_march_elastic(run->scene.axes, run->scene.springs, c, &p->now, moved, p->radius, p->force[0], room,
-                                       p->force + 1);
+    p->work = contactlab_march_elastic(run->scene.axes, run->scene.springs, c, &p->now, moved, p->radius, p->force[0],
+                                       run->room, p->force + 1);
   else p->work = p->force[1] = p->force[2] = 0.0;
 }
 
@@ -606,7 +563,7 @@ static inline void contactlab_march_lay(contactlab_march_run *run, int i)
   const contactlab_march_contact *c = run->scene.c + i;
   contactlab_march_progress *p = run->scene.progress + i;
   contactlab_march_end *e = run->scene.end + i;
-  const double load = fmax(c->pull[0], 0.0) / contactlab_march_own(run, i)[0], still[3] = {0.0, 0.0, 0.0};
+  const double load = fmax(c->pull[0], 0.0) / p->own[0], still[3] = {0.0, 0.0, 0.0};
   const double root = cbrt(load / ((4.0 / 3.0) * c->modulus * sqrt(c->radius)));
   const double speed = sqrt(p->velocity[1] * p->velocity[1] + p->velocity[2] * p->velocity[2]);
   const double reach = speed > CONTACTLAB_MARCH_SLIDES * c->speed ? c->friction * sqrt(c->radius) * root / speed : 0.0;
@@ -615,10 +572,8 @@ static inline void contactlab_march_lay(contactlab_march_run *run, int i)
   p->touched = p->touching = 1;
   for (pressed = 0; pressed < 2; ++pressed) {
     const double far = pressed ? reach : 0.0, moved[2] = {far * p->velocity[1], far * p->velocity[2]};
-    if (run->scene.lossy) {
-      contactlab_march_drag(run, i, still, moved, 0.0, run->width, 0, contactlab_march_spare(run));
-      contactlab_march_swap(&p->now, &p->next);
-    } else contactlab_march_push(run, i, far, contactlab_march_spare(run));
+    if (run->scene.lossy) contactlab_march_drag(run, i, still, moved, 0.0, run->width, 1);
+    else contactlab_march_push(run, i, far);
   }
   p->force[0] = load;
   p->force[1] = p->force[2] = 0.0;
@@ -636,6 +591,7 @@ static inline int contactlab_march_begin(contactlab_march_run *run, const contac
   if (!contactlab_march_sound(scene)) return CONTACTLAB_MARCH_INPUT;
   run->scene = *scene;
   run->width = scene->step;
+  run->room = scene->work + 4 * width * (size_t) scene->contacts;
   memset(scene->end, 0, (size_t) scene->contacts * sizeof *scene->end);
   memset(scene->work, 0, CONTACTLAB_MARCH_WORK(scene->contacts, scene->springs) * sizeof *scene->work);
   memset(scene->progress, 0, (size_t) scene->contacts * sizeof *scene->progress);
@@ -644,6 +600,8 @@ static inline int contactlab_march_begin(contactlab_march_run *run, const contac
     contactlab_march_progress *p = scene->progress + i;
     scene->end[i].compressions = 1.0;
     scene->end[i].first = scene->end[i].last = NAN;
+    for (k = scene->row[i]; scene->column[k] != i; ++k) {}
+    p->own = scene->block + 9 * (size_t) k;
     p->now.w = scene->work + 4 * width * (size_t) i;
     p->next.w = p->now.w + 2 * width;
     p->now.size = scene->lossy ? 1.05 : 1.05 * c->span;
@@ -659,22 +617,21 @@ static inline int contactlab_march_begin(contactlab_march_run *run, const contac
 }
 
 /* Forces of a step of all contacts with loss. */
-static inline void contactlab_march_press_lossy(const contactlab_march_run *run, double drift, double *room)
+static inline void contactlab_march_press_lossy(const contactlab_march_run *run, double drift)
 {
   int turn, i, k;
   for (turn = 0; turn < (int) CONTACTLAB_MARCH_TURNS; ++turn) {
     contactlab_march_kicked(run);
     for (i = 0; i < run->scene.contacts; ++i) {
       contactlab_march_progress *p = run->scene.progress + i;
-      const double *W = contactlab_march_own(run, i), moved[2] = {p->velocity[1] * drift, p->velocity[2] * drift};
+      const double *W = p->own, moved[2] = {p->velocity[1] * drift, p->velocity[2] * drift};
       const double mobility = 0.5 * run->width * (run->scene.axes == 1 ? W[4] : 0.5 * (W[4] + W[8]));
       double at[3];
       for (k = 0; k < 3; ++k) at[k] = p->velocity[k] - 0.5 * p->kick[k];
       at[0] = contactlab_march_nearer(p, turn, at[0]);
-      contactlab_march_drag(run, i, at, moved, mobility, drift, turn + 1 == CONTACTLAB_MARCH_TURNS, room);
+      contactlab_march_drag(run, i, at, moved, mobility, drift, turn + 1 == CONTACTLAB_MARCH_TURNS);
     }
   }
-  for (i = 0; i < run->scene.contacts; ++i) contactlab_march_swap(&run->scene.progress[i].now, &run->scene.progress[i].next);
 }
 
 /* Velocities after a step, and what it adds to the end; returns 1 while a contact touches, -1 if a velocity is not finite. */
@@ -685,7 +642,6 @@ static inline int contactlab_march_kick(contactlab_march_run *run, double *great
   for (i = 0; i < run->scene.contacts; ++i) {
     contactlab_march_progress *p = run->scene.progress + i;
     contactlab_march_end *e = run->scene.end + i;
-    const double drifting = p->velocity[0];
     double sum = 0.0;
     e->work += p->work;
     e->shear += p->shear;
@@ -706,7 +662,7 @@ static inline int contactlab_march_kick(contactlab_march_run *run, double *great
       }
       e->last = run->time;
       going = 1;
-    } else if (!run->scene.lossy && run->scene.alone) e->duration = run->time - p->approach / drifting;
+    } else if (!run->scene.lossy && run->scene.alone) e->duration = run->time - p->approach / p->velocity[0];
     e->closed = p->touched = p->touching;
     if (run->pulled) e->pushed += run->width;
     for (k = 0; k <= run->scene.axes; ++k) {
@@ -724,7 +680,7 @@ static inline int contactlab_march_kick(contactlab_march_run *run, double *great
 /* Whether contacts are to come or to end; time without contact passes. */
 static inline int contactlab_march_closes(contactlab_march_run *run, int going, double greatest)
 {
-  double least = INFINITY, flight;
+  double least = INFINITY;
   int i, on = 0;
   for (i = 0; i < run->scene.contacts; ++i) {
     const contactlab_march_progress *p = run->scene.progress + i;
@@ -733,11 +689,10 @@ static inline int contactlab_march_closes(contactlab_march_run *run, int going, 
     if (p->touching ? holds : closes) on = 1;
     if (!p->touching && closes) least = fmin(least, -p->approach / p->velocity[0]);
   }
-  if (on && !going && !run->pulled) {
-    flight = least - CONTACTLAB_MARCH_BEFORE * run->width;
-    if (!(flight > 0.0) || isinf(flight)) flight = 0.0;
-    run->time += flight;
-    for (i = 0; i < run->scene.contacts; ++i) run->scene.progress[i].approach += run->scene.progress[i].velocity[0] * flight;
+  least -= CONTACTLAB_MARCH_BEFORE * run->width;
+  if (on && !going && !run->pulled && least > 0.0 && least < INFINITY) {
+    run->time += least;
+    for (i = 0; i < run->scene.contacts; ++i) run->scene.progress[i].approach += run->scene.progress[i].velocity[0] * least;
   }
   return on;
 }
@@ -745,7 +700,6 @@ static inline int contactlab_march_closes(contactlab_march_run *run, int going, 
 /* Marches a scene on, `steps` steps at most; returns CONTACTLAB_MARCH_GOING if there are more, else its status. */
 static inline int contactlab_march_on(contactlab_march_run *run, long steps)
 {
-  double *room = contactlab_march_spare(run);
   const contactlab_march_end *e = run->scene.end;
   int i, on = 1;
   for (; on; --steps) {
@@ -760,13 +714,12 @@ static inline int contactlab_march_on(contactlab_march_run *run, long steps)
     run->time += drift;
     for (i = 0; i < run->scene.contacts; ++i) {
       run->scene.progress[i].approach += run->scene.progress[i].velocity[0] * drift;
-      if (!run->scene.lossy) contactlab_march_push(run, i, drift, room);
+      if (!run->scene.lossy) contactlab_march_push(run, i, drift);
     }
-    if (run->scene.lossy) contactlab_march_press_lossy(run, drift, room);
+    if (run->scene.lossy) contactlab_march_press_lossy(run, drift);
     going = contactlab_march_kick(run, &greatest);
     if (going < 0) return CONTACTLAB_MARCH_NAN;
-    on = going;
-    if (!run->scene.alone) on = contactlab_march_closes(run, going, greatest);
+    on = run->scene.alone ? going : contactlab_march_closes(run, going, greatest);
     if (on && (double) run->steps >= run->scene.most) return CONTACTLAB_MARCH_LONG;
     for (i = 0; i < run->scene.contacts && on; ++i)
       if (e[i].touches > CONTACTLAB_MARCH_OFTEN) return CONTACTLAB_MARCH_LONG;
@@ -790,7 +743,7 @@ typedef struct { double velocity, drift, kick, force, time, mass, scale; } conta
 /* Springs along a known normal motion in progress; `w` has CONTACTLAB_MARCH_PATH(n) numbers, all zero at first. */
 typedef struct {
   contactlab_march_springs now, next;
-  double change, force, work, loss, edge;
+  double change, force, work, loss, edge, *room;
   int last;
 } contactlab_march_path;
 
@@ -802,6 +755,7 @@ static inline void contactlab_march_path_begin(contactlab_march_path *path, int 
   memset(w, 0, CONTACTLAB_MARCH_PATH(n) * sizeof *w);
   path->now.w = w;
   path->next.w = w + 2 * CONTACTLAB_MARCH_ROW(n);
+  path->room = w + 4 * CONTACTLAB_MARCH_ROW(n);
   path->now.size = 1.0;
 }
 
@@ -851,9 +805,8 @@ static inline void contactlab_march_along(int n, const contactlab_march_sample *
 static inline void contactlab_march_along_lossy(int n, const contactlab_march_sample *steps, long count,
     const contactlab_march_impact *one, contactlab_march_path *path, double *forces)
 {
-  double *room = path->now.w < path->next.w ? path->now.w : path->next.w, force[2] = {path->force, 0.0};
+  double force[2] = {path->force, 0.0};
   long k;
-  room += 4 * CONTACTLAB_MARCH_ROW(n);
   for (k = 0; k < count; ++k) {
     const contactlab_march_sample *s = steps + k;
     const double drift = s->drift * one->drift, kick = s->kick * one->kick, mobility = 0.5 * kick / one->mass;
@@ -861,7 +814,7 @@ static inline void contactlab_march_along_lossy(int n, const contactlab_march_sa
     const contactlab_march_drive d = {{rate * (drift * one->scale), 0.0}, drift, kick, {rate - mobility * force[0], 0.0},
                                       mobility, one->force * s->load, one->force * s->limit, one->scale, 1.0};
     double lost, gained;
-    contactlab_march_lossy(1, n, &path->now, &path->next, s->edge, s->excess, s->time * one->time, &d, 0, room, force,
+    contactlab_march_lossy(1, n, &path->now, &path->next, s->edge, s->excess, s->time * one->time, &d, 0, path->room, force,
                            &lost, &gained);
     contactlab_march_swap(&path->now, &path->next);
     path->change -= 2.0 * mobility * force[0];
@@ -905,20 +858,18 @@ static inline double contactlab_march_course(double a, long steps, contactlab_ma
   const long half = steps / 2;
   const int parts = (int) ((LEAST + 2 * half - 1) / (2 * half));
   double s[3] = {0.0, 1.0, 0.0}, middle = 0.0, largest = 1.0;
-  int phase, turn;
+  int loads, turn;
   long k;
-  for (phase = 0; phase < 2; ++phase) {
-    const int loads = !phase;
+  for (loads = 1; loads >= 0; --loads) {
     double end = 1.2537 * pow(1.0 + a, loads ? -0.085 : 0.78), width;
     for (turn = 0; turn < TURNS; ++turn) {
-      double last[3], d[3];
-      memcpy(last, s, sizeof last);
+      double last[3] = {s[0], s[1], s[2]}, d[3];
       contactlab_march_advance(last, a, loads, end / LEAST, LEAST);
       contactlab_march_slope(last, a, loads, d);
       end -= loads ? last[1] / d[1] : last[0] / d[0];
     }
     width = end / (double) (2 * half * parts);
-    for (k = phase * half; k < (1 + phase) * half; ++k) {
+    for (k = loads ? 0 : half; k < (loads ? half : steps); ++k) {
       contactlab_march_sample *o = samples + k;
       const double rate = s[1], time = s[2];
       double b;

@@ -121,6 +121,30 @@ static int path(int wild, int lossy)
   return !wild && !(isfinite(progress.change + progress.loss) && progress.work >= 0.0);
 }
 
+/* The status of a lossy contact; the unit of its slip overflows with a span of 1e300, and vanishes with bodies that yield
+ * without end. Friction is not to be left out silently. */
+static int unscaled(double span, double modulus)
+{
+  const double W[9] = {1.0, 0.0, 0.0, 0.0, 3.5, 0.0, 0.0, 0.0, 3.5}, deepest = INFINITY;
+  const int row[2] = {0, 1}, column[1] = {0};
+  contactlab_march_contact c;
+  contactlab_march_progress progress;
+  contactlab_march_end end;
+  contactlab_march_run run;
+  double work[CONTACTLAB_MARCH_WORK(1, SPRINGS)];
+  const contactlab_march_scene scene = {1, &c, row, column, W, 2, SPRINGS, 1, 1, 0.01, 0.0, 1000.0, &deepest, &progress, work, &end};
+  int status;
+  memset(&c, 0, sizeof c);
+  c.velocity[0] = c.velocity[1] = c.radius = c.shear = c.cross = c.speed = c.share = 1.0;
+  c.friction = 0.3;
+  c.time = 0.1;
+  c.span = span;
+  c.modulus = modulus;
+  status = contactlab_march_begin(&run, &scene);
+  while (status == CONTACTLAB_MARCH_GOING) status = contactlab_march_on(&run, 100);
+  return status;
+}
+
 int main(int argc, char **argv)
 {
   const long count = argc > 1 ? atol(argv[1]) : 1000;
@@ -175,6 +199,9 @@ int main(int argc, char **argv)
       }
     }
   }
+  wrong += unscaled(1.0, 1.0) != CONTACTLAB_MARCH_DONE;
+  wrong += unscaled(1e300, 1.0) != CONTACTLAB_MARCH_NAN;
+  wrong += unscaled(1.0, 5e-324) != CONTACTLAB_MARCH_NAN;
   for (n = 0; n < count; ++n) wrong += path(chance(0.5), chance(0.7));
   for (n = 0; n < 5; ++n) printf("%ld ", ended[n]);
   printf("%ld %.3e %.3e\n", wrong, gain, books);
