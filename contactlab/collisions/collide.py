@@ -174,7 +174,7 @@ def _solve_gathering(
 
     if simulation is not None:
         of_kind("simulation", simulation, Simulation, remedy="or leave it out", meant=INSTEAD)
-    if np.any(restitution != 1.0):
+    if some(restitution != 1.0):
         remedy = "give it to each contact: Touch(..., restitution=...)"
         raise refuse("restitution", restitution, "belongs to each contact of a gathering", remedy)
     if separating != "refuse":

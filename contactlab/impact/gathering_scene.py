@@ -24,7 +24,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import change_entries
 from contactlab.numeric.checks import first_of, refuse
 from contactlab.numeric.types import Array, Real
-from contactlab.numeric.vectors import components, dot, join_components
+from contactlab.numeric.vectors import components, dot, join_components, moving
 
 #: Contacts of one gathering from which W is kept by its blocks that are not zero.
 SPARSE = 100
@@ -128,8 +128,8 @@ class Assembly:
         gathering = self.gathering
         velocity = self._joined("velocity")
         fast = self._fastest(velocity)
-        W = self._inverse_mass()
         own = self._joined("inverse_mass")
+        W = self._inverse_mass(own)
         pull = self._pull()
         loaded = self._find_loads(pull)
         links = Links(
@@ -179,15 +179,14 @@ class Assembly:
         ]
         names = [*ELASTIC, *(name for name in OF_ELLIPSES if any(name in one for one in found))]
         columns = {name: [one.get(name, 1.0) for one in found] for name in names}
+        if not self.gathering.shape:
+            return {name: np.array([column]) for name, column in columns.items()}
         return {name: join_components(column, (self.count,)) for name, column in columns.items()}
 
-    def _inverse_mass(self) -> Inverse:
-        """Return W, dense for few contacts and batches, else sparse."""
+    def _inverse_mass(self, own: Array) -> Inverse:
+        """Return W, dense for few contacts and batches, else sparse, by the blocks of contacts."""
         contacts = len(self.frames)
-        blocks: dict[tuple[int, int], Any] = {
-            (k, k): join_components(each.inverse_mass, (self.count,))
-            for k, each in enumerate(self.frames)
-        }
+        blocks: dict[tuple[int, int], Any] = {(k, k): own[:, k] for k in range(contacts)}
         for reaches in self.reaches:
             for one, other in combinations(sorted(reaches), 2):
                 rows: list[list[Real]] = [[0.0] * 3 for _ in range(3)]
@@ -217,8 +216,10 @@ class Assembly:
         """Return the accelerations of approach and slip by constant forces, (count, C, 3)."""
         pull = np.zeros((self.count, len(self.frames), 3))
         for held, reaches in zip(self.gathering.bodies, self.reaches, strict=True):
+            if not moving(held.force):
+                continue
             force = components(self.flat(held.force, 3))
-            for k, side in reaches.items() if held.force.any() else ():
+            for k, side in reaches.items():
                 for row, axis in enumerate(self.frames[k].axes):
                     pull[:, k, row] += side.sense * dot(axis, force) / side.body.mass
         return pull

@@ -8,6 +8,7 @@ import numpy as np
 
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import choose, greater
 from contactlab.numeric.types import Real
 from contactlab.outcome.energy import (
     LARGEST_RESTITUTION,
@@ -64,8 +65,8 @@ def judge_gathering(motion: Motion, scene: Scene, bound: Real, cancels: float) -
     if motion.contacts is None:
         return motion
     books = gathering_ledger(scene, motion)
-    most = np.max(np.broadcast_to(bound, scene.shape), axis=-1)
-    most = np.maximum(np.where(most == math.inf, LARGEST_UNDECLARED, most), cancels)
+    most = np.max(bound, axis=-1) if np.ndim(bound) else bound
+    most = greater(choose(most == math.inf, LARGEST_UNDECLARED, most), cancels)
     off = np.abs(books.imbalance) / books.start
     left = books.end / books.start
     pushed = scene.links is not None and scene.links.pull.any(axis=(-1, -2))
@@ -77,7 +78,7 @@ def judge_gathering(motion: Motion, scene: Scene, bound: Real, cancels: float) -
             left - 1.0,
         ),
     ):
-        if np.any(where):
+        if where.any():
             each = np.broadcast_to(where[:, None], scene.shape)
             words = np.asarray(tell_each(sentence, numbers))
             sentences = np.broadcast_to(words[:, None], scene.shape)

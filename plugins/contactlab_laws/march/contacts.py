@@ -26,6 +26,7 @@ from contactlab.contracts import (
 from contactlab.contracts.contacts import Contacts
 from contactlab.impact.links import Links
 from contactlab.numeric.types import Array, Mask, Real
+from contactlab.numeric.vectors import over
 
 #: Which of the contacts of a batch.
 Where: TypeAlias = NDArray[np.bool_]
@@ -185,7 +186,7 @@ class TouchingContacts:
 
 def most_steps(scene: Scene, duration: Real, step: Real) -> Real:
     """Return the steps after which a gathering is given up, without flights."""
-    longest = np.max(np.broadcast_to(duration, scene.shape), axis=-1, keepdims=True)
+    longest = np.max(over(np.asarray(duration), scene.shape), axis=-1, keepdims=True)
     most: Real = LONGEST * scene.shape[-1] * np.ceil(longest / step)
     return most
 

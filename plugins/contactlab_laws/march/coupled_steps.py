@@ -55,7 +55,7 @@ def _find_largest_need(
     assert scene.links is not None
     pressed, dragged = stiffness
     sides = pressed, dragged, np.asarray(scene.pair.cross_stiffness_ratio) * dragged
-    wide = np.stack([np.broadcast_to(each, scene.shape) for each in sides], axis=-1)
+    wide = contacts.join(sides, scene.shape)
     omega = np.sqrt(scene.links.fastest(wide * np.asarray(deepest(scene) ** 0.2)[..., None]))
     return resolving(np.broadcast_to(omega * _count_duration(scene, normal), scene.shape), law)
 

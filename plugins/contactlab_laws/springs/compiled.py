@@ -125,7 +125,7 @@ def march(
 
 def _first(value: Real | str | NDArray[np.object_], scene: Scene) -> NDArray[Any]:
     """Return numbers of the batch shape; of a gathering its contacts share one."""
-    whole = np.broadcast_to(value, scene.shape)
+    whole = over(np.asarray(value), scene.shape)
     return whole if scene.links is None else whole[..., 0]
 
 
