@@ -76,7 +76,7 @@ class Links:
         """
         rows = times(abs(self.inverse_mass), stiffness).max(axis=(-1, -2))
         if isinstance(self.inverse_mass, np.ndarray):
-            diagonal = np.einsum("...ii->...i", self.inverse_mass)
+            diagonal = self.inverse_mass.diagonal(axis1=-2, axis2=-1)
         else:
             diagonal = self.inverse_mass.diagonal()
         trace = (diagonal * stiffness.reshape(*stiffness.shape[:-2], -1)).sum(axis=-1)

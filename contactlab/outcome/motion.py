@@ -21,6 +21,7 @@ from contactlab.numeric.arrays import (
     finite,
     lock_arrays,
     shared,
+    some,
     spread,
     zeros,
 )
@@ -140,12 +141,16 @@ def _gather_ends(
     own = Ends.of(tangential.normal)
     # NaN, unequal to itself, where friction left the normal motion as it was.
     alone = own.final_rate != own.final_rate
+    exchange, compressions = _exchange(normal, own), own.compressions
+    if not some(alone):
+        ends = {name: getattr(own, source) for name, source in ENDS.items()}
+        return ends | {"exchange": exchange, "compressions": compressions}
     coupled = {
         name: choose(alone, entries[name], getattr(own, source)) for name, source in ENDS.items()
     }
     return coupled | {
-        "exchange": choose(alone, 0.0, _exchange(normal, own)),
-        "compressions": choose(alone, 1.0, own.compressions),
+        "exchange": choose(alone, 0.0, exchange),
+        "compressions": choose(alone, 1.0, compressions),
     }
 
 
