@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Generic
+from collections.abc import Callable
+from typing import Any, Generic, TypeAlias
 
 import attrs
 import numpy as np
@@ -37,6 +38,8 @@ OF_THE_RATE = 2.5
 LARGEST_SLIP = 1.1
 #: Without a declared bound an imbalance above the whole energy at the start is a failure.
 LARGEST_UNDECLARED = 1.0
+#: Where a judge fails impacts, its sentence, and the numbers in it.
+Judged: TypeAlias = tuple[Mask, str, Callable[[], tuple[Real, ...]]]
 
 
 @tell_attributes
@@ -264,19 +267,15 @@ def _mark_imbalance(
     if kinetics.turns(scene):  # a spin that friction left has no part in what is judged
         left = kinetics.energies(scene, motion.normal_velocity, motion.slip_velocity_change)
         start = np.where(motion.normal_spin_change == 0.0, left[0], start)[()]  # a number for one
-    work, shear_loss = np.divide(books.friction_work, start), np.divide(books.shear_loss, start)
     made: Real = -np.divide(books.normal_loss, start)
-    most: Real = np.minimum(bound, STEPS_LEAVE) + ROUNDING
     undeclared = np.isnan(gain)
-    for where, sentence, numbers in (
+    rows: list[Judged] = [
         (imbalance > bound * start,
          "Off by {:.2g} of the energy at the start; declared: {:.2g}.",
          lambda: (imbalance / start, bound)),
         (coupled & (made > np.where(undeclared, STEPS_LEAVE, gain)),
          "The normal force makes {:.2g} of the energy at the start.", lambda: (made,)),
-        (-work > most, "The friction work is {:.2g} of the energy at the start.", lambda: (work,)),
-        (-shear_loss > most, "The loss in shear is {:.2g} of the energy at the start.",
-         lambda: (shear_loss,)),
+        *gains_of_losses(books, start, bound),
         (alone & (after > LARGEST_SLIP * before),
          "The contact slips {:.4g} times as fast as it met.",
          lambda: (np.divide(after, before),)),
@@ -286,10 +285,22 @@ def _mark_imbalance(
          lambda: (np.nan_to_num(books.end / books.start - 1.0, nan=math.inf),)),
         ((bound == math.inf) & (imbalance > LARGEST_UNDECLARED * start),
          "Off by {:.3g} times the energy at the start.", lambda: (imbalance / start,)),
-    ):  # fmt: skip
+    ]  # fmt: skip
+    for where, sentence, numbers in rows:
         if some(where):
             motion = motion.failing(where, Status.UNBALANCED, tell_each(sentence, *numbers()))
     return motion, imbalance / start
+
+
+def gains_of_losses(books: EnergyLedger, start: Real, bound: Real) -> list[Judged]:
+    """Return what is judged of losses that are below zero by more than books may be off."""
+    work, shear_loss = np.divide(books.friction_work, start), np.divide(books.shear_loss, start)
+    most: Real = np.minimum(bound, STEPS_LEAVE) + ROUNDING
+    words = "The {} is {{:.2g}} of the energy at the start."
+    return [
+        (-work > most, words.format("friction work"), lambda: (work,)),
+        (-shear_loss > most, words.format("loss in shear"), lambda: (shear_loss,)),
+    ]
 
 
 def tell_each(sentence: str, *numbers: Real) -> str | NDArray[np.object_]:

@@ -8,12 +8,14 @@ import numpy as np
 
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import choose, greater
+from contactlab.numeric.arrays import choose, greater, some
 from contactlab.numeric.types import Real
 from contactlab.outcome.energy import (
     LARGEST_RESTITUTION,
     LARGEST_UNDECLARED,
     EnergyLedger,
+    Judged,
+    gains_of_losses,
     tell_each,
 )
 from contactlab.outcome.motion import Motion
@@ -67,20 +69,23 @@ def judge_gathering(motion: Motion, scene: Scene, bound: Real, cancels: float) -
     books = gathering_ledger(scene, motion)
     most = np.max(bound, axis=-1) if np.ndim(bound) else bound
     most = greater(choose(most == math.inf, LARGEST_UNDECLARED, most), cancels)
-    off = np.abs(books.imbalance) / books.start
+    start = np.where(books.checked, books.start, math.inf)  # a load has no part in what is judged
+    off = np.abs(books.imbalance) / start
     left = books.end / books.start
     pushed = scene.links is not None and scene.links.pull.any(axis=(-1, -2))
-    for where, sentence, numbers in (
-        ((off > most) & books.checked, "Off by {:.2g} of the energy at the start.", off),
+    rows: list[Judged] = [
+        (off > most, "Off by {:.2g} of the energy at the start.", lambda: (off,)),
         (
             (left > LARGEST_RESTITUTION**2) & ~np.asarray(pushed),
             "The bodies gain {:.2g} of their energy.",
-            left - 1.0,
+            lambda: (left - 1.0,),
         ),
-    ):
-        if where.any():
-            each = np.broadcast_to(where[:, None], scene.shape)
-            words = np.asarray(tell_each(sentence, numbers))
+        *gains_of_losses(books, start, most),
+    ]
+    for where, sentence, numbers in rows:
+        if some(where):
+            each = np.broadcast_to(np.asarray(where)[:, None], scene.shape)
+            words = np.asarray(tell_each(sentence, *numbers()))
             sentences = np.broadcast_to(words[:, None], scene.shape)
             motion = motion.failing(each, Status.UNBALANCED, sentences)
     return motion

@@ -141,6 +141,27 @@ def test_a_strangers_law_runs_unchanged(name):
     np.testing.assert_allclose(other.velocity, hit.velocity, atol=1e-12)
 
 
+@attrs.frozen(kw_only=True)
+class Mistaken(TwoSprings):
+    """The same springs; friction makes energy, and as much is lost in shear: the books balance."""
+
+    def advance(self, state, increment, before, after):
+        told, state = super().advance(state, increment, before, after)
+        return TangentialResponse(
+            told.force, -told.friction_work, shear_loss=2.0 * told.friction_work
+        ), state
+
+
+def test_friction_that_makes_energy_is_told_of_a_gathering_as_of_an_encounter():
+    simulation, given = _simulation(Mistaken()), row(3, mu=0.2, spin=80.0)
+    hit = collide(given, simulation)
+    assert hit.status is Status.UNBALANCED
+    assert np.isnan(hit.velocity).all()
+    alone = collide(given.alone(0), simulation)
+    for told in (hit, alone):
+        assert "The friction work is -" in str(told.failures)
+
+
 @pytest.mark.parametrize("name", STRANGERS)
 def test_one_contact_of_a_strangers_law_is_its_encounter(name):
     simulation, ball = _simulation(STRANGERS[name]), Sphere(0.01, STEEL)
