@@ -185,7 +185,7 @@ def _solve_gathering(
 
 def _check_restitution(given: object, encounter: Encounter) -> Real:
     """Return a restitution that was given, one number or one for each encounter."""
-    numbers: Any = _at_speeds(given, encounter) if callable(given) else given
+    numbers: object = _at_speeds(given, encounter) if callable(given) else given
     e = real("restitution", numbers, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
     return e if isinstance(e, float) else spread_over("restitution", e, encounter.shape)
 

@@ -361,11 +361,11 @@ class Collision(Answer, Generic[Each]):
         if self.known is not None and np.all(self.collided):
             own: Statuses = self.known.status
             return own
-        status: Any = spread_object(Status.SUCCESS, self.encounter.shape)
+        status: Statuses = spread_object(Status.SUCCESS, self.encounter.shape)
         if self.known is not None:
+            assert not isinstance(status, Status)  # one encounter collides or does not
             status[self.collided] = self.known.status
-        found: Statuses = status
-        return found
+        return status
 
     @property
     def cautions(self) -> list[str]:

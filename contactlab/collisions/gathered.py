@@ -6,10 +6,11 @@ import math
 import time
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.status import Details, Status, Statuses, succeeded
@@ -47,6 +48,8 @@ if TYPE_CHECKING:
 
     from contactlab.outcome.style import Width
 
+#: A status or a sentence.
+Word = TypeVar("Word", Status, str)
 #: Numbers of a result for each contact, by name and unit.
 OF_CONTACTS = (
     ("normal_velocity", "m/s"), ("first_touch", "s"), ("last_touch", "s"), ("touches", "1"),
@@ -252,10 +255,11 @@ class GatheringResult(Answer):
         status: Statuses = self._of_gatherings(self._motion.status)
         return status
 
-    def _of_gatherings(self, words: object) -> Any:
+    def _of_gatherings(self, words: Word | NDArray[np.object_]) -> Word | NDArray[np.object_]:
         """Return a status or sentence of each gathering, which its contacts share."""
         whole = np.broadcast_to(np.asarray(words, dtype=object), self._scene.shape)
-        return whole[:, 0].reshape(self.gathering.shape)[()]
+        each: Word | NDArray[np.object_] = whole[:, 0].reshape(self.gathering.shape)[()]
+        return each
 
     def _statuses(self) -> tuple[Statuses, Details]:
         return self.status, self._of_gatherings(self._motion.detail)

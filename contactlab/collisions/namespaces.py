@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from contactlab.numeric.array_api import Traced
 from contactlab.numeric.checks import Rule, real, refuse
 from contactlab.numeric.labels import library_of, numbers_of
 from contactlab.numeric.types import AnyArray
@@ -95,13 +96,15 @@ class _Torch:
         """Return a function of PyTorch."""
         return getattr(self.torch, name)
 
-    def take(self, values: Any, index: Any, axis: int) -> Any:
+    def take(self, values: Traced, index: Any, axis: int) -> Traced:
         """Return values at an index of one axis."""
-        return self.torch.index_select(values, axis, index.long())
+        taken: Traced = self.torch.index_select(values, axis, index.long())
+        return taken
 
-    def astype(self, values: Any, kind: Any) -> Any:
+    def astype(self, values: Any, kind: object) -> Traced:
         """Return values of another type."""
-        return values.to(kind)
+        changed: Traced = values.to(kind)
+        return changed
 
     def arrays(self, values: Iterable[object]) -> list[Any]:
         """Return numbers and arrays as arrays of one type and place."""

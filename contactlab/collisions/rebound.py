@@ -389,12 +389,14 @@ def _require_range(chi: Array, low: float, high: float) -> None:
         raise refuse("chi", float(out[0]), rule, "take differences of psi2 beyond")
 
 
-def _by_table(table: Callable[..., Any], psi1: Any, chi: Any, restitution: Real) -> Any:
+def _by_table(table: Callable[..., Any], psi1: Any, chi: Any, restitution: Real) -> Real:
     """Return psi2 of checked floats or arrays in the table of restitutions."""
     if isinstance(psi1, float):
-        return table(float(psi1), float(chi), restitution)  # NumPy's floats are slow
+        one: float = table(float(psi1), float(chi), restitution)  # NumPy's floats are slow
+        return one
     e = restitution if isinstance(restitution, float) else restitution.ravel()
-    return table(psi1.ravel(), chi.ravel(), e).reshape(psi1.shape)
+    psi2: Array = table(psi1.ravel(), chi.ravel(), e).reshape(psi1.shape)
+    return psi2
 
 
 def _below_one(restitution: Any, psi1: Any) -> TypeGuard[Real]:

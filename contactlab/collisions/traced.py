@@ -8,12 +8,13 @@ from typing import Any
 
 from contactlab.collisions.namespaces import find_library, read_numbers
 from contactlab.contracts.whole_impact import Tabulated
+from contactlab.numeric.array_api import Traced
 from contactlab.numeric.checks import Rule, refuse
 
 #: Where a known number is out of a table.
 ENDS = "the table ends there: give such impacts to rebound as NumPy arrays"
 #: Tables as arrays of a library, by law, library, type and place.
-_TABLES: dict[Any, Any] = {}
+_TABLES: dict[tuple[object, ...], Mapping[str, Traced]] = {}
 
 
 def by_standard(
@@ -56,7 +57,7 @@ def by_standard(
     return _function(library, law, joined)(_tables(library, law, impact[0]), *impact)
 
 
-def _tables(library: str, law: Tabulated, like: Any) -> Any:
+def _tables(library: str, law: Tabulated, like: Any) -> Mapping[str, Traced]:
     """Return the numbers of a law's table as arrays of the type and place of ``like``."""
     place = like.device if library == "torch" else None
     key = law, library, like.dtype, place
@@ -71,7 +72,7 @@ def _function(library: str, law: Tabulated, joined: bool) -> Callable[..., Any]:
     of = find_library(library)
     xp = of.xp
 
-    def psi2(tables: Any, *impact: Any) -> Any:
+    def psi2(tables: Mapping[str, Traced], *impact: Traced) -> Traced:
         return law.rebound_of_arrays(xp, tables, *impact, joined=joined, with_slopes=of.with_slopes)
 
     return of.compile_late(psi2)

@@ -10,6 +10,7 @@ from contactlab.collisions.namespaces import find_library, read_numbers
 from contactlab.collisions.rebound import rebound, traceable
 from contactlab.contracts.restitution import RESTITUTIONS
 from contactlab.impact.bodies import HalfSpace, Pair, Sphere
+from contactlab.numeric.array_api import Library, Traced
 from contactlab.numeric.checks import NON_NEGATIVE, of_kind, refuse
 from contactlab.numeric.vectors import LEAST, RANGE
 
@@ -127,13 +128,13 @@ def _of_one_shape(xp: Any, vectors: dict[str, Any], numbers: list[Any]) -> list[
     return [*(xp.broadcast_to(vector, shape) for vector in vectors.values()), *flat]
 
 
-def _dot(one: Any, other: Any) -> Any:
+def _dot(one: Traced, other: Traced) -> Traced:
     """Return products of vectors, shape (..., 1)."""
     each = one * other
     return each[..., 0:1] + each[..., 1:2] + each[..., 2:3]
 
 
-def _cross(xp: Any, one: Any, other: Any) -> Any:
+def _cross(xp: Library, one: Traced, other: Traced) -> Traced:
     """Return vector products, shape (..., 3)."""
     (a, b, c), (d, e, f) = ([each[..., k] for k in range(3)] for each in (one, other))
     return xp.stack([b * f - c * e, c * d - a * f, a * e - b * d], axis=-1)

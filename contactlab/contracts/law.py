@@ -166,12 +166,12 @@ def resolution_of(law: Law) -> Any:
     if law.resolution is None:
         return None
     named = getattr(law, law.resolution)
-    return _usual(type(law)) if named is None else named
+    return _usual(type(law), law.resolution) if named is None else named
 
 
 @lru_cache(maxsize=128)
-def _usual(law: type[Law]) -> Any:
-    """Return what the option of the resolution is usually; None if it does not say."""
-    options: Any = attrs.fields_dict(law) if attrs.has(law) else {}
-    option = options.get(law.resolution)
-    return None if option is None else option.metadata.get("usual")
+def _usual(law: type[Law], name: str) -> float | None:
+    """Return what an option is usually; None if it does not say."""
+    option = attrs.fields_dict(law).get(name) if attrs.has(law) else None
+    usual: float | None = None if option is None else option.metadata.get("usual")
+    return usual

@@ -9,6 +9,7 @@ import numpy as np
 from contactlab.contracts.law import Law
 from contactlab.numeric.checks import Rule, quantity
 from contactlab.numeric.taken import Taken
+from contactlab.numeric.types import Real
 
 #: What laws of a restitution take where nobody gave one.
 TAKEN_RESTITUTION = Taken(0.9)
@@ -21,9 +22,10 @@ RESTITUTIONS = Rule(
 )
 
 
-def restitution_of(law: Law) -> Any:
+def restitution_of(law: Law) -> Real | None:
     """Return the option ``restitution`` of a law, a number or one of each; None without it."""
-    return getattr(law, "restitution", None)
+    e: Real | None = getattr(law, "restitution", None)
+    return e
 
 
 def _from(least: float, per_impact: bool) -> Rule:

@@ -83,7 +83,7 @@ class TangentialMotion(BatchMotion):
         What each contact of a gathering went through; None of impacts of one contact.
     """
 
-    slip_velocity_change: Any = attrs.field(metadata={"vectors": True})
+    slip_velocity_change: Real = attrs.field(metadata={"vectors": True})
     friction_work: Real
     shear_loss: Real = 0.0
     normal_spin_change: Real = attrs.field(default=0.0, metadata={"rare": True})

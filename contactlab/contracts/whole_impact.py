@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status, Statuses
 from contactlab.impact.scene import Scene
+from contactlab.numeric.array_api import Library, Traced
 from contactlab.numeric.arrays import choose, magnitude
 from contactlab.numeric.types import Array, Mask, Real
 
@@ -128,7 +129,9 @@ class Tabulated(ABC):
         raise NotImplementedError("this law has no table for arrays of other libraries")
 
     @staticmethod
-    def rebound_of_arrays(xp: Any, tables: Any, *impact: Any, **options: Any) -> Any:
+    def rebound_of_arrays(
+        xp: Library, tables: Mapping[str, Traced], *impact: Traced, **options: Any
+    ) -> Traced:
         """Return psi2 by functions of the array API standard, for libraries that trace.
 
         Parameters

@@ -297,8 +297,8 @@ class Encounter:
 
     def _rim(self) -> tuple[Real, Real, Real]:
         """Return R1 omega1 + R2 omega2 in m/s, whose cross product with the normal is slip."""
-        body: Any = self.body
-        rim = [body.radius * component for component in components(self.spin)]
+        assert isinstance(self.body, Sphere)
+        rim = [self.body.radius * component for component in components(self.spin)]
         if isinstance(self.target, Sphere) and moving(self.target_spin):
             radius = self.target.radius
             for k, component in enumerate(components(self.target_spin)):

@@ -294,8 +294,8 @@ def largest_chi(scene: Motions) -> Real:
     """Return the largest eigenvalue of chi, of the batch shape."""
     if scene.planar:
         return scene.chi
-    inverse: Any = scene.inverse_mass
-    W = rows(inverse)
+    assert scene.inverse_mass is not None
+    W = rows(scene.inverse_mass)
     ratio = 0.5 * scene.pair.stiffness_ratio / W[0][0]
     cross = scene.pair.cross_stiffness_ratio
     # the symmetric tensor with the same eigenvalues
@@ -320,8 +320,10 @@ def sizes(scene: Motions) -> tuple[Real, Real, Real]:
     if scene.shape or scene.planar:
         lam, eta, psi1 = (size_of(scene, each) for each in (scene.lam, scene.eta, scene.psi1))
         return lam, eta, psi1
-    inverse: Any = scene.inverse_mass  # plain numbers are ten times as fast
-    slip: Any = scene.slip_velocity
+    inverse, slip = scene.inverse_mass, scene.slip_velocity
+    assert inverse is not None
+    assert isinstance(slip, np.ndarray)
+    # plain numbers are ten times as fast
     (W, along, across), (x, y) = inverse[0].tolist(), slip.tolist()
     cross, mu, scale = scene.pair.cross_stiffness_ratio, scene.friction_coefficient, scene.psi_scale
     eta = quotient(scene.pair.stiffness_ratio, mu)
@@ -448,6 +450,6 @@ def energies(scene: Motions, rate: Real, change: Real) -> tuple[Real, Real, Real
 
 def energy_at_start(scene: Motions) -> Real:
     """Return the energy of approach and slip in J, of bodies whose contact couples them."""
-    inverse: Any = scene.inverse_mass
+    assert scene.inverse_mass is not None
     before = scene._components(scene.normal_speed, scene.slip_velocity)
-    return -0.5 * dot(inverse_mass.impulse(inverse, before), before)
+    return -0.5 * dot(inverse_mass.impulse(scene.inverse_mass, before), before)

@@ -124,7 +124,7 @@ def take(tree: Any, shape: tuple[int, ...], part: Index) -> object:
 
 def change_entries(tree: Tree, **entries: object) -> Tree:
     """Return a copy of a tree with other entries, none of which is checked again."""
-    kind: Any = type(tree)
+    kind: type = type(tree)
     copy: Tree = object.__new__(kind)
     names, read = _entries(kind)
     put = object.__setattr__

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from math import isfinite
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 import attrs
 import numpy as np
@@ -32,6 +32,14 @@ class Rule(NamedTuple):
 
     holds: Callable[[Any], Any]
     sentence: str
+
+
+class Combination(Protocol):
+    """How an option of a law follows from the property of that name of two materials."""
+
+    @property
+    def sentence(self) -> str:
+        """The combination in words, for messages."""
 
 
 #: Classes whose objects have no labels: ``real`` does not look for any.
@@ -271,7 +279,7 @@ def quantity(
     empty: bool = False,
     unknown: bool = False,
     per_impact: bool = False,
-    material: object = None,
+    material: Combination | None = None,
     instead: Callable[[object], bool] | None = None,
 ) -> Any:
     """Return an attrs field for a checked real quantity with its unit in the metadata.
@@ -313,8 +321,7 @@ def quantity(
     if material is not None:
         further |= {"material": material, "required": default is attrs.NOTHING}
         default = None if default is attrs.NOTHING else default
-        combined: Any = material
-        read.append(f"or a property of the materials: {combined.sentence}")
+        read.append(f"or a property of the materials: {material.sentence}")
     if read:
         further["read"] = ", ".join(read)
     return attrs.field(

@@ -36,7 +36,7 @@ ONLY_ARRAYS = "of scenes and laws only rebound and Collision.of_arrays take trac
 
 def library_of(value: object) -> str:
     """Return the package of an array of another library; empty for all other values."""
-    kind: Any = type(value)
+    kind: type = type(value)
     return _library(kind)
 
 

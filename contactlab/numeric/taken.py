@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
 
 import attrs
 
@@ -20,7 +19,7 @@ class Taken(float):
 
 def list_assumptions(law: object) -> dict[str, float]:
     """Return the numbers that a law took as nobody gave them, by the names of its options."""
-    law_class: Any = type(law)
+    law_class: type = type(law)
     names = _options(law_class)
     return {
         name: float(getattr(law, name)) for name in names if isinstance(getattr(law, name), Taken)

@@ -234,16 +234,16 @@ def raise_errors(
 @np.errstate(all="ignore")
 def _spoils(motion: Motion, scene: Scene, bound: Real) -> bool:
     """Return whether any judge of ``_mark_imbalance`` fails an impact that slip alone changed."""
-    change: Any = motion.slip_velocity_change
+    change: Real = motion.slip_velocity_change
     start, _, lost = kinetics.energies(scene, motion.normal_velocity, change)
-    work: Any = motion.friction_work
-    least: Any = -(np.minimum(bound, STEPS_LEAVE) + ROUNDING) * start
+    work: Real = motion.friction_work
+    least: Real = -(np.minimum(bound, STEPS_LEAVE) + ROUNDING) * start
     bad = work < least
     if not are_zeros(shear_loss := motion.shear_loss):
         bad |= shear_loss < least
         work = work + shear_loss
-    bad |= abs(lost - work) > np.where(bound == math.inf, LARGEST_UNDECLARED, bound) * start
-    slip: Any = scene.slip_velocity
+    bad |= magnitude(lost - work) > np.where(bound == math.inf, LARGEST_UNDECLARED, bound) * start
+    slip: Real = scene.slip_velocity
     after = kinetics.size_of(scene, slip + change)
     bad |= after > LARGEST_SLIP * kinetics.size_of(scene, slip)
     return some(bad)

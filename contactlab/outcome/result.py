@@ -163,7 +163,7 @@ class ImpactResult(Answer, Generic[Each]):
     @property
     def rebound_slip_velocity(self) -> Each:
         """Slip velocity at the contact after the impact in m/s; along t1 and t2 in space."""
-        return self.scene.slip_velocity + self.motion.slip_velocity_change
+        return self.scene.slip_velocity + self.motion.slip_velocity_change  # type: ignore[return-value]
 
     @property
     def rebound_normal_velocity(self) -> Each | Any:
@@ -209,7 +209,7 @@ class ImpactResult(Answer, Generic[Each]):
         """Velocity in space of the target of an encounter, as ``velocity_in_space``."""
         return self._in_space("target_velocity")
 
-    def _in_space(self, name: str) -> Any:
+    def _in_space(self, name: str) -> Array | None:
         """Return a vector after the impact of bodies that are no spheres; None without them."""
         encounter, axes = self.scene.encounter, self.scene.frame
         if axes is None or encounter is None:
@@ -243,7 +243,10 @@ class ImpactResult(Answer, Generic[Each]):
         axes = self.scene.frame
         if axes is None:
             return self.scene.normal_spin + self.motion.normal_spin_change  # type: ignore[return-value]
-        relative = self._in_space("spin") - self._in_space("target_spin")
+        own, target = self._in_space("spin"), self._in_space("target_spin")
+        assert own is not None
+        assert target is not None
+        relative = own - target
         spin = np.einsum("...i,...i->...", relative, axes[..., 0, :])
         return plain(spin)  # type: ignore[return-value]
 
@@ -279,7 +282,7 @@ class ImpactResult(Answer, Generic[Each]):
             turn = turn / (target.gyration_ratio**2 * target.radius)
         return self._of_target(turn)
 
-    def _of_target(self, momentum: Real) -> Any:
+    def _of_target(self, momentum: Real) -> Real | None:
         """Return ``momentum`` (N s) over the target's mass: 0 for a half-space."""
         target = self.scene.target
         if isinstance(target, Sphere):

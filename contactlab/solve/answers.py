@@ -150,9 +150,11 @@ def _fields(
     return fields
 
 
-def _falls_short(answer: WholeImpact, history: bool | str, largest_error: Real) -> Any:
+def _falls_short(answer: WholeImpact, history: bool | str, largest_error: Real) -> bool | Mask:
     """Return where a march is more accurate than an answer, or has a course that is asked for."""
-    return (history and answer.course is None) or answer.psi2_error > largest_error
+    if history and answer.course is None:
+        return True
+    return answer.psi2_error > largest_error
 
 
 def _check_answer(answer: WholeImpact, law: TangentialLaw, shape: tuple[int, ...]) -> WholeImpact:

@@ -18,7 +18,7 @@ from contactlab.impact.error_model import psi_magnitude
 from contactlab.impact.inverse_mass import unit_slip
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import are_zeros, every, plain, some, spread, zeros
-from contactlab.numeric.types import Array, Index, Mask, Real
+from contactlab.numeric.types import Array, Index, Mask, Places, Real
 from contactlab.outcome.history import Recorder
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import ENDLESS, MARCHED, PlanColumns, Reason
@@ -92,7 +92,7 @@ class Decoupled(Way):
         """
         shape = normal.scene.shape
         if not shape:
-            code: Any = MARCHED if separates(normal) else ENDLESS
+            code: int | Places = MARCHED if separates(normal) else ENDLESS
             marched = code == MARCHED and not answered
             code = 0 if answered else code
         else:

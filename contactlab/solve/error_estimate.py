@@ -96,7 +96,7 @@ def _resolution(laws: Laws, scene: Scene) -> Array:
 
 def _distance(
     laws: Laws, scene: Scene, resolution: float | None, answer: NDArray[np.complex128]
-) -> Any:
+) -> Array:
     """Return the estimated errors, shape (2, ...); 0 where no finer run is possible."""
     options = _options(laws, resolution)
     counts = {kind: value for kind, value in options.items() if _counts(getattr(laws, kind))}
@@ -128,7 +128,8 @@ def _distance(
     least = CLOSED_FORM * np.stack(
         np.broadcast_arrays(psi_magnitude(central), np.ones(scene.shape))
     )
-    return np.where(distance > 0.0, np.maximum(distance, least), distance)
+    errors: Array = np.where(distance > 0.0, np.maximum(distance, least), distance)
+    return errors
 
 
 def _again(laws: Laws, scene: Scene) -> NDArray[np.complex128]:

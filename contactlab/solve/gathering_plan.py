@@ -181,9 +181,9 @@ class _Words:
     def _normal(self) -> str:
         """Return the normal law in words; of contacts with losses of their own the range of e."""
         e = restitution_of(self.laws.normal)
-        if not np.ndim(e):
+        if e is None or not np.ndim(e):
             return in_words(self.laws.normal)
-        low, high = e.min(), e.max()
+        low, high = np.min(e), np.max(e)
         told = f"{low:g}" if low == high else f"{low:g} to {high:g}"
         return f"{name_of(self.laws.normal)}, e of each contact {told}"
 

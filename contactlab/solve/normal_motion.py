@@ -112,7 +112,8 @@ def _of_restitutions(law: NormalLaw, scene: Scene) -> MotionTable | None:
     """Return the table of impacts that are similar to those of a few restitutions, or None."""
     from contactlab.solve.solved_motion import MotionTable
 
-    if not np.ndim(restitution_of(law)):
+    e = restitution_of(law)
+    if e is None or not np.ndim(e):
         return None
     few, which = np.unique(number_in(law, "restitution", scene), return_inverse=True)
     if few.size > MOST_KEPT // 2:

@@ -6,6 +6,7 @@ import attrs
 import numpy as np
 
 from contactlab.contracts import ClosedFormNormalLaw, Integrator, accuracy_of, resolution_of
+from contactlab.numeric.arrays import magnitude
 from contactlab.numeric.types import Real
 from contactlab.runs.simulation import Simulation
 from contactlab.solve.normal_motion import normal_motion
@@ -40,7 +41,7 @@ def order(integrator: Integrator) -> None:
             change = march_impact(
                 attrs.evolve(simulation, integrator=finer), 2.0
             ).slip_velocity_change
-            errors.append(abs(change / exact - 1.0))
+            errors.append(float(magnitude(change / exact - 1.0)))
         observed = -float(np.polyfit(np.log(LADDER), np.log(errors), 1)[0])
         hold(
             observed >= ORDER - ORDER_ROOM,

@@ -27,6 +27,7 @@ from contactlab.contracts import (
 from contactlab.impact.error_model import psi_magnitude
 from contactlab.impact.hertz import slips_throughout
 from contactlab.impact.scene import Scene
+from contactlab.numeric.array_api import Library, Traced
 from contactlab.numeric.arrays import greater, magnitude, spread
 from contactlab.numeric.types import Array, Mask, Real
 from contactlab_laws.compiled import library
@@ -89,7 +90,9 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
         return traced.elastic_constants()
 
     @staticmethod
-    def rebound_of_arrays(xp: Any, tables: Any, *impact: Any, **options: Any) -> Any:
+    def rebound_of_arrays(
+        xp: Library, tables: Mapping[str, Traced], *impact: Traced, **options: Any
+    ) -> Traced:
         """Return psi2 of psi1 and chi; there is nothing to join."""
         from contactlab_laws.tables import traced
 

@@ -31,7 +31,7 @@ from contactlab.contracts import (
     judges,
     shares_loss,
 )
-from contactlab.contracts.status import Status
+from contactlab.contracts.status import Details, Status, Statuses
 from contactlab.impact import kinetics
 from contactlab.numeric.arrays import choose, lock_arrays, some, spread_object
 from contactlab.numeric.types import Mask, Real
@@ -135,8 +135,8 @@ class _March:
         self.compressions: Any = 1 if plain else np.ones(scene.shape, dtype=int)
         self.alive: Any = True if plain else np.ones(scene.shape, dtype=bool)
         self.steps = 0
-        self.status: Any = spread_object(Status.SUCCESS, scene.shape)
-        self.detail: Any = spread_object("", scene.shape)
+        self.status: Statuses = spread_object(Status.SUCCESS, scene.shape)
+        self.detail: Details = spread_object("", scene.shape)
 
     def run(self, observer: Observer | None) -> TangentialMotion:
         """Return the motion to the end of contact of all impacts."""
@@ -354,9 +354,9 @@ class _March:
         """Return a mask; of gatherings with all contacts where one is marked."""
         return where if self.contacts is None else whole(where)
 
-    def fail(self, status: Status, detail: object, where: Mask) -> None:
+    def fail(self, status: Status, detail: str | NDArray[np.object_], where: Mask) -> None:
         """Mark impacts as failed."""
-        if self.shape:
+        if isinstance(self.status, np.ndarray) and isinstance(self.detail, np.ndarray):
             where = self._whole(where)
             self.status[where], self.detail[where] = status, detail
         else:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,7 +37,7 @@ class Line(NamedTuple):
         """Return the displacements that ``stretch`` made forces of."""
         return force
 
-    def product(self, first: Vectors, second: Vectors) -> Any:
+    def product(self, first: Vectors, second: Vectors) -> Vectors:
         """Return force times displacement."""
         return first * second
 
@@ -85,7 +85,7 @@ class Plane(NamedTuple):
         """Return the displacements that ``stretch`` made forces of."""
         return relax(force, self.cross)
 
-    def product(self, first: Vectors, second: Vectors) -> Any:
+    def product(self, first: Vectors, second: Vectors) -> Vectors:
         """Return the inner products of forces and displacements."""
         return (np.conj(first) * second).real
 

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from contactlab.numeric.array_api import Computed
 from contactlab.numeric.arrays import part_of
 from contactlab.numeric.types import Array, Mask, Real
 from contactlab_laws.tables import elastic
@@ -173,7 +174,7 @@ def _partial(speed: Array, chi: Array, e: Real, path: Path = SHIPPED, *, power: 
     return np.multiply(found, speed if power == 1 else speed**power, out=found, where=~slips)
 
 
-def _share(e: Any) -> Any:
+def _share(e: Computed) -> Computed:
     """Return the share of ``_step`` at e above ``JOINED``."""
     return ((e - JOINED) / (1.0 - JOINED)) ** 2
 

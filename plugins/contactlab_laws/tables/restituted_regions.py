@@ -6,12 +6,13 @@ Which patch an impact is in a fine grid of its region tells.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlab.numeric.array_api import Computed
 from contactlab.numeric.arrays import choose
 from contactlab.numeric.types import Array, Real
 from contactlab.numeric.vectors import square_root
@@ -57,7 +58,7 @@ def bound_restitution_error(chi: Real, restitution: Real) -> Real:
     return choose(restitution == 0.0, 0.0 * near, near)
 
 
-def border(chi: Any, e: Any) -> Any:
+def border(chi: Computed, e: Computed | float) -> Computed:
     """Return psi1 from which an impact that has slipped first slips throughout; for chi > 1/2."""
     return 2.0 * chi * (1.0 + e) - e
 

@@ -14,10 +14,10 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from contactlab.numeric.array_api import Library, Operand, Traced
 from contactlab.numeric.types import Array
 from contactlab_laws.tables import elastic, restituted
 from contactlab_laws.tables import regions as of
-from contactlab_laws.tables.array_api import Library, Operand, Traced
 from contactlab_laws.tables.file import read
 from contactlab_laws.tables.restituted_regions import (
     LOW,

@@ -17,6 +17,7 @@ from contactlab.contracts import (
 from contactlab.contracts.restitution import LEAST_RESTITUTION, restitution
 from contactlab.impact.of_speed import interpolate, speed_pairs
 from contactlab.impact.scene import Scene
+from contactlab.numeric.array_api import Library, Traced
 from contactlab.numeric.arrays import plain
 from contactlab.numeric.checks import Rule, quantity, refuse
 from contactlab.numeric.types import Either, Real
@@ -172,7 +173,9 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
         return traced.list_constants()
 
     @staticmethod
-    def rebound_of_arrays(xp: Any, tables: Any, *impact: Any, **options: Any) -> Any:
+    def rebound_of_arrays(
+        xp: Library, tables: Mapping[str, Traced], *impact: Traced, **options: Any
+    ) -> Traced:
         """Return psi2 of psi1, chi and restitutions."""
         from contactlab_laws.tables import traced
 

@@ -1,9 +1,11 @@
-"""Types of a library of the array API standard, as far as the tables use one."""
+"""Types of a library of the array API standard, as far as tables and impacts use one."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol, TypeAlias, Union
+from typing import Protocol, TypeAlias, TypeVar, Union
+
+from contactlab.numeric.types import Array, Real
 
 
 class Traced(Protocol):
@@ -40,10 +42,12 @@ class Traced(Protocol):
 
 #: What stands beside an array in a sum or a comparison.
 Operand: TypeAlias = Union[float, "Traced"]
+#: A float, or arrays of any library: the same on both sides of a function.
+Computed = TypeVar("Computed", float, Array, Real, Traced)
 
 
 class Library(Protocol):
-    """The functions of the standard that the tables use."""
+    """The functions of the standard that are used."""
 
     nan: float
     int32: object
