@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from operator import attrgetter
-from typing import Any, Self
+from typing import Any, Generic, Self
 
 import attrs
 import numpy as np
@@ -25,7 +25,7 @@ from contactlab.numeric.arrays import (
     spread,
     zeros,
 )
-from contactlab.numeric.types import Array, Either, Real
+from contactlab.numeric.types import Array, Each, Real
 
 #: Entries of ``Motion`` by the name of their source in a normal motion.
 ENDS = {
@@ -38,7 +38,7 @@ ENDS = {
 
 
 @attrs.frozen(kw_only=True, eq=False, slots=False)  # frozen slots are slow to fill
-class Motion(TangentialMotion):
+class Motion(TangentialMotion, Generic[Each]):
     """A tangential motion with the duration, the maxima and the end of its normal motion.
 
     Attributes
@@ -59,26 +59,25 @@ class Motion(TangentialMotion):
         How often the approach grew: 1, or more where friction pressed the bodies together again.
     """
 
-    duration: Either
-    normal_velocity: Either
-    maximum_radius: Either
-    maximum_approach: Either
-    maximum_force: Either
-    exchange: Either = 0.0
-    compressions: Either = 1.0
+    duration: Each
+    normal_velocity: Each
+    maximum_radius: Each
+    maximum_approach: Each
+    maximum_force: Each
+    exchange: Each | float = 0.0
+    compressions: Each | float = 1.0
 
     def turn(self, along: Array) -> Self:
         """Return the motion with its slip along unit vectors of the tangent plane, (..., 2)."""
         change = np.asarray(self.slip_velocity_change)[..., None] * along
         return attrs.evolve(self, slip_velocity_change=lock_arrays(change))
 
-    @classmethod
+    @staticmethod
     def combine(
-        cls,
         normal: NormalMotion,
         tangential: TangentialMotion | WholeImpact,
         axes: tuple[int, ...] = (),
-    ) -> Self:
+    ) -> Motion:
         """Return the motion of one batch from its two parts; its arrays are read-only.
 
         ``tangential`` is the answer of one whole impact, or a motion; ``axes`` are those of a slip
@@ -93,7 +92,7 @@ class Motion(TangentialMotion):
                 own = Ends.of(tangential.normal)
                 if not math.isnan(own.final_rate):
                     ends, exchange, compressions = own, _exchange(normal, own), own.compressions
-            return cls(  # named entry by entry: a loop is slower than all else here
+            return Motion(  # named entry by entry: a loop is slower than all else here
                 duration=float(ends.duration),
                 normal_velocity=float(ends.final_rate),
                 maximum_radius=float(ends.maximum_radius),
@@ -124,7 +123,7 @@ class Motion(TangentialMotion):
         given: dict[str, Any] = usual | {
             name: lock_arrays(spread(value, shape)) for name, value in entries.items()
         }
-        return cls(
+        return Motion(
             **given,
             slip_velocity_change=lock_arrays(spread(change, (*shape, *axes))),
             status=lock_arrays(tangential.status),

@@ -76,7 +76,7 @@ class ImpactResult(Answer, Generic[Each]):
 
     scene: Scene
     plan: Plan
-    motion: Motion = attrs.field(repr=False)
+    motion: Motion[Each] = attrs.field(repr=False)
     run_time: float = attrs.field(metadata={"unit": "s"})
     laws: Mapping[str, str]
     history: History | NoHistory = attrs.field(default=NO_HISTORY, repr=False)
@@ -141,7 +141,7 @@ class ImpactResult(Answer, Generic[Each]):
     @property
     def compressions(self) -> Each:
         """How often the approach grew: 1, or more where friction pressed the bodies together."""
-        return self.motion.compressions
+        return self.motion.compressions  # type: ignore[return-value]
 
     @property
     def impulse(self) -> Array:
@@ -292,7 +292,7 @@ class ImpactResult(Answer, Generic[Each]):
     @property
     def normal_restitution(self) -> Each:
         """Coefficient of normal restitution, e = -v_z after / v_z before."""
-        return -self.motion.normal_velocity / self.scene.normal_speed
+        return -self.motion.normal_velocity / self.scene.normal_speed  # type: ignore[return-value]
 
     @property
     def tangential_restitution(self) -> Each | Any:
