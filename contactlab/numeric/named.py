@@ -14,7 +14,7 @@ import attrs
 import numpy as np
 
 from contactlab.numeric.checks import key, of_kind, real_or_nan, refuse
-from contactlab.numeric.types import Array, Either
+from contactlab.numeric.types import Array
 
 #: A name, and its unit in brackets where one is given.
 HEADING = re.compile(r"([A-Za-z_][\w.]*)(?: \((\S[^()]*(?:\([^()]*\))?[^()]*)\))?")
@@ -101,7 +101,7 @@ def numbers_by_name(argument: str, given: object, *, taken: tuple[str, ...] = ()
         return NOTHING
     remedy = f"write {argument}={{'relaxation_time': 1e-6}}, in SI units"
     table = of_kind(argument, given, Mapping, rule="must be numbers by name", remedy=remedy)
-    numbers: dict[str, Either] = {}
+    numbers: dict[str, object] = {}
     names: set[str] = set()
     for heading, value in table.items():
         name = split_heading(heading)[0] if isinstance(heading, str) else ""

@@ -13,7 +13,7 @@ from contactlab.contracts.restitution import TAKEN_RESTITUTION, restitution
 from contactlab.impact.hertz import hertz_scales, hertz_stiffness
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import NON_NEGATIVE, quantity
-from contactlab.numeric.types import Either, Real
+from contactlab.numeric.types import Real
 from contactlab_laws.calibrated import OF_LOSS, one_of_two, waives_of_loss
 
 
@@ -31,7 +31,7 @@ class Relaxing(NormalLaw):
 
     offers: ClassVar[frozenset[str]] = OF_LOSS | {"radius", "elliptic"}
 
-    restitution: Either = restitution(default=None)
+    restitution: Real | None = restitution(default=None)
     relaxation_time: Real | None = quantity(
         "s", rule=NON_NEGATIVE, default=None, per_impact=True, material=BY_COMPLIANCE
     )

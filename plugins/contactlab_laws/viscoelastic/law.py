@@ -20,7 +20,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.array_api import Library, Traced
 from contactlab.numeric.arrays import plain
 from contactlab.numeric.checks import Rule, quantity, refuse
-from contactlab.numeric.types import Either, Real
+from contactlab.numeric.types import Real
 from contactlab_laws.relaxing import Parts, Relaxing
 from contactlab_laws.tables.restituted_regions import RESTITUTED_CHI, bound_restitution_error
 from contactlab_laws.viscoelastic.relaxation import number_of
@@ -88,7 +88,7 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
         metadata={"unit": "m/s, 1", "range": PAIRS},
     )
 
-    restitution: Either = restitution(default=None, least=0.0, per_impact=True)
+    restitution: Real | None = restitution(default=None, least=0.0, per_impact=True)
     number_of = staticmethod(number_of)
     chi_range: ClassVar[tuple[float, float]] = RESTITUTED_CHI
 
