@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NamedTuple, Self, TypeAlias
+from typing import Any, Generic, NamedTuple, Self, TypeAlias
 
 import attrs
 
@@ -12,7 +12,7 @@ from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.contacts import Contacts
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.sampled_motion import Ends
-from contactlab.numeric.types import Mask, Real
+from contactlab.numeric.types import Each, Mask, Real
 
 
 def no_fields() -> Mapping[str, Any]:
@@ -54,7 +54,7 @@ Observer: TypeAlias = Callable[[Sample], None]
 
 
 @attrs.frozen(kw_only=True, eq=False, slots=False)  # frozen slots are slow to fill
-class TangentialMotion(BatchMotion):
+class TangentialMotion(BatchMotion, Generic[Each]):
     """The tangential motion of an impact or a batch; entries have the batch shape.
 
     Attributes
@@ -83,7 +83,7 @@ class TangentialMotion(BatchMotion):
         What each contact of a gathering went through; None of impacts of one contact.
     """
 
-    slip_velocity_change: Real = attrs.field(metadata={"vectors": True})
+    slip_velocity_change: Each = attrs.field(metadata={"vectors": True})
     friction_work: Real
     shear_loss: Real = 0.0
     normal_spin_change: Real = attrs.field(default=0.0, metadata={"rare": True})

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from operator import attrgetter
-from typing import Any, Generic, Self
+from typing import Any
 
 import attrs
 import numpy as np
@@ -38,7 +38,7 @@ ENDS = {
 
 
 @attrs.frozen(kw_only=True, eq=False, slots=False)  # frozen slots are slow to fill
-class Motion(TangentialMotion, Generic[Each]):
+class Motion(TangentialMotion[Each]):
     """A tangential motion with the duration, the maxima and the end of its normal motion.
 
     Attributes
@@ -67,10 +67,11 @@ class Motion(TangentialMotion, Generic[Each]):
     exchange: Each | float = 0.0
     compressions: Each | float = 1.0
 
-    def turn(self, along: Array) -> Self:
+    def turn(self, along: Array) -> Motion:
         """Return the motion with its slip along unit vectors of the tangent plane, (..., 2)."""
         change = np.asarray(self.slip_velocity_change)[..., None] * along
-        return attrs.evolve(self, slip_velocity_change=lock_arrays(change))
+        motion: Motion = self
+        return attrs.evolve(motion, slip_velocity_change=lock_arrays(change))
 
     @staticmethod
     def combine(
