@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Hashable
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts.law import Law, claims
 from contactlab.contracts.status import Details, Status
-from contactlab.numeric.types import Index, Real
+from contactlab.numeric.types import Each, Index, Real
 
 if TYPE_CHECKING:
     from contactlab.contracts.contact import NormalContact
@@ -24,7 +24,7 @@ T = TypeVar("T")
 MOST_SHARED = 8
 
 
-class NormalSample(NamedTuple):
+class NormalSample(NamedTuple, Generic[Each]):
     """The normal motion at one instant, or at many.
 
     Attributes
@@ -39,11 +39,11 @@ class NormalSample(NamedTuple):
         Integral of the friction load since first touch, in N s.
     """
 
-    time: Real
-    approach: Real
-    rate: Real
+    time: Each
+    approach: Each
+    rate: Each
     contact: NormalContact
-    load_impulse: Real
+    load_impulse: Each
 
 
 class Units(NamedTuple):

@@ -4,8 +4,8 @@ Inside the house a number, or an array with one value for each impact, is a ``Re
 arrays come it is an ``Array``, and where only numbers come a ``float``. ``Mask`` is the same of
 bool; ``Index`` takes a part of a batch; ``Places`` are indices in an array. A function that gives a
 float for a float and an array for an array is annotated with ``Kind`` on both sides, and one that
-gives back whatever it is given with ``Tree``. Numbers of a result are ``Each``, those of its motion
-and of bodies ``Either``. At a door, where a user's numbers are checked, an argument is
+gives back whatever it is given with ``Tree``. Numbers of a result and of its motion are ``Each``,
+those of rigid bodies ``Either``. At a door, where a user's numbers are checked, an argument is
 ``Numbers``: whatever NumPy makes real numbers of. An array of any type of NumPy is ``AnyArray``.
 What may be anything is an ``object``; ``Any`` stays where nothing is known and something is done
 with it.
@@ -29,7 +29,7 @@ Mask: TypeAlias = bool | np.bool_ | NDArray[np.bool_]
 Complex: TypeAlias = complex | NDArray[np.inexact]
 #: Indices in an array.
 Places: TypeAlias = NDArray[np.intp]
-#: A ``Real`` of a body, a material or a motion, which programs read: checkers take it for either.
+#: A ``Real`` of a rigid body, which programs read: checkers take it for either.
 #: The user knows which it is, and of a ``Real`` would have to say so in each line.
 Either: TypeAlias = Any
 #: What takes a part of a batch.
