@@ -99,7 +99,7 @@ class Tabulated(ABC):
 
     @staticmethod
     @abstractmethod
-    def rebound_error(*impact: Any) -> Real:
+    def rebound_error(*impact: Real) -> Real:
         """Return the bound of the error of psi2 over max(1, abs(psi1)).
 
         Parameters

@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections import deque
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, lru_cache
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, overload
@@ -135,9 +135,9 @@ def change_entries(tree: Tree, **entries: object) -> Tree:
 
 
 @cache
-def _entries(kind: Hashable) -> tuple[tuple[str, ...], Callable[[object], Any]]:
+def _entries(kind: type) -> tuple[tuple[str, ...], Callable[[object], Any]]:
     """Return the names of the entries of a class of trees, and what reads them all at once."""
-    fields = attrs.fields(kind)  # type: ignore[arg-type]
+    fields = attrs.fields(kind)
     names = tuple(field.name for field in fields)
     if len(names) > 1:
         return names, attrgetter(*names)

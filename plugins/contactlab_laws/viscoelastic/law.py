@@ -161,7 +161,7 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
         return rebound(*impact, **options)
 
     @staticmethod
-    def rebound_error(*impact: Any) -> Real:
+    def rebound_error(*impact: Real) -> Real:
         """Return that of the table, and of springs beyond it."""
         return bound_restitution_error(*impact)
 
