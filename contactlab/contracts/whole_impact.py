@@ -15,7 +15,7 @@ from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status, Statuses
 from contactlab.impact.scene import Scene
 from contactlab.numeric.array_api import Library, Traced
-from contactlab.numeric.arrays import choose, magnitude
+from contactlab.numeric.arrays import choose, fill, magnitude
 from contactlab.numeric.types import Array, Mask, Real
 
 
@@ -201,16 +201,23 @@ def from_change(
     if in_shear is not None:
         shear = in_shear * unit * (0.5 * scene.pair.tangential_mass * unit)
         shear = choose(shear > lost, lost, shear)
-    return WholeImpact(
-        where=where,
-        slip_velocity_change=change,
-        friction_work=lost - shear,
-        shear_loss=shear,
-        reason=reason,
-        psi2_error=psi2_error,
-        balanced=True,
-        counter=counter,
-    )
+    entries = {
+        "where": where,
+        "slip_velocity_change": change,
+        "friction_work": lost - shear,
+        "reason": reason,
+        "course": None,
+        "fields": None,
+        "psi2_error": psi2_error,
+        "status": Status.SUCCESS,
+        "detail": "",
+        "normal": None,
+        "balanced": True,
+        "counter": counter,
+        "normal_spin_change": 0.0,
+        "shear_loss": shear,
+    }
+    return fill(WholeImpact, entries)
 
 
 def sliding(

@@ -18,6 +18,7 @@ from contactlab.contracts.whole_impact import WholeImpact
 from contactlab.numeric.arrays import (
     are_zeros,
     choose,
+    fill,
     finite,
     lock_arrays,
     shared,
@@ -93,22 +94,25 @@ class Motion(TangentialMotion[Each]):
                 own = Ends.of(tangential.normal)
                 if not math.isnan(own.final_rate):
                     ends, exchange, compressions = own, _exchange(normal, own), own.compressions
-            return Motion(  # named entry by entry: a loop is slower than all else here
-                duration=float(ends.duration),
-                normal_velocity=float(ends.final_rate),
-                maximum_radius=float(ends.maximum_radius),
-                maximum_approach=float(ends.maximum_approach),
-                maximum_force=float(ends.maximum_force),
-                slip_velocity_change=float(tangential.slip_velocity_change),
-                friction_work=float(tangential.friction_work),
-                shear_loss=float(tangential.shear_loss),
-                normal_spin_change=float(tangential.normal_spin_change),
-                status=tangential.status,
-                detail=tangential.detail,
-                counters=tangential.counters,
-                exchange=float(exchange),
-                compressions=float(compressions),
-            )
+            own_entries = {  # named entry by entry: a loop is slower than all else here
+                "status": tangential.status,
+                "detail": tangential.detail,
+                "counters": tangential.counters,
+                "slip_velocity_change": float(tangential.slip_velocity_change),
+                "friction_work": float(tangential.friction_work),
+                "shear_loss": float(tangential.shear_loss),
+                "normal_spin_change": float(tangential.normal_spin_change),
+                "normal": None,
+                "contacts": None,
+                "duration": float(ends.duration),
+                "normal_velocity": float(ends.final_rate),
+                "maximum_radius": float(ends.maximum_radius),
+                "maximum_approach": float(ends.maximum_approach),
+                "maximum_force": float(ends.maximum_force),
+                "exchange": float(exchange),
+                "compressions": float(compressions),
+            }
+            return fill(cls, own_entries)
         entries: dict[str, Any] = {name: getattr(normal, source) for name, source in ENDS.items()}
         usual = {"exchange": zeros(shape), "compressions": shared(1.0, shape)}
         if tangential.normal is not None:

@@ -16,7 +16,7 @@ from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status, succeeded
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import take
+from contactlab.numeric.arrays import fill, take
 from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import tell_arguments
 from contactlab.numeric.types import Array, Each, Numbers
@@ -418,14 +418,17 @@ def _result(
     status = motion.status
     if status is not Status.SUCCESS and not succeeded(status):
         motion = without_failures(motion)
-    return ImpactResult(
-        scene=scene,
-        plan=plan,
-        motion=motion,
-        laws=solve.versions_of(ways),
-        history=history,
-        run_time=time.perf_counter() - started,
-    )
+    entries = {
+        "scene": scene,
+        "plan": plan,
+        "motion": motion,
+        "run_time": time.perf_counter() - started,
+        "laws": solve.versions_of(ways),
+        "history": history,
+        "psi2_error_estimate": None,
+        "restitution_error_estimate": None,
+    }
+    return fill(ImpactResult, entries)
 
 
 def _scene(scene: object) -> Scene:

@@ -19,6 +19,7 @@ from contactlab.contracts import (
 )
 from contactlab.impact.hertz import DURATION_CONSTANT, hertz_scales
 from contactlab.impact.scene import Scene
+from contactlab.numeric.arrays import fill
 from contactlab.numeric.types import Array, Index, Real
 
 #: Longer tables are not cached: 64 tables of three columns of 8 bytes are 6 MB at most.
@@ -115,17 +116,18 @@ class HertzMotion(ClosedFormMotion):
     @classmethod
     def of(cls, law: NormalLaw, scene: Scene) -> HertzMotion:
         """Return the motion of ``scene``, eqs (7)-(9); the final rate is minus the first."""
-        scales, speed = hertz_scales(scene), scene.normal_speed
-        return cls(
-            law=law,
-            scene=scene,
-            duration=scales.duration,
-            maximum_radius=scales.radius,
-            maximum_approach=scales.approach,
-            maximum_force=scales.force,
-            final_rate=-speed,
-            total_load_impulse=2.0 * scene.pair.normal_mass * speed,
-        )
+        (radius, approach, force, duration), speed = hertz_scales(scene), scene.normal_speed
+        entries = {
+            "law": law,
+            "scene": scene,
+            "duration": duration,
+            "maximum_radius": radius,
+            "maximum_approach": approach,
+            "maximum_force": force,
+            "final_rate": -speed,
+            "total_load_impulse": 2.0 * scene.pair.normal_mass * speed,
+        }
+        return fill(cls, entries)
 
     @property
     def shared(self) -> dict[Any, Any] | None:
