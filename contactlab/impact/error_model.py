@@ -46,4 +46,6 @@ def range_of(scene: Scene) -> Range:
 def psi_magnitude(scene: Scene) -> Real:
     """Return max(1, |psi1|), the scale of relative errors of psi2; 1 where psi1 is infinite."""
     magnitude = kinetics.size_of(scene, scene.psi1)
+    if isinstance(magnitude, float):
+        return magnitude if 1.0 < magnitude < math.inf else 1.0
     return greater(choose(magnitude < math.inf, magnitude, 1.0), 1.0)

@@ -112,7 +112,7 @@ class Motion(TangentialMotion[Each]):
                 "exchange": float(exchange),
                 "compressions": float(compressions),
             }
-            return fill(cls, own_entries)
+            return fill(Motion, own_entries)
         entries: dict[str, Any] = {name: getattr(normal, source) for name, source in ENDS.items()}
         usual = {"exchange": zeros(shape), "compressions": shared(1.0, shape)}
         if tangential.normal is not None:

@@ -28,6 +28,8 @@ Mask = NDArray[np.bool_]
 ONE: Mask = lock_arrays(np.array(True))
 #: The numbers of a whole-impact answer: one call is faster than a loop over names.
 _numbers = attrgetter("slip_velocity_change", "friction_work", "shear_loss", "normal_spin_change")
+#: Their types in most answers to one impact.
+FLOATS = {float}
 #: Instants in the history of an impact that is not marched.
 INSTANTS = 201
 
@@ -165,8 +167,9 @@ def _check_answer(answer: WholeImpact, law: TangentialLaw, shape: tuple[int, ...
     LawFaultError
         If it is not.
     """
-    for entry in _numbers(answer):
-        if type(entry) is not float and faults.is_malformed(entry, shape):
+    numbers = _numbers(answer)
+    for entry in () if {*map(type, numbers)} == FLOATS else numbers:
+        if faults.is_malformed(entry, shape):
             sentence = faults.sentence(law, f"the answer {quote(entry)} to a whole impact", 1)
             raise faults.LawFaultError(Status.MALFORMED, sentence)
     if not (type(answer.psi2_error) is float and answer.psi2_error >= 0.0):

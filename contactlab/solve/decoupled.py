@@ -91,10 +91,14 @@ class Decoupled(Way):
         ``size`` is that of psi, over which errors are relative.
         """
         shape = normal.scene.shape
+        if not shape and answered:  # one impact has one answer
+            answer = answered[0].answer
+            reason = Reason(answer.reason, answer.balanced, answer.fields is not None)
+            known = CLOSED_FORM + 2.0 * normal.accuracy if answer.normal is None else math.nan
+            return PlanColumns(0, self._error(normal, answered, False, size), (reason,), known)
         if not shape:
             code: int | Places = MARCHED if separates(normal) else ENDLESS
-            marched = code == MARCHED and not answered
-            code = 0 if answered else code
+            marched: Mask = code == MARCHED
         else:
             code = np.where(separates(normal), MARCHED, ENDLESS)
             for place, one in enumerate(answered):

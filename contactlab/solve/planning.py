@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple, TypeGuard
 
 import numpy as np
@@ -73,32 +73,41 @@ def plan_of(
     that are ``estimated`` need no advice. Ways and normal motions that were not ``found`` yet are
     found by the words.
     """
-    asked_for = _Asked(history, estimated)
-
-    def words() -> Words:
-        from contactlab.outcome.normal_spin_words import with_normal_spin  # only for words
-
-        answered = ~columns.marched & (
-            "normal_spin" in laws.capability.tangential_claims
-        )  # no march takes spin
-        return with_normal_spin(of_impacts(), scene, answered=answered)
-
-    def of_impacts() -> Words:
-        solved: Sequence[tuple[Way, NormalMotion | None]] = found
-        if not solved:
-            solved = [(way, None) for way in ways(laws, scene, as_one=bool(history))]
-        if len(solved) == 1:
-            return _words(laws, *solved[0], scene, columns, motion, asked_for)
-        said = []
-        for way, normal in solved:
-            some_columns = columns.take(way.where)
-            moved = None if motion is None else take(motion, scene.shape, way.where)
-            part = scene.take(way.where)
-            kinds = _words(laws, way, normal, part, some_columns, moved, asked_for)
-            said.append((way.where, Plan(some_columns, kinds)))
-        return Plan.merge(said, scene.shape).words
-
+    words = partial(_words_of_ways, laws, scene, columns, motion, history, estimated, found)
     return Plan(columns, words)
+
+
+def _words_of_ways(
+    laws: Laws,
+    scene: Scene,
+    columns: PlanColumns,
+    motion: Motion | None,
+    history: bool | str,
+    estimated: bool,
+    found: Sequence[tuple[Way, NormalMotion]],
+) -> Words:
+    """Return the clauses of a plan; arguments as in ``plan_of``."""
+    from contactlab.outcome.normal_spin_words import with_normal_spin  # only for words
+
+    answered = ~columns.marched & (
+        "normal_spin" in laws.capability.tangential_claims
+    )  # no march takes spin
+    asked_for = _Asked(history, estimated)
+    solved: Sequence[tuple[Way, NormalMotion | None]] = found
+    if not solved:
+        solved = [(way, None) for way in ways(laws, scene, as_one=bool(history))]
+    if len(solved) == 1:
+        words = _words(laws, *solved[0], scene, columns, motion, asked_for)
+        return with_normal_spin(words, scene, answered=answered)
+    said = []
+    for way, normal in solved:
+        some_columns = columns.take(way.where)
+        moved = None if motion is None else take(motion, scene.shape, way.where)
+        part = scene.take(way.where)
+        kinds = _words(laws, way, normal, part, some_columns, moved, asked_for)
+        said.append((way.where, Plan(some_columns, kinds)))
+    words = Plan.merge(said, scene.shape).words
+    return with_normal_spin(words, scene, answered=answered)
 
 
 def _words(
