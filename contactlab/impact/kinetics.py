@@ -74,8 +74,8 @@ class Motions:
         velocity : float or array
             Slip velocity in m/s, with the sign and shape of ``slip_velocity``.
         """
-        if isinstance(velocity, float) and not self.shape:
-            return 0.0 if velocity == 0.0 else float(velocity) * self.psi_scale
+        if type(velocity) is float and not self.shape:
+            return 0.0 if velocity == 0.0 else velocity * self.psi_scale
         scale = self.psi_scale
         if not self.planar:
             scale = np.asarray(scale)[..., None] * self._sides

@@ -24,6 +24,7 @@ from contactlab.numeric.types import AnyArray, Array, Complex, Index, Kind, Mask
 
 #: Numbers in the array that ``keep_freed_memory`` releases: 8 MB, the tables of most batches.
 RELEASED = 1_000_000
+_new, _put = object.__new__, object.__setattr__
 if TYPE_CHECKING:  # checkers take ``abs`` of a number or an array for an object
 
     @overload
@@ -139,8 +140,8 @@ def fill(kind: type[Tree], entries: dict[str, Any]) -> Tree:
 
     Where one impact takes microseconds, an ``__init__`` of a dozen arguments takes one of them.
     """
-    tree: Tree = object.__new__(kind)
-    object.__setattr__(tree, "__dict__", entries)
+    tree: Tree = _new(kind)
+    _put(tree, "__dict__", entries)
     return tree
 
 

@@ -36,6 +36,8 @@ ENDS = {
     "maximum_approach": "maximum_approach",
     "maximum_force": "maximum_force",
 }
+#: Types of the entries of most motions of one impact, whose numbers are all floats.
+USUAL = {float, Status, str, dict, type(None)}
 
 
 @attrs.frozen(kw_only=True, eq=False, slots=False)  # frozen slots are slow to fill
@@ -94,25 +96,28 @@ class Motion(TangentialMotion[Each]):
                 own = Ends.of(tangential.normal)
                 if not math.isnan(own.final_rate):
                     ends, exchange, compressions = own, _exchange(normal, own), own.compressions
-            own_entries = {  # named entry by entry: a loop is slower than all else here
+            alone: dict[str, Any] = {  # named entry by entry: a loop is slower than all else here
                 "status": tangential.status,
                 "detail": tangential.detail,
                 "counters": tangential.counters,
-                "slip_velocity_change": float(tangential.slip_velocity_change),
-                "friction_work": float(tangential.friction_work),
-                "shear_loss": float(tangential.shear_loss),
-                "normal_spin_change": float(tangential.normal_spin_change),
+                "slip_velocity_change": tangential.slip_velocity_change,
+                "friction_work": tangential.friction_work,
+                "shear_loss": tangential.shear_loss,
+                "normal_spin_change": tangential.normal_spin_change,
                 "normal": None,
                 "contacts": None,
-                "duration": float(ends.duration),
-                "normal_velocity": float(ends.final_rate),
-                "maximum_radius": float(ends.maximum_radius),
-                "maximum_approach": float(ends.maximum_approach),
-                "maximum_force": float(ends.maximum_force),
-                "exchange": float(exchange),
-                "compressions": float(compressions),
+                "duration": ends.duration,
+                "normal_velocity": ends.final_rate,
+                "maximum_radius": ends.maximum_radius,
+                "maximum_approach": ends.maximum_approach,
+                "maximum_force": ends.maximum_force,
+                "exchange": exchange,
+                "compressions": compressions,
             }
-            return fill(Motion, own_entries)
+            if {*map(type, alone.values())} != USUAL:
+                for name in Motion.numbers():
+                    alone[name] = float(alone[name])
+            return fill(Motion, alone)
         entries: dict[str, Any] = {name: getattr(normal, source) for name, source in ENDS.items()}
         usual = {"exchange": zeros(shape), "compressions": shared(1.0, shape)}
         if tangential.normal is not None:

@@ -38,6 +38,8 @@ class Capability(NamedTuple):
         The laws that have a resolution, and nobody named it.
     reads : bool
         True if a law has options that materials give, or that each impact has its own of.
+    unasked : bool
+        True if no law refuses spheres, chooses a resolution for them, or leaves some unfollowed.
     closed, unfollowed, whole, path, stepped, causal, coupled, resolving, marcher : law or None
         The law, if it is derived from that class.
     """
@@ -49,6 +51,7 @@ class Capability(NamedTuple):
     refusing: tuple[Law, ...]
     unnamed: tuple[Law, ...]
     reads: bool
+    unasked: bool
     closed: ClosedFormNormalLaw | None = None
     unfollowed: UnfollowedNormalLaw | None = None
     whole: WholeImpactTangentialLaw | None = None
@@ -64,14 +67,16 @@ class Capability(NamedTuple):
         """Return what three laws can do."""
         laws: tuple[Law, ...] = normal, tangential, integrator
         by_way: dict[str, Any] = {way: law for law in laws for way in law._ways}
+        refusing, unnamed = tuple(filter(may_refuse, laws)), tuple(filter(_leaves_resolution, laws))
         return cls(
             accuracy=accuracy_of(integrator),
             normal_claims=claims(normal),
             tangential_claims=claims(tangential),
             shares_loss=shares_loss(tangential, normal),
-            refusing=tuple(filter(may_refuse, laws)),
-            unnamed=tuple(filter(_leaves_resolution, laws)),
+            refusing=refusing,
+            unnamed=unnamed,
             reads=any(options_read(type(law)) for law in laws),
+            unasked=not (refusing or unnamed or "unfollowed" in by_way),
             **by_way,
         )
 

@@ -199,11 +199,12 @@ class Simulation:
             If ``scene`` is not a Scene, a law has no answer to it, ``history`` is none of its three
             values, or the history of a batch is requested whose impacts have different instants.
         """
-        started, recorder = time.perf_counter(), None
-        laws, scene = self.laws, _scene(scene)
+        started, recorder, laws = time.perf_counter(), None, self.laws
+        if type(scene) is not Scene:
+            scene = _scene(scene)
         if laws.capability.reads:
             laws, scene = bind(laws, scene)
-        if _history(history):
+        if history is not False and _history(history):
             recorder = Recorder(scene.shape, with_fields=history == "fields")
         ways, flat = solve.accept_scene(laws, scene, as_one=bool(history)), scene
         if len(scene.shape) > 1:  # laws and integrators are run over one axis

@@ -78,6 +78,8 @@ class Decoupled(Way):
     def solve(self, prepared: Prepared, recorder: Recorder | None) -> Motion:
         """Return the motion by whole-impact answers where there are any, else marched."""
         normal, answered, columns, _ = prepared
+        if answered and recorder is None and not normal.scene.shape:
+            return Motion.combine(normal, answered[0].answer)
         marched = columns.code == MARCHED
         return Motion.combine(normal, self._tangential(normal, answered, marched, recorder))
 

@@ -54,6 +54,8 @@ def refuse_gathering(scene: Scene) -> None:
 
 def accept_scene(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]:
     """Return the ways in which a scene is solved, or refuse one that a law cannot run."""
+    if laws.capability.unasked and scene.inverse_mass is None:
+        return [Decoupled(..., scene, laws)]
     found = ways(laws, scene, as_one=as_one)
     for way in found:
         _, part, used = way
