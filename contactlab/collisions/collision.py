@@ -21,7 +21,7 @@ from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.body_contact import in_space, push_bodies
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.rigid_body import RigidBody
-from contactlab.numeric.arrays import every, of_each, plain, spread_object, take
+from contactlab.numeric.arrays import every, fill, of_each, plain, spread_object, take
 from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import tell_attributes
 from contactlab.numeric.types import Array, Each, Json, Labelled, Mask, Numbers, Real, Vector
@@ -155,7 +155,8 @@ class Collision(Answer, Generic[Each]):
                 moved = impulses.turn_bodies(encounter, moved, change)
         else:
             moved = _attributes(encounter, result, met)
-        return cls(encounter=encounter, **moved, known=result, **about)
+        entries = {"encounter": encounter, "restitution": 1.0, "simulation": None, "known": result}
+        return fill(cls, entries | moved | about)
 
     @staticmethod
     def of_arrays(

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from functools import cache
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Generic, overload
 
 import attrs
 import numpy as np
 
 from contactlab.impact.material import A_MATERIAL, Material
-from contactlab.numeric.arrays import common_shape
+from contactlab.numeric.arrays import change_entries, common_shape
 from contactlab.numeric.checks import (
     GYRATION,
     NON_NEGATIVE,
@@ -196,6 +198,20 @@ class Pair:
     axis_ratio: Real = quantity("1", rule=POSITIVE, default=1.0, empty=True)
     inverse_spin_mass: Real = quantity("1/kg", rule=NON_NEGATIVE, default=0.0, empty=True)
 
+    @classmethod
+    def of_numbers(cls, numbers: dict[str, Real]) -> Pair:
+        """Return the pair of numbers by name; round contacts in plain numbers are checked at once.
+
+        Parameters
+        ----------
+        numbers : dict of str to float or array
+            Arguments of the class.
+        """
+        alone = numbers.keys() == ROUND and {*map(type, numbers.values())} == {float}
+        if alone and min(_positive(numbers)) > 0.0 and math.isfinite(sum(numbers.values())):
+            return change_entries(_unit_pair(), **numbers)
+        return cls(**numbers)
+
     @property
     def stiffness_ratio(self) -> Real:
         """Kappa = G*/E*: initial tangential over normal contact stiffness."""
@@ -284,6 +300,23 @@ class Pair:
             dundurs_beta=coupling_compliance(sphere.material, target.material) / compliance_n,
             inverse_spin_mass=spin,
         )
+
+
+#: Numbers of a round contact of two bodies that do not spin about the normal.
+ROUND = {
+    "radius", "effective_modulus", "effective_shear_modulus", "normal_mass", "tangential_mass",
+    "dundurs_beta",
+}  # fmt: skip
+
+
+#: Those of them that are positive.
+_positive = itemgetter(*sorted(ROUND - {"dundurs_beta"}))
+
+
+@cache
+def _unit_pair() -> Pair:
+    """Return a pair whose numbers are 1, and those that most contacts have not as usual."""
+    return Pair(**dict.fromkeys(ROUND, 1.0))
 
 
 def _find_loss(*bodies: Sphere | HalfSpace) -> ValueError | None:

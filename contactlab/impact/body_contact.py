@@ -455,7 +455,8 @@ def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
     entries |= {"encounter": encounter, "frame": join_components(axes, shape), "normal_spin": spin}
     entries["of_slip"] = encounter.of_slip
     try:
-        pair = Pair(normal_mass=1.0 / W[0][0], tangential_mass=1.0 / tangential, **contact)
+        masses = {"normal_mass": 1.0 / W[0][0], "tangential_mass": 1.0 / tangential}
+        pair = Pair.of_numbers(masses | contact)
         return Scene(None, None, encounter.friction_coefficient, speed, along, pair=pair, **entries)
     except (ValueError, ZeroDivisionError):
         try:

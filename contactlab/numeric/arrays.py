@@ -130,8 +130,7 @@ def change_entries(tree: Tree, **entries: object) -> Tree:
     names, read = _entries(kind)
     put = object.__setattr__
     deque(map(put, itertools.repeat(copy), names, read(tree)), maxlen=0)  # a loop takes longer
-    for name, value in entries.items():
-        put(copy, name, value)
+    deque(map(put, itertools.repeat(copy), entries, entries.values()), maxlen=0)
     return copy
 
 

@@ -71,9 +71,12 @@ class Coupled(Way):
         if history and laws.capability.coupled is not None:
             self.refuse_history(history)
         normal = try_normal(laws, scene.central)
-        with faults.blaming(laws.tangential):
+        try:
             bound = judges.books_bound_of(laws.tangential, normal.scene)
             return Prepared(normal, [], self._columns(normal), bound)
+        except BaseException as error:
+            faults.blame(laws.tangential, error)
+            raise
 
     def _columns(self, normal: NormalMotion) -> PlanColumns:
         """Return the columns of the plan: who answers, and the declared errors."""
@@ -112,7 +115,7 @@ class Coupled(Way):
         scene, able = self.scene, self.laws.capability
         law = able.coupled if scene.links is None else None
         blamed: Law = self.laws.integrator if law is None else law
-        with faults.blaming(blamed):
+        try:
             if law is not None:
                 answer = law.solve_coupled(scene, normal, able.accuracy, observer)
             else:  # other laws are stood in for
@@ -128,6 +131,9 @@ class Coupled(Way):
                 told = "the answer has not the ends of its normal motion"
                 raise faults.LawFaultError(Status.MALFORMED, faults.sentence(blamed, told, 1))
             return Motion.combine(normal, moved, axes)
+        except BaseException as error:
+            faults.blame(blamed, error)
+            raise
 
     def _end_as_alone(self, motion: Motion, normal: NormalMotion) -> Motion:
         """Return a motion whose impacts without an end have the status of the approach alone."""

@@ -18,7 +18,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.hertz import DURATION_CONSTANT, HertzScales, hertz_scales
-from contactlab.numeric.arrays import choose, some, spread_object
+from contactlab.numeric.arrays import choose, fill, some, spread_object
 from contactlab.numeric.types import Array, Mask, Real
 from contactlab.numeric.vectors import entry, join_components
 from contactlab_laws.fronts import compiled
@@ -76,14 +76,18 @@ def motion(
         approach * scales.approach, radius * approach * scales.force, 0.0 * work,
         choose(times == times, times, 0.0),
     )  # fmt: skip
-    return TangentialMotion(
-        slip_velocity_change=change,
-        friction_work=energy * work,
-        normal=Ends(*ends),
-        status=ended,
-        detail=detail,
-        counters={"steps": int(counted.sum() if shape else counted)},
-    )
+    entries = {
+        "status": ended,
+        "detail": detail,
+        "counters": {"steps": int(counted.sum() if shape else counted)},
+        "slip_velocity_change": change,
+        "friction_work": energy * work,
+        "shear_loss": 0.0,
+        "normal_spin_change": 0.0,
+        "normal": Ends(*ends),
+        "contacts": None,
+    }
+    return fill(TangentialMotion, entries)
 
 
 def _follow_sides(numbers: Array, smooth: Mask, tolerance: float) -> tuple[Array, NDArray[np.intc]]:
