@@ -322,8 +322,8 @@ def frame(encounter: _Meeting, bodies: Sequence[Side], normal: Vector) -> Frame:
     rest = rest * back * back
     axes = (
         normal,
-        tuple(c * a + s * b for a, b in zip(one, other, strict=True)),
-        tuple(c * b - s * a for a, b in zip(one, other, strict=True)),
+        (c * one[0] + s * other[0], c * one[1] + s * other[1], c * one[2] + s * other[2]),
+        (c * other[0] - s * one[0], c * other[1] - s * one[1], c * other[2] - s * one[2]),
     )
     tensor = (
         (W[0][0], coupling.real, coupling.imag),
@@ -549,8 +549,8 @@ def push_bodies(
     for side, changes in changes_of(encounter, axes, impulse, couple):
         for entry, change in changes.items():
             name = side.name + entry
-            before = components(getattr(encounter, name))
-            after = [one + more for one, more in zip(before, change, strict=True)]
+            x, y, z = components(getattr(encounter, name))
+            after = x + change[0], y + change[1], z + change[2]
             moved[name] = join_components(after, shape)
     for name in VELOCITIES:
         if name not in moved:
@@ -565,12 +565,14 @@ def changes_of(
 
     They are vectors by their components.
     """
-    frame, (p, q, r) = rows(axes), components(impulse)
-    whole = [p * n + q * t1 + r * t2 for n, t1, t2 in zip(*frame, strict=True)]
-    for side in sides(encounter, frame[0]):
+    (normal, one, other), (p, q, r) = rows(axes), components(impulse)
+    (n, a, d), (m, b, e), (k, c, f) = zip(normal, one, other, strict=True)
+    x, y, z = p * n + q * a + r * d, p * m + q * b + r * e, p * k + q * c + r * f
+    for side in sides(encounter, normal):
         # the impulse on this body, and its angular impulse about the centre of mass
-        push = [-side.sense * each for each in whole]
-        turn = zip(cross(side.arm, push), frame[0], strict=True)
-        moment = [m - side.sense * couple * n for m, n in turn]
-        velocity = [each / side.body.mass for each in push]
+        sense, mass = side.sense, side.body.mass
+        push = -sense * x, -sense * y, -sense * z
+        (u, v, w), turn = cross(side.arm, push), sense * couple
+        moment = u - turn * n, v - turn * m, w - turn * k
+        velocity = push[0] / mass, push[1] / mass, push[2] / mass
         yield side, {"velocity": velocity, "spin": turn_body(side.body, moment)[0]}

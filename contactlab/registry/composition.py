@@ -342,7 +342,7 @@ def _name(law: Law) -> str:
 
 def versions(*laws: Law) -> dict[str, str]:
     """Return each law's name and version, by kind."""
-    return dict(_versions(*map(type, laws)))
+    return _versions(*map(type, laws)).copy()
 
 
 @lru_cache(maxsize=128)

@@ -71,7 +71,8 @@ def accept_scene(laws: Laws, scene: Scene, *, as_one: bool = False) -> list[Way]
 def versions_of(found: Sequence[Way]) -> dict[str, str]:
     """Return name and version of each law by kind, of several in one scene with "and"."""
     if len(found) == 1:
-        return versions(*found[0].laws)
+        laws = found[0].laws
+        return versions(laws.normal, laws.tangential, laws.integrator)
     used = [versions(*way.laws) for way in found]
     return {kind: " and ".join(dict.fromkeys(each[kind] for each in used)) for kind in KINDS}
 
