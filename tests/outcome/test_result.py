@@ -6,7 +6,7 @@ import attrs
 import numpy as np
 import pytest
 
-from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, collide
+from contactlab import Encounter, HalfSpace, Material, Scene, Simulation, Sphere, collide, create
 from contactlab.outcome.tables import sections
 from tests.laws.normal_laws import Damped, LinearSpring
 from tests.solve.any_scene import EXACT, OFF_CENTRE
@@ -194,3 +194,21 @@ def test_a_scene_given_another_speed_has_no_velocity_of_its_encounter(speed):
     rougher = EXACT.run(attrs.evolve(OFF_CENTRE.scene, friction_coefficient=0.1))
     made = collide(attrs.evolve(OFF_CENTRE, friction_coefficient=0.1))
     assert rougher.velocity_in_space == pytest.approx(made.velocity, rel=1e-12)
+
+
+def test_what_is_filled_at_once_has_every_entry_of_its_class():
+    """An entry that a class gains is not forgotten where its objects are filled without checks."""
+    planar = Scene.nondimensional(psi1=1.2, chi=1.4, lam=0.2, eta=0.1)
+    central = Scene.nondimensional(psi1=1.2, chi=1.4412)
+    ball, floor = Sphere(RADIUS, STEEL), HalfSpace(STEEL)
+    meeting = Encounter(
+        ball, floor, friction_coefficient=FRICTION, normal=(0, 0, 1), velocity=(1.0, 0.0, SPEED)
+    )
+    hit = collide(meeting, Simulation())
+    results = [Simulation().run(central), Simulation().run(planar), hit.result]
+    normal = create("normal.hertz").motion(planar)
+    exact = create("tangential.fronts")
+    course = exact.solve_coupled(planar, normal, 1e-9)
+    answers = exact.whole_impacts(central, create("normal.hertz").motion(central))
+    for made in (*results, *[each.motion for each in results], hit, normal, course, *answers):
+        assert {field.name for field in attrs.fields(type(made))} <= vars(made).keys(), type(made)
