@@ -134,7 +134,7 @@ def change_entries(tree: Tree, **entries: object) -> Tree:
     return copy
 
 
-def fill(kind: type[Tree], entries: dict[str, Any]) -> Tree:
+def fill(kind: type[Tree], entries: Mapping[str, object]) -> Tree:
     """Return an object of a class without slots from all its entries, none of which is checked.
 
     Where one impact takes microseconds, an ``__init__`` of a dozen arguments takes one of them.
