@@ -23,6 +23,7 @@ from contactlab.outcome import energy, history, motion, plan, result
 from contactlab.solve import normal_motion
 from contactlab.study.validation import REFERENCE_PSI2
 from contactlab.testing import Verdict, check_law
+from contactlab_laws import compiled
 from tests.house import contract_page
 from tests.present import PACKAGE, ROOT, extra
 
@@ -56,6 +57,9 @@ EXTRAS = {
     "getting-started": ("xarray",),
     "many-machines": ("xarray", "dask"),
 }
+#: Pages whose numbers are those of the finer steps that a compiled march takes by itself.
+COMPILED = ("how-far-to-trust", "extending-integrator")
+needs_library = pytest.mark.skipif(compiled.library() is None, reason=compiled.tell())
 #: Where names in the tables of the guide are looked for.
 NAMESPACES = (
     contactlab, contracts, bodies, plan, history, motion, energy, normal_motion, result,
@@ -153,6 +157,7 @@ def test_lines_fit_a_terminal_but_for_tables_and_code():
             marks=[
                 *[extra(name) for name in EXTRAS.get(page, ())],
                 *[pytest.mark.slow] * (page in LONG_CODE),
+                *[needs_library] * (page in COMPILED),
             ],
         )
         for page in WITH_CODE
