@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from operator import attrgetter
-from typing import Any, NamedTuple, Protocol, overload
+from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 import attrs
 import numpy as np
@@ -26,19 +26,8 @@ from contactlab.numeric.types import Array, Json
 from contactlab.registration.bring import by_name, state
 from contactlab.registration.hooks import hookimpl
 
-
-class WithScene(Protocol):
-    """What columns are read of: their ``path`` leads from its attributes."""
-
-    @property
-    def scene(self) -> Scene:
-        """The scene, whose shape the columns have."""
-
-    @property
-    def history(self) -> object:
-        """The history, false if there is none."""
-
-    def __getitem__(self, index: int, /) -> WithScene: ...
+if TYPE_CHECKING:
+    from contactlab.outcome.functions_of_results import WithScene
 
 
 class Column(NamedTuple):

@@ -17,25 +17,25 @@ from contactlab.registration.installed import PluginWarning
 HISTORY = "history"
 
 
-class Read(Protocol):
-    """What a function of a plug-in reads: one impact, or a batch of them."""
+class WithScene(Protocol):
+    """What columns and functions of a plug-in read: one impact, or a batch of them."""
 
     @property
     def scene(self) -> Scene:
-        """The scene."""
+        """The scene, whose shape the columns have."""
 
     @property
     def history(self) -> object:
         """The history, false if there is none."""
 
-    def __getitem__(self, index: int, /) -> Read: ...
+    def __getitem__(self, index: int, /) -> WithScene: ...
 
 
 def values_of(
     name: str,
     value: Callable[[Any], object],
     needs: Sequence[str],
-    result: Read,
+    result: WithScene,
     *,
     words: bool = False,
 ) -> object:
@@ -54,7 +54,7 @@ def values_of(
     return values
 
 
-def _numbers(value: Callable[[Read], object], result: Read) -> object:
+def _numbers(value: Callable[[WithScene], object], result: WithScene) -> object:
     """Return the numbers of a function of a result, or refuse what is none, or of another shape."""
     given = value(result)
     shape = result.scene.shape
@@ -69,7 +69,7 @@ def _numbers(value: Callable[[Read], object], result: Read) -> object:
     return given
 
 
-def _each(value: Callable[[Read], object], result: Read, said: list[str]) -> object:
+def _each(value: Callable[[WithScene], object], result: WithScene, said: list[str]) -> object:
     """Return the values of a function; where it fails for a batch it is asked for each impact."""
     shape = result.scene.shape
     try:

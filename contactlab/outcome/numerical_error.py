@@ -10,7 +10,7 @@ import numpy as np
 from contactlab.impact.error_model import COARSE, range_of
 from contactlab.numeric.arrays import for_share
 from contactlab.numeric.types import Array, Real
-from contactlab.outcome.columns import WithScene
+from contactlab.outcome.functions_of_results import WithScene
 from contactlab.outcome.plan import NORMAL_SPIN, WITHOUT_SPIN, Plan
 
 #: Ratio of estimated to declared error above which the declaration is false. Estimates are mostly

@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 from contactlab.impact.scene import entry_unit
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array, Places, Real
-from contactlab.outcome.columns import WithScene, find_quantity, unit_in
+from contactlab.outcome.columns import find_quantity, unit_in
+from contactlab.outcome.functions_of_results import WithScene
 from contactlab.outcome.history import WithHistory, scale_forces
 from contactlab.outcome.history_figure import on_axes
 from contactlab.outcome.plan import Plan

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from contactlab.figures.files import Panels, save
 from contactlab.impact.scene import entry_unit
 from contactlab.numeric.types import Array, Numbers
-from contactlab.outcome.columns import QUANTITIES, WithScene
+from contactlab.outcome.columns import QUANTITIES
+from contactlab.outcome.functions_of_results import WithScene
 from contactlab.outcome.style import Look, Width, label, law_style, verbatim, zero_line
 from contactlab.study.comparison_figure import POINTS
 from contactlab_fit.measurements import Measurements
