@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from functools import lru_cache, wraps
-from typing import TypeVar
+from typing import ParamSpec, TypeVar
 
 import attrs
 import numpy as np
@@ -15,6 +15,7 @@ from contactlab.numeric.checks import quote
 from contactlab.numeric.taken import list_assumptions
 from contactlab.registry.registry import REGISTRY
 
+P = ParamSpec("P")
 T = TypeVar("T")
 
 #: The address of an object without words of its own, which differs from run to run.
@@ -26,21 +27,21 @@ def name_of(law: Law) -> str:
     return _name(type(law))
 
 
-def _kept(make: Callable[[Law], T]) -> Callable[[Law], T]:
+def keep_answers(make: Callable[P, T]) -> Callable[P, T]:
     """Return a function of laws that keeps its answers, but of laws that have no hash."""
-    keep = lru_cache(maxsize=128)(make)
+    keep = lru_cache(maxsize=256)(make)
 
     @wraps(make)
-    def tell(law: Law) -> T:
+    def tell(*given: P.args, **named: P.kwargs) -> T:
         try:
-            return keep(law)
+            return keep(*given, **named)  # type: ignore[arg-type]  # laws without a hash are below
         except TypeError:
-            return make(law)
+            return make(*given, **named)
 
     return tell
 
 
-@_kept
+@keep_answers
 def in_words(law: Law) -> str:
     """Return the name of a law with the options that differ from their defaults.
 
@@ -65,7 +66,7 @@ def tell_assumptions(*laws: Law) -> list[str]:
     return [text for law in laws for text in _tell_taken(law)]
 
 
-@_kept
+@keep_answers
 def _tell_taken(law: Law) -> tuple[str, ...]:
     return tuple(
         f"{name_of(law)}: no {name} given, using {value:g}. Set your own: --set "

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import attrs
 import numpy as np
 
@@ -12,6 +10,7 @@ from contactlab.contracts.law import law_kind, resolution_of
 from contactlab.numeric.arrays import spread
 from contactlab.outcome.plan import Clause
 from contactlab.registry.composition import Laws
+from contactlab.registry.law_words import keep_answers
 from contactlab.solve.answers import Mask
 from contactlab.solve.way import Way
 
@@ -65,23 +64,14 @@ def _usual(laws: Laws) -> Laws:
     return _with(laws, given, "")
 
 
+@keep_answers
 def _with(laws: Laws, resolutions: tuple[tuple[str, float], ...], reason: str) -> Laws:
     """Return the laws with resolutions, by kind."""
-    try:
-        return _kept(laws, resolutions, reason)
-    except TypeError:  # a law with a parameter that has no hash
-        return _make(laws, resolutions, reason)
-
-
-def _make(laws: Laws, resolutions: tuple[tuple[str, float], ...], reason: str) -> Laws:
     changed = {}
     for kind, value in resolutions:
         law = getattr(laws, kind)
         changed[kind] = attrs.evolve(law, **{law.resolution: type(resolution_of(law))(value)})
     return laws.change(**changed, by_scene=frozenset(changed), reason=reason, asked=laws)
-
-
-_kept = lru_cache(maxsize=256)(_make)
 
 
 def tell_resolution(laws: Laws, marched: Mask) -> list[Clause]:
