@@ -25,7 +25,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import quote
 from contactlab.numeric.types import Real
 
-#: What is below zero by less than this, over the largest of its kind, is zero but for rounding.
+#: Share of the largest of its kind up to which a number below zero counts as rounding.
 ROUNDING = 1e-9
 NEGATIVE_RADIUS = "a contact radius below zero"
 NEGATIVE_LOAD = "a friction load below zero, of which Coulomb's limit would be negative"

@@ -30,7 +30,7 @@ from contactlab.study.bench_methods import Method, Options
 from contactlab.study.posed import pose
 from contactlab.study.stability_references import converges
 
-#: What is timed: nothing is left to prepare.
+#: Function that is timed, after everything was prepared.
 Call: TypeAlias = Callable[[], object]
 #: Calls of C on one impact that are timed as one, so that the way into C does not count.
 IN_C = 1000

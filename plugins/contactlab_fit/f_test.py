@@ -62,11 +62,11 @@ def chances_of_each(
     residuals, slopes : array
         As those of ``chance_of``.
     products : array, shape (terms,)
-        Of each term and the residuals less their projection on the slopes.
+        Inner products of each term and the residuals less their projection on the slopes.
     squares : array, shape (terms,)
-        Of each term with itself.
+        Inner product of each term with itself.
     along : array, shape (terms, parameters)
-        Of each term and the ``orthonormal`` slopes.
+        Inner products of each term and the ``orthonormal`` slopes.
     least : float
     """
     from scipy.special import fdtrc  # only a fit needs scipy
