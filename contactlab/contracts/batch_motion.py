@@ -37,7 +37,7 @@ class BatchMotion:
 
     def __attrs_post_init__(self) -> None:
         if isinstance(self.status, Status):
-            return  # one impact: np.ndim is slower than this test
+            return  # faster than np.ndim for one impact
         if isinstance(self.detail, str) and np.ndim(self.status):
             details = np.full(np.shape(self.status), "", dtype=object)
             if self.detail:
@@ -114,7 +114,7 @@ class BatchMotion:
         *,
         axes: tuple[int, ...] = (),
     ) -> Self:
-        """Return the motion of impacts that were not computed: numbers are NaN, counts 0.
+        """Return the motion of impacts without a computation: numbers are NaN, counts 0.
 
         Parameters
         ----------
@@ -164,7 +164,7 @@ class BatchMotion:
 def _vectors_alike(
     columns: list[tuple[slice | Mask, Real]], axes: list[int]
 ) -> tuple[list[tuple[slice | Mask, Real]], tuple[int, ...]]:
-    """Return places and values, vectors if any is one, and the axes of each value."""
+    """Return places and values, all as vectors if any value is one, and the axes of each value."""
     longer = [np.ndim(value) > batch for (_, value), batch in zip(columns, axes, strict=True)]
     if not any(longer):
         return columns, ()

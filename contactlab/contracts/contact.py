@@ -36,7 +36,7 @@ class NormalContact(NamedTuple):
 
     @property
     def complete(self) -> NormalContact:
-        """The same contact, with max(P, 0) as friction load if it had none."""
+        """The same contact; a missing friction load becomes max(P, 0)."""
         force: Real = self.force
         load = self.friction_load
         if load is not None:

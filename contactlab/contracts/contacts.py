@@ -1,4 +1,4 @@
-"""What the contacts of a gathering went through."""
+"""Impulses, slip and work of the contacts of a gathering."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ VECTORS = ("impulse", "moment")
 
 @attrs.frozen(kw_only=True, eq=False)
 class Contacts:
-    """What a march of several contacts tells of each; contacts are the last axis of the batch.
+    """Results of each contact of a gathering; contacts are the last axis of the batch.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class Contacts:
     def merge(
         cls, parts: Sequence[tuple[slice | Mask, Contacts | None]], shape: tuple[int, ...]
     ) -> Self:
-        """Return those of a batch of ``shape`` from places and parts; NaN where there are none.
+        """Return the contacts of a batch of ``shape`` from places and parts; NaN elsewhere.
 
         Parameters
         ----------

@@ -26,8 +26,8 @@ class LawFaultError(Exception):
 class blaming:  # noqa: N801 a context manager with a lower-case name, as in contextlib
     """Context manager that turns any error but KeyboardInterrupt into a ``LawFaultError``.
 
-    A class, as a generator would cost each impact microseconds. Where half a microsecond counts,
-    ``blame`` stands in an ``except``.
+    This is a class, as a generator would cost each impact microseconds. Where half a microsecond
+    counts, an ``except`` calls ``blame``.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class blaming:  # noqa: N801 a context manager with a lower-case name, as in con
 
 
 def blame(law: Law, error: BaseException, step: int = 1) -> None:
-    """Raise the ``LawFaultError`` of what a law raised, unless it is one or KeyboardInterrupt."""
+    """Raise a ``LawFaultError`` for an error of a law; that error and KeyboardInterrupt pass."""
     if isinstance(error, KeyboardInterrupt | LawFaultError):
         return
     # SystemExit too: a plug-in must not end the process

@@ -94,7 +94,7 @@ class CoupledIntegrator(Integrator, way="marcher"):
 def resolution_for(
     integrator: Integrator, scene: Scene, normal: NormalMotion, tangential: TangentialLaw
 ) -> Real:
-    """Return the resolution that each impact takes, by the errors' or the option; 0 of none.
+    """Return the resolution of each impact, from the declared errors or the option; 0 without one.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def resolution_for(
 
 
 def accuracy_of(integrator: Law) -> float | None:
-    """Return the controlled error of psi2 over max(1, abs(psi1)); None if none is controlled.
+    """Return the controlled error of psi2 over max(1, abs(psi1)); None without control.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Judges of what laws answer: real numbers of the batch's shape, known, and of the right sign.
 
-Every way to solve an impact, integrators and prescribed paths ask these. What they refuse is
-``MALFORMED``, in the words of ``faults``.
+Every way to solve an impact, integrators and prescribed paths ask these. A refused answer has
+status ``MALFORMED``, in the words of ``faults``.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def below_zero(radius: Real, load: Real, largest: tuple[Real, Real]) -> str:
 
 
 def judge_contact(law: Law, contact: object, shape: tuple[int, ...], step: int) -> NormalContact:
-    """Return a contact with its friction load, or refuse what is none.
+    """Return a contact with its friction load; refuse an answer that is no contact.
 
     Parameters
     ----------
@@ -70,9 +70,9 @@ def judge_contact(law: Law, contact: object, shape: tuple[int, ...], step: int) 
 def wrong_response(
     response: TangentialResponse, shape: tuple[int, ...], axes: tuple[int, ...] = ()
 ) -> str:
-    """Return what of a response is not real numbers, or no mask, of the batch in words, or "".
+    """Return in words which entry of a response has wrong numbers or shape; "" if none has.
 
-    ``axes`` are those of a force beside the batch's.
+    ``axes`` are the axes of a force behind those of the batch.
     """
     force, work, settled, shear_loss = response
     for answer, wanted in ((force, (*shape, *axes)), (work, shape), (shear_loss, shape)):
@@ -85,7 +85,7 @@ def wrong_response(
 
 
 def stiffness_of(law: SteppedTangentialLaw, scene: Scene, normal: NormalMotion) -> Real:
-    """Return the stiffness in N/m that bounds a stable step; infinite if none is stable."""
+    """Return the stiffness in N/m that bounds a stable step; infinite if no step is stable."""
     return _read_declaration(law, "stiffness", law.stiffness(scene, normal), scene.shape)
 
 
@@ -95,7 +95,7 @@ def books_bound_of(law: TangentialLaw, scene: Scene) -> Real:
 
 
 def judge_errors(law: Law, errors: object, shape: tuple[int, ...]) -> Errors:
-    """Return declared errors: numbers from 0, or NaN where none is declared."""
+    """Return declared errors, numbers from 0; NaN where a law declares none."""
     if not isinstance(errors, Errors):
         raise _refusal(law, f"errors gave {quote(errors)}, not Errors", 1)
     for name, error in zip(errors._fields, errors, strict=True):
@@ -117,5 +117,5 @@ def _read_declaration(law: Law, name: str, value: Any, shape: tuple[int, ...]) -
 
 
 def _refusal(law: Law, what: str, step: int) -> faults.LawFaultError:
-    """Return the error of an answer that is refused."""
+    """Return the ``LawFaultError`` of a refused answer."""
     return faults.LawFaultError(Status.MALFORMED, faults.sentence(law, what, step))

@@ -71,7 +71,7 @@ class Law(ABC):
 
     #: An option of a law is one number, for all impacts.
     _plain_options: ClassVar[bool] = True
-    #: Of the base itself there is none.
+    #: The base class has no kind.
     _kind: ClassVar[str] = ""
     #: How laws of the class are run: the words of its contracts.
     _ways: ClassVar[frozenset[str]] = frozenset()
@@ -157,7 +157,7 @@ def requirements(law: Law) -> frozenset[str | type]:
 
 
 def resolution_of(law: Law) -> Any:
-    """Return the resolution of a law, a number: the usual one where nobody named it; None of none.
+    """Return the resolution of a law, named or usual; None if the law has none.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def resolution_of(law: Law) -> Any:
 
 @lru_cache(maxsize=128)
 def _usual(law: type[Law], name: str) -> float | None:
-    """Return what an option is usually; None if it does not say."""
+    """Return the usual value of an option; None if the option states none."""
     option = attrs.fields_dict(law).get(name) if attrs.has(law) else None
     usual: float | None = None if option is None else option.metadata.get("usual")
     return usual

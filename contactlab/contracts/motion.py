@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 T = TypeVar("T")
-#: Values that motions share at most; then all are made anew, so that memory stays bounded.
+#: Most values that motions share; beyond them all are made anew, so that memory stays bounded.
 MOST_SHARED = 8
 
 
@@ -47,7 +47,7 @@ class NormalSample(NamedTuple, Generic[Each]):
 
 
 class Units(NamedTuple):
-    """Units of impacts over those of the one impact that their motion has in other units.
+    """Units of impacts over the units of the one impact that all their motions follow.
 
     Attributes
     ----------
@@ -113,7 +113,7 @@ class NormalMotion(ABC):
     accuracy: float = math.nan
     #: True if the motions of all impacts are one but for their scale.
     alike: bool = False
-    #: What is known of the motion: "course", "ends" (final rate and load impulse), or "nothing".
+    #: Content of the motion: "course", "ends" (final rate and load impulse), or "nothing".
     _known: ClassVar[str] = "course"
 
     @property
@@ -123,7 +123,7 @@ class NormalMotion(ABC):
 
     @property
     def pattern(self) -> tuple[NormalMotion, Units] | None:
-        """One impact, whose motion that of each impact is in these units; None if none is known."""
+        """One impact whose motion, in these units, is that of every impact; None without one."""
         return None
 
     @property
@@ -132,7 +132,7 @@ class NormalMotion(ABC):
         return claims(self.law)
 
     def once(self, key: Hashable, make: Callable[[], T]) -> T:
-        """Return ``make()``, or what it returned before for this key and an equal motion.
+        """Return ``make()``, kept for later calls with this key and an equal motion.
 
         Parameters
         ----------

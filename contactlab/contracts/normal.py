@@ -74,7 +74,7 @@ class ClosedFormNormalLaw(NormalLaw, way="closed"):
 
 
 class UnfollowedNormalLaw(NormalLaw, way="unfollowed"):
-    """Base of normal laws some of whose motions no step can follow, as of clay.
+    """Base of normal laws with motions that no step can follow, as for clay.
 
     The friction load of such a motion does not pull. Tangential laws may answer it as a whole;
     impacts that would be marched are refused.
@@ -84,7 +84,7 @@ class UnfollowedNormalLaw(NormalLaw, way="unfollowed"):
     def unfollowed_rate(self, scene: Scene) -> Real | None:
         """Return the rate of approach at separation, in m/s, of motions that no step can follow.
 
-        It is NaN for impacts whose motion can be followed; None if each can.
+        NaN marks an impact that steps can follow; None says that they can follow all.
         """
 
 

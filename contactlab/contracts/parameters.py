@@ -1,4 +1,4 @@
-"""Options of laws that are read from the materials, or of which each impact has its own number."""
+"""Options of laws that follow from the materials, or that have one number for each impact."""
 
 from __future__ import annotations
 
@@ -41,7 +41,6 @@ def _by_compliance(first: Real, second: Real, materials: tuple[Material, Materia
 #: Each body's number weighted by its share of the approach, (1-nu²)/E: exact to first order for the
 #: relaxation times of Kelvin-Voigt bodies in series, which move in that share.
 BY_COMPLIANCE = Combined("the mean weighted by (1-nu²)/E", _by_compliance)
-#: The mean of both.
 MEAN = Combined("the mean of both", lambda first, second, _: 0.5 * (first + second))
 #: The square root of the product, as of surface energies.
 GEOMETRIC_MEAN = Combined(

@@ -24,13 +24,13 @@ from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array
 
-#: Velocities below this are so small that a response is proportional to them, to 1e-8 of itself:
-#: the path of this velocity is asked for, and scaled.
+#: Below this velocity a response is proportional to velocity, to 1e-8 of itself: the law answers
+#: at this velocity, and the answer is scaled.
 LINEAR_BELOW = 1e-8
 
 
 class Cost(NamedTuple):
-    """How a batch is solved.
+    """How a law solves a batch.
 
     Attributes
     ----------
@@ -112,7 +112,7 @@ class PathTangentialLaw(TangentialLaw, way="path"):
     """
 
     def cost(self, scene: Scene, accuracy: float | None) -> Cost:
-        """Return how a batch is best cut, and by what it is solved.
+        """Return the best size of a block of a batch, and what solves it.
 
         Parameters
         ----------

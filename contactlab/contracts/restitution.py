@@ -11,11 +11,11 @@ from contactlab.numeric.checks import Rule, quantity
 from contactlab.numeric.taken import Taken
 from contactlab.numeric.types import Real
 
-#: What laws of a restitution take where nobody gave one.
+#: Default restitution of laws, where the user gives none.
 TAKEN_RESTITUTION = Taken(0.9)
 #: Least coefficient of restitution of a law of dissipation.
 LEAST_RESTITUTION = 0.01
-#: The rule of a coefficient for each impact, without a law.
+#: The rule of a coefficient that no law narrows.
 RESTITUTIONS = Rule(
     lambda value: (value >= 0.0) & (value <= 1.0),
     "must be from 0 to 1: rebound over approach velocity",
@@ -23,7 +23,7 @@ RESTITUTIONS = Rule(
 
 
 def restitution_of(law: Law) -> Real | None:
-    """Return the option ``restitution`` of a law, a number or one of each; None without it."""
+    """Return the option ``restitution`` of a law, one number or one an impact; None without it."""
     e: Real | None = getattr(law, "restitution", None)
     return e
 

@@ -110,8 +110,8 @@ class SampledMotion(NormalMotion):
 class Ends(NamedTuple):
     """Ends of the normal motions that friction changed.
 
-    Each entry has the batch shape. A NaN rate marks impacts whose normal motion friction does not
-    change. A law that knows no duration or maximum returns NaN for it.
+    Entries have the batch shape. A NaN rate marks impacts whose normal motion friction does not
+    change. A law without a duration or maximum returns NaN for that entry.
 
     Attributes
     ----------
@@ -137,7 +137,7 @@ class Ends(NamedTuple):
 
     @classmethod
     def of(cls, normal: NormalMotion | Ends | None) -> Ends:
-        """Return the ends of a motion; None is one that friction does not change.
+        """Return the ends of a motion; None stands for a motion that friction does not change.
 
         Parameters
         ----------

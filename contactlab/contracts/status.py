@@ -19,10 +19,8 @@ class Status(Enum):
     UNSETTLED = "The tangential law found no division into stick and slip that passes its tests."
     UNRESOLVED = "The motion could not be followed to the tolerance asked for."
     UNBALANCED = "The energy books do not balance: energy came from nothing, or went nowhere."
-    NOT_SEPARATED = "The bodies did not part: the contact was given up."
-    MALFORMED = (
-        "A law's answer is not made of real numbers of the batch's shape, or of a wrong sign."
-    )
+    NOT_SEPARATED = "The bodies did not part within the steps allowed."
+    MALFORMED = "A law's answer is not real numbers of the batch's shape, or has a wrong sign."
     LAW_RAISED = "A law raised an error in the middle of the run."
     WORKER_DIED = "The process that was to compute this impact ended before it answered."
     INTERRUPTED = "The run was interrupted; this impact was not computed."
@@ -34,7 +32,7 @@ class Status(Enum):
 
 #: The status of one impact, or those of a batch.
 Statuses: TypeAlias = "Status | NDArray[np.object_]"
-#: What failed in one impact, in a sentence, or those of a batch; empty of a success.
+#: A sentence on the failure of one impact, or of each of a batch; empty for a success.
 Details: TypeAlias = "str | NDArray[np.object_]"
 
 

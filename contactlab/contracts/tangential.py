@@ -98,7 +98,7 @@ class TangentialResponse(NamedTuple):
 
 
 class Errors(NamedTuple):
-    """Declared bounds of numerical errors, of the batch shape; NaN is not declared.
+    """Declared bounds of numerical errors, of the batch shape; NaN means not declared.
 
     Attributes
     ----------
@@ -172,7 +172,7 @@ class TangentialLaw(Law, kind="tangential"):
         if kinetics.turns(scene) and "normal_spin" in claims(self):
             central = central & (scene.normal_spin == 0.0)
         found: tuple[WholeImpact, ...] = ()
-        if central is not False:  # of one impact, which it holds for, or of a batch
+        if central is not False:  # one impact is a bool
             found = (no_force(scene, where=central, reason="central impact, no slip velocity"),)
         if smooth is not False:
             found += (no_force(scene, where=smooth, reason="friction coefficient 0"),)
@@ -250,7 +250,7 @@ class ResolvingTangentialLaw(TangentialLaw, way="resolving"):
 
     @abstractmethod
     def resolutions(self, scene: Scene, normal: Law, integrator: Law) -> Resolutions | None:
-        """Return both resolutions of each impact, where nobody named them; None: the usual ones.
+        """Return resolutions of law and integrator for each impact; None stands for the usual ones.
 
         Impacts with the same pair of numbers are solved together, so that few pairs are best.
 
@@ -368,14 +368,14 @@ class SteppedTangentialLaw(TangentialLaw, way="stepped"):
 
 
 class CausalTangentialLaw(SteppedTangentialLaw, way="causal"):
-    """Base of stepped laws that take nothing of the motion to come, which friction may change.
+    """Base of stepped laws that need no knowledge of the later motion, which friction may change.
 
-    From ``begin`` on ``advance`` depends on its arguments only: the motion may have a larger
+    After ``begin``, ``advance`` depends on its arguments only: the motion may have a larger
     contact than the approach without friction, or several compressions.
     """
 
     def begin(self, scene: Scene, normal: NormalMotion, *, vectors: bool = False) -> Any:
-        """Return the state at first touch of a motion to come; by default that of ``start``.
+        """Return the state at first touch, without a motion to come; by default that of ``start``.
 
         Parameters
         ----------
@@ -396,8 +396,8 @@ class AllStepsTangentialLaw(SteppedTangentialLaw):
     ) -> AllStepsResponse | None:
         """Return, to rounding, the forces that ``advance`` returns step by step.
 
-        Each step reduces the slip velocity by force times kick over tangential mass. None: the
-        impacts are marched step by step, as a batch by a law that has single impacts only.
+        Each step reduces the slip velocity by force times kick over tangential mass. With None the
+        impacts are marched step by step, as a batch is where the law takes single impacts only.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""The tangential motion of an impact, and the instants that an observer sees of it."""
+"""The tangential motion of an impact, and its instants as an observer sees them."""
 
 from __future__ import annotations
 
@@ -48,8 +48,8 @@ class Sample(NamedTuple):
     fields: Callable[[], Mapping[str, Any]] = no_fields
 
 
-#: Called with each instant; it must not change its argument. If its attribute ``stepwise`` is
-#: False, it never calls ``Sample.fields``, and a law may take all steps in one call before.
+#: A function that is called with each instant, and must not change its argument. If its attribute
+#: ``stepwise`` is False, it never calls ``Sample.fields``, so a law may take all steps in one call.
 Observer: TypeAlias = Callable[[Sample], None]
 
 

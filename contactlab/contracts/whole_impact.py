@@ -85,7 +85,7 @@ class WholeImpact:
 
     @property
     def counters(self) -> Mapping[str, int]:
-        """What one impact counts."""
+        """The counters of one impact."""
         return {} if self.counter is None else {self.counter: 1}
 
 
@@ -111,7 +111,7 @@ class Tabulated(ABC):
     @staticmethod
     @abstractmethod
     def rebound(*impact: Any, **options: Any) -> Any:
-        """Return psi2, odd in psi1 to the last bit.
+        """Return psi2, an odd function of psi1 to the last bit.
 
         Parameters
         ----------
@@ -171,7 +171,7 @@ def from_change(
     counter: str | None = None,
     in_shear: Real | None = None,
 ) -> WholeImpact:
-    """Return the answer for impacts of which only the change of psi is known.
+    """Return the answer of impacts from their change of psi alone.
 
     Friction takes the tangential energy that shear leaves, and the energy books close by
     construction.

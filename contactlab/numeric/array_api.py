@@ -1,4 +1,4 @@
-"""Types of a library of the array API standard, as far as tables and impacts use one."""
+"""Types of the array API standard: the functions that tables and impacts use."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from contactlab.numeric.types import Array, Real
 
 
 class Traced(Protocol):
-    """An array of any library: numbers, truths or places."""
+    """An array of any library: numbers, bools or indices."""
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -40,7 +40,7 @@ class Traced(Protocol):
     def __ge__(self, other: Operand, /) -> Traced: ...
 
 
-#: What stands beside an array in a sum or a comparison.
+#: The other operand of a sum or a comparison with an array.
 Operand: TypeAlias = Union[float, "Traced"]
 #: A float, or arrays of any library: the same on both sides of a function.
 Computed = TypeVar("Computed", float, Array, Real, Traced)
@@ -77,7 +77,7 @@ class Library(Protocol):
         """Return the entries in another type."""
 
     def take(self, x: Traced, indices: Traced, /, *, axis: int) -> Traced:
-        """Return the entries at some places of an axis."""
+        """Return the entries at these indices of an axis."""
 
     def reshape(self, x: Traced, /, shape: tuple[int, ...]) -> Traced:
         """Return the entries in another shape."""

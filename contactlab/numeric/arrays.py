@@ -25,7 +25,7 @@ from contactlab.numeric.types import AnyArray, Array, Complex, Index, Kind, Mask
 #: Numbers in the array that ``keep_freed_memory`` releases: 8 MB, the tables of most batches.
 RELEASED = 1_000_000
 _new, _put = object.__new__, object.__setattr__
-if TYPE_CHECKING:  # checkers take ``abs`` of a number or an array for an object
+if TYPE_CHECKING:  # checkers infer object from ``abs``
 
     @overload
     def magnitude(value: Kind) -> Kind: ...
@@ -38,7 +38,7 @@ else:
 
 @lru_cache(maxsize=1)
 def keep_freed_memory() -> None:
-    """Let glibc keep up to 16 MB of freed memory for the next arrays, once a process."""
+    """Let glibc keep up to 16 MB of freed memory for later arrays; called once a process."""
     # It keeps twice the largest block ever released, at first 128 kB: then arrays of a batch come
     # and go by pages that the system must clear, which takes up to a third of the march.
     np.empty(RELEASED)
@@ -71,7 +71,7 @@ def stack_trees(items: Sequence[Any]) -> Any:
     if all(item is first for item in items) and not isinstance(first, np.ndarray):
         return first
     if all(item is None or isinstance(item, float | np.ndarray) for item in items):
-        items = [math.nan if item is None else item for item in items]  # not known of some
+        items = [math.nan if item is None else item for item in items]  # some impacts lack it
         first = items[0]
     if any(type(item) is not type(first) for item in items):
         return None  # bodies of different kinds: laws need the pair only
@@ -137,7 +137,7 @@ def change_entries(tree: Tree, **entries: object) -> Tree:
 def fill(kind: type[Tree], entries: Mapping[str, object]) -> Tree:
     """Return an object of a class without slots from all its entries, none of which is checked.
 
-    Where one impact takes microseconds, an ``__init__`` of a dozen arguments takes one of them.
+    An ``__init__`` of a dozen arguments takes a microsecond, which counts beside one impact.
     """
     tree: Tree = _new(kind)
     _put(tree, "__dict__", entries)
@@ -146,7 +146,7 @@ def fill(kind: type[Tree], entries: Mapping[str, object]) -> Tree:
 
 @cache
 def _entries(kind: type) -> tuple[tuple[str, ...], Callable[[object], Any]]:
-    """Return the names of the entries of a class of trees, and what reads them all at once."""
+    """Return the names of a class's entries, and a function that reads all of them at once."""
     fields = attrs.fields(kind)
     names = tuple(field.name for field in fields)
     if len(names) > 1:
@@ -155,7 +155,7 @@ def _entries(kind: type) -> tuple[tuple[str, ...], Callable[[object], Any]]:
 
 
 def none_for_nan(value: Tree) -> Tree | None:
-    """Return a value; None for NaN, which stands for None in arrays."""
+    """Return None for NaN, which stands for None in arrays; other values stay."""
     return None if isinstance(value, float) and value != value else value
 
 
@@ -225,7 +225,7 @@ def spread(value: Real, shape: tuple[int, ...]) -> Real:
 
 
 def of_each(value: Real, shape: tuple[int, ...]) -> Real:
-    """Return a number that all impacts of a batch share as one of each, an array as it is."""
+    """Repeat a number that all impacts share, one for each impact; an array stays as it is."""
     return value if not shape or np.ndim(value) >= len(shape) else spread(value, shape)
 
 
@@ -269,7 +269,7 @@ def shape_as(values: AnyArray, shape: tuple[int, ...]) -> object:
 
 
 def part_of(value: Real, part: Index) -> Real:
-    """Return the numbers of some impacts; a plain number is that of each."""
+    """Return the numbers of some impacts; a plain number holds for all of them."""
     return value[part] if isinstance(value, np.ndarray) else value
 
 
@@ -315,7 +315,7 @@ def choose(condition: Mask, if_true: Complex, if_false: Complex) -> Complex:
 
 
 def quotient(dividend: Real, divisor: Real) -> Real:
-    """Return a quotient; infinite where the divisor is 0, and NaN of 0/0."""
+    """Return a quotient; infinite where the divisor is 0, and NaN for 0/0."""
     if isinstance(dividend, float) and isinstance(divisor, float):
         return dividend / divisor if divisor else dividend * math.inf
     with np.errstate(all="ignore"):
@@ -323,7 +323,7 @@ def quotient(dividend: Real, divisor: Real) -> Real:
 
 
 def finite(numbers: Real) -> bool:
-    """Return whether a number, or every one of an array, is finite."""
+    """Return whether a number, or every entry of an array, is finite."""
     if isinstance(numbers, float):
         return math.isfinite(numbers)
     return bool(np.isfinite(numbers).all())

@@ -44,7 +44,7 @@ class Combination(Protocol):
 
 #: Classes whose objects have no labels: ``real`` does not look for any.
 UNLABELLED = frozenset({np.ndarray, list, tuple, int, float, np.float64})
-#: Entries of a list whose labels are looked for: rows are few, and of one class.
+#: Number of entries of a list that are searched for labels: all rows are mostly of one class.
 FEW_ENTRIES = 8
 
 FINITE = Rule(lambda value: value == value, "must be a finite real number")
@@ -131,7 +131,7 @@ def real(
         array = np.asarray(value)
     except ValueError:
         raise refuse(argument, value, "must be a number or a regular array", remedy) from None
-    except Exception as error:  # of sparse arrays, of other devices, of types that NumPy has not
+    except Exception as error:  # sparse arrays, other devices, types that NumPy lacks
         raise refuse(argument, value, f"cannot be read by NumPy: {error}", remedy) from error
     if array.dtype.kind not in "iuf":
         raise refuse(argument, value, "must be a real number", remedy)
@@ -151,7 +151,7 @@ def real(
 
 
 def derive(name: str, value: object, remedy: str, **given: object) -> Real:
-    """Return a positive number that follows from ``given`` ones, or refuse those that lose it."""
+    """Return a positive number computed from ``given`` ones; refuse an overflow or underflow."""
     try:
         return real(name, value, rule=POSITIVE, empty=True)
     except ValueError:
@@ -165,7 +165,7 @@ def check_place(argument: str, value: object) -> None:
     """Refuse an array whose labels, unit or mask would be lost, or that has no numbers yet."""
     try:
         why = forbid_position(value)
-    except TypeError as error:  # of sparse tensors
+    except TypeError as error:  # sparse tensors raise
         raise refuse(argument, value, f"cannot be read by NumPy: {error}") from error
     if why:
         raise refuse(argument, value, *why)
@@ -214,14 +214,14 @@ def _check_field(
 ) -> Real | None:
     """Return the checked value of a field of ``owner``, the object that is being made."""
     if type(value) is float and isfinite(value) and field.metadata["rule"].holds(value):
-        return value  # the remedy of a refusal takes longer to write than a number to check
+        return value  # writing the remedy of a refusal takes longer than this check
     if value is None and field.default is None:
         return None
     if type(value) is Taken:
-        return value  # by the author of the class
+        return value  # the class's own default
     meta = field.metadata
     if "instead" in meta and meta["instead"](value):
-        return value  # type: ignore[return-value]  # by the author of the class
+        return value  # type: ignore[return-value]  # the class converts it
     remedy = unit_remedy(meta["unit"])
     if "unknown" in meta:
         return real_or_nan(field.name, value, rule=meta["rule"], remedy=remedy, empty=meta["empty"])
@@ -236,7 +236,7 @@ def _check_field(
 def real_or_nan(
     argument: str, value: object, *, rule: Rule = FINITE, remedy: str = "", empty: bool = False
 ) -> Real:
-    """Return ``real``, of an array in which NaN stands for an impact without the number."""
+    """Return what ``real`` does; NaN in an array marks an impact without the number."""
     if (numbers := _read_gaps(value)) is None:
         return real(argument, value, rule=rule, remedy=remedy, empty=empty)
     real(argument, numbers[~np.isnan(numbers)], rule=rule, remedy=remedy, empty=True)
@@ -246,12 +246,12 @@ def real_or_nan(
 
 
 def _read_gaps(value: object) -> Array | None:
-    """Return an array, or a list, of numbers with NaN among them as an array; else None."""
+    """Return numbers with NaN among them as an array; None for any other value."""
     if not isinstance(value, np.ndarray | list | tuple):
         return None
     try:
-        numbers = np.asanyarray(value)  # a mask stays, to be refused
-    except Exception:  # lists of several lengths, refused as all that are no numbers
+        numbers = np.asanyarray(value)  # masked arrays are refused later
+    except Exception:  # lists of unequal lengths are refused later
         return None
     some = numbers.ndim > 0 and numbers.dtype.kind == "f" and bool(np.isnan(numbers).any())
     return numbers if some else None
@@ -260,7 +260,7 @@ def _read_gaps(value: object) -> Array | None:
 def key(value: Real | None) -> object:
     """Return a key for equality and hash of a quantity; arrays have no usable one.
 
-    A number that was taken is another than the same number given.
+    A default of class ``Taken`` differs from the same number from a user.
     """
     if type(value) is Taken:
         return Taken, float(value)
@@ -311,7 +311,7 @@ def quantity(
     instead : callable, optional
         True of a value that stands in place of numbers; the class makes numbers of it.
     """
-    keywords: Any = {"kw_only": True} if kw_only else {}  # False would override the class
+    keywords: Any = {"kw_only": True} if kw_only else {}  # False would override the class's True
     further: dict[str, Any] = {"unknown": True} if unknown else {}
     read = ["one number, or one an impact"] if per_impact else []
     if per_impact:

@@ -11,19 +11,19 @@ import numpy as np
 
 from contactlab.numeric.types import AnyArray
 
-#: Packages of arrays that NumPy would pair by position, compute at once or lose the trace of, by
-#: the package of their classes.
+#: Packages of arrays, by the package of their classes. NumPy would pair such arrays by position,
+#: compute them at once or lose their trace.
 LIBRARIES = {
     "xarray": "xarray", "pandas": "pandas", "dask": "dask", "jax": "jax", "jaxlib": "jax",
     "torch": "torch",
 }  # fmt: skip
-#: Packages of tables, which have columns with names as those of pandas have.
+#: Packages of tables, whose columns have names as in pandas.
 TABLES = ("polars", "pyarrow")
-#: Attributes of quantities, of astropy and of pint, by the attribute that holds the unit.
+#: The attribute that gives plain numbers, by the one that holds the unit: of astropy, of pint.
 QUANTITIES = {"unit": "to_value", "units": "magnitude"}
-#: Units of numbers without one.
+#: Words that quantities without a unit have as their unit.
 NO_UNIT = ("", "dimensionless", "None")
-#: Attributes of the arrays of packages that have other classes too.
+#: Attributes that tell arrays from other objects of their package.
 ONLY_OF = {"pandas": "iloc", "torch": "detach"}
 #: The refusal of a table.
 OF_COLUMNS = (
@@ -108,7 +108,7 @@ def _unread(value: Any) -> tuple[str, str] | None:
                 "give plain numbers in SI units: .to_value(unit) of astropy, .m_as(unit) of pint"
             )
             return f"has the unit {unit}, which would be lost here", remedy
-    # what has no mask is not masked, and numpy.ma takes 8 ms to import
+    # importing numpy.ma takes 8 ms
     if hasattr(value, "_mask") and np.ma.is_masked(value):
         return "must have no masked entries", "fill or drop them"
     if type(value).__module__.partition(".")[0] in TABLES and hasattr(value, "columns"):

@@ -1,6 +1,6 @@
-"""Numbers by name that a plug-in chose: properties of a material, options of one number an impact.
+"""Numbers by names that plug-ins choose: properties of materials, options with a number an impact.
 
-A name may have its unit behind, as headings of files do: ``"relaxation_time (s)"``.
+A unit may follow the name, as in headings of files: ``"relaxation_time (s)"``.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ HEADING = re.compile(r"([A-Za-z_][\w.]*)(?: \((\S[^()]*(?:\([^()]*\))?[^()]*)\))
 
 
 class Named(Mapping[str, Any]):
-    """Numbers or arrays by name, which nothing changes."""
+    """Numbers or arrays by name, read-only."""
 
     __slots__ = ("_numbers",)
 
@@ -58,7 +58,7 @@ NOTHING = Named()
 
 @attrs.frozen(eq=False)
 class OfImpacts:
-    """The numbers of the impacts of a scene, and a mark of the array they were taken from.
+    """One number for each impact of a scene, and a hash of the array they come from.
 
     Attributes
     ----------
@@ -91,7 +91,7 @@ def split_heading(heading: str) -> tuple[str, str]:
 
 
 def numbers_by_name(argument: str, given: object, *, taken: tuple[str, ...] = ()) -> Named:
-    """Return numbers by name, checked; ``taken`` names stand elsewhere.
+    """Return checked numbers by name; a name in ``taken`` is an argument of its own.
 
     An array may hold NaN, of an impact for which the number is not known.
     """
@@ -106,7 +106,7 @@ def numbers_by_name(argument: str, given: object, *, taken: tuple[str, ...] = ()
     for heading, value in table.items():
         name = split_heading(heading)[0] if isinstance(heading, str) else ""
         if not (name and HEADING.fullmatch(heading)) or "." in name:
-            rule = "must be a name without blanks, which may have its unit behind"
+            rule = "must be a name without blanks, and maybe its unit in brackets"
             raise refuse(f"{argument}: name", heading, rule, "such as 'relaxation_time (s)'")
         if name in taken:
             raise refuse(f"{argument}: name", heading, f"is the argument {name}", "give it there")

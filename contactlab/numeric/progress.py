@@ -10,7 +10,7 @@ from typing import Self, TypeAlias
 
 from contactlab.numeric.checks import refuse
 
-#: What is called after each item, as ``count(done, total)``.
+#: A function that is called after each item, as ``count(done, total)``.
 Count: TypeAlias = Callable[[int, int], object]
 #: How a bar that is no function, as tqdm's, is moved by one.
 OF_A_BAR = "give True, or: bar = tqdm(); progress=lambda done, total: bar.update(done - bar.n)"
@@ -70,7 +70,7 @@ class Progress:
 def follow(
     wanted: bool | Count | None, what: str
 ) -> contextlib.AbstractContextManager[Count | None]:
-    """Return a context of what is called after each item: a function, the progress line, or None.
+    """Return a context with the function to call after each item, the progress line, or None.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Numbers that stand in for those that nobody gave."""
+"""Defaults that only a measurement could replace."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ import attrs
 
 
 class Taken(float):
-    """A default that nobody can know: the restitution of two bodies, their adhesion, their yield.
+    """A default for what only a measurement can tell: restitution, adhesion, yield.
 
-    An author writes one as the default of an option; results then caution of it until a number is
-    given, and an equal number that somebody gave makes another law.
+    An author writes it as the default of an option. Results then caution until the user gives a
+    number; an equal number from the user makes another law.
     """
 
     __slots__ = ()
 
 
 def list_assumptions(law: object) -> dict[str, float]:
-    """Return the numbers that a law took as nobody gave them, by the names of its options."""
+    """Return the ``Taken`` defaults of a law that the user left, by the names of its options."""
     law_class: type = type(law)
     names = _options(law_class)
     return {

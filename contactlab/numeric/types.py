@@ -66,9 +66,9 @@ class Column(Labelled, Protocol):
     def values(self) -> object: ...  # noqa: D102
 
 
-#: What a user may give as real numbers where the answer is of NumPy.
+#: Arguments that are read as real numbers where the answer is of NumPy.
 Plain: TypeAlias = Number | Many
-#: What a user may give as real numbers: those, and a column of a table.
+#: Arguments that are read as real numbers, columns of tables too.
 Numbers: TypeAlias = Plain | Column
 
 #: Numbers, words, lists and tables, as a file of JSON has them.

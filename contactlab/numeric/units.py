@@ -26,11 +26,11 @@ SAME_UNITS = {
 
 
 def factor(unit: str, own: str) -> float | None:
-    """Return the factor from a unit to that of a quantity; None if it is no unit of it."""
+    """Return the factor from a unit to that of a quantity; None if it measures another one."""
     return 1.0 if unit == own else CONVERSIONS.get((unit, own))
 
 
 def convertible(own: str) -> str:
-    """Return the units that are read for a quantity in ``own``, as ``m, mm, cm, in or ft``."""
+    """Return the units that convert to ``own``, as ``m, mm, cm, in or ft``."""
     *units, last = own, *(unit for unit, to in CONVERSIONS if to == own)
     return f"{', '.join(units)} or {last}" if units else last

@@ -125,8 +125,8 @@ class LoadPath(Answer):
     def work(self) -> Array:
         """Work done on the contact by the displacement since the first point, in J.
 
-        The trapezium rule over the points. Work beyond the friction work is in the springs; less
-        work than 0 is energy that the contact has made.
+        The trapezium rule over the points. Work beyond the friction work is in the springs;
+        negative work is energy that the law makes.
         """
         mean = 0.5 * (self.friction_force[1:] + self.friction_force[:-1])
         done = np.cumsum(mean * np.diff(self.displacement, axis=0), axis=0)
@@ -242,7 +242,7 @@ def load_path(
 def _laws(
     scene: Scene, normal: object, tangential: object
 ) -> tuple[NormalLaw, SteppedTangentialLaw, Scene]:
-    """Return the two laws of a path, with what materials give, and the scene; or refuse them."""
+    """Return the two laws of a path, with options from the materials, and the scene; or refuse them."""
     first = composition.law("normal", normal)
     second = composition.law("tangential", tangential)
     rule = "must be a law of steps, a SteppedTangentialLaw"
@@ -292,7 +292,7 @@ def _path(
     )
     if times:
         first = times[0][1] - times[0][0] if count > 1 else hertz_scales(scene).duration
-        origin = np.asarray(times[0][0] - first)  # the contact is pressed as slowly as it goes on
+        origin = np.asarray(times[0][0] - first)  # first pressing at the rate of the first step
         return Points(times[0] - origin, depth, moved), origin, scene
     step = SLOW * np.asarray(hertz_scales(scene).duration)
     even = step * np.arange(1, count + 1).reshape(-1, *(1,) * len(shape))
@@ -302,7 +302,7 @@ def _path(
 def _follow_parts(
     laws: tuple[NormalLaw, SteppedTangentialLaw], scene: Scene, points: Points
 ) -> Followed:
-    """Return what the laws answer; in a batch a law that raises costs the paths that raise only."""
+    """Return the answers of the laws; a law that raises fails only the paths on which it does."""
     try:
         return follow_path(*laws, scene, points)
     except faults.LawFaultError as fault:

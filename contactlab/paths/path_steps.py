@@ -1,4 +1,4 @@
-"""Steps of laws along a path that does not heed their forces."""
+"""Steps of laws along a prescribed path, which their forces do not change."""
 
 from __future__ import annotations
 
@@ -127,8 +127,7 @@ def _steps(
     places = zip(_rows(points.approach), _rows(rates), strict=True)
     rows = zip(*(_rows(each) for each in (moved, velocity, drift)), places, contacts, strict=True)
     for blamed.step, (by, speed, time, place, after) in enumerate(rows, 1):
-        # The force acts on no body: the path is prescribed.
-        # A path without times is slow: rates say nothing.
+        # The path is prescribed, so the force acts on no body; without times, rates mean nothing.
         sampled = (
             Sampled(place[0], place[1], speed, 0.0 * speed, 0.0 * speed) if np.any(time) else None
         )
@@ -139,7 +138,7 @@ def _steps(
 def _judge(
     laws: tuple[Law, Law], columns: dict[str, Array], unsettled: NDArray[np.bool_]
 ) -> tuple[Statuses, str]:
-    """Return statuses and the sentence of the first failure; what follows a failure is NaN."""
+    """Return statuses and the sentence of the first failure; numbers after a failure are NaN."""
     normal, tangential = laws
     shape = unsettled.shape[1:]
     status = np.full(shape, Status.SUCCESS, dtype=object)

@@ -1,4 +1,4 @@
-"""What plug-ins bring, by name: each name means one thing, and whose it is can be said.
+"""What plug-ins bring, by name: each name means one thing of one distribution.
 
 The names of things follow the rule of laws: ``distribution:name`` is unique, ``name`` alone means
 contactlab's own, else that of the only distribution that offers it; if several do, it is refused.
@@ -20,14 +20,14 @@ _KEPT: dict[str, tuple[object, dict[str, Any]]] = {}
 
 
 def state() -> object:
-    """Return what changes where plug-ins come, go or are blocked."""
+    """Return a value that changes when plug-ins come, go or are blocked."""
     return MANAGER.changes, os.environ.get(BLOCK_VARIABLE, "")
 
 
 def own_first(kind: str) -> bool:
     """Return whether contactlab's own things of a kind keep their names, whatever is installed.
 
-    They do unless a plug-in of this program answers too, or something is blocked.
+    A plug-in of this program that answers too, or a blocked plug-in, takes them.
     """
     return not (os.environ.get(BLOCK_VARIABLE) or MANAGER.answers_here(HOOKS[kind]))
 
@@ -35,7 +35,7 @@ def own_first(kind: str) -> bool:
 def sound(
     kind: str, of: type[T], fault: Callable[[T], str] = lambda _: "", **arguments: Any
 ) -> list[Told]:
-    """Return what plug-ins bring of a kind; what is not of the class ``of``, or faulty, is told.
+    """Return what plug-ins bring of a kind; warn of what is faulty or not of the class ``of``.
 
     ``fault`` returns what is wrong with a thing of another distribution, or nothing.
     """
@@ -62,7 +62,7 @@ def by_name(
     fault: Callable[[T], str] = lambda _: "",
     again: bool = True,
 ) -> Mapping[str, T]:
-    """Return what plug-ins bring of a kind by name; what ``sound`` leaves out is told once.
+    """Return what plug-ins bring of a kind by name; warn once of what ``sound`` leaves out.
 
     A name of several distributions other than contactlab is left out, and each is under its name
     with the distribution before it. A name that one distribution brings twice is left out, and
@@ -89,7 +89,7 @@ def by_name(
 
 
 def _once(name: str, several: list[Told]) -> list[Told]:
-    """Return the things of a name without those of distributions that bring it twice, told."""
+    """Return the things of a name; warn of, and drop, those that a distribution brings twice."""
     counts = Counter(told.info.distribution for told in several)
     for told in several:
         own = told.info.distribution
@@ -105,7 +105,7 @@ def _once(name: str, several: list[Told]) -> list[Told]:
 
 def find_thing(rivals: list[Told]) -> Told | None:
     """Return what a name means among things of that name, or None if it is refused."""
-    for origin in (HERE, PROJECT):  # who registers in a program means it
+    for origin in (HERE, PROJECT):  # what a program registers is meant
         own = [told for told in rivals if told.info.distribution == origin]
         if own:
             return own[0]

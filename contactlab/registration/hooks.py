@@ -30,10 +30,10 @@ if TYPE_CHECKING:
 #: Marks a plug-in's implementation: ``@contactlab.hookimpl``.
 hookimpl = pluggy.HookimplMarker(PROJECT)
 _specification = pluggy.HookspecMarker(PROJECT)
-#: What runs a command: from its arguments to the exit status.
+#: The function that runs a command: it takes the arguments and returns the exit status.
 Execute: TypeAlias = "Callable[[argparse.Namespace], int]"
 
-#: What a plug-in without the hook is told.
+#: Remedy for a plug-in without its hook.
 REMEDIES = {
     "contactlab_law": "name the class in the entry point, {module}:Class, "
     "or define @contactlab.hookimpl def contactlab_law(name)",
@@ -156,7 +156,7 @@ FURTHER = {"options": ("contactlab_scene_file",)}
 def guard(source: str, failed: str, *, silent: bool = True) -> Iterator[None]:
     """Keep a plug-in from ending the program or printing to stdout, which a program may read."""
     try:
-        # sys.stdout belongs to all threads: what is asked in every run leaves it alone
+        # all threads share sys.stdout: hooks of every run leave it alone
         with contextlib.redirect_stdout(sys.stderr) if silent else contextlib.nullcontext():
             yield
     except KeyboardInterrupt:

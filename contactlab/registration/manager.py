@@ -47,7 +47,7 @@ from contactlab.registration.names import (
     short_name,
 )
 
-#: Seconds of an import above which an author is told.
+#: An import that takes more seconds warns the author.
 SLOW = 3.0
 #: Order of kinds in a list.
 RANK = {kind: place for place, kind in enumerate(ALL_KINDS)}
@@ -66,13 +66,14 @@ class Manager(pluggy.PluginManager):
     A plug-in's name is its distribution and module, ``mylab-contact:mylab.materials``. Plug-ins are
     asked in this order, whenever they were imported: those registered at run time, the last one
     first, contactlab's own, others by name; ``tryfirst`` and ``trylast`` go before it. Each is
-    asked alone, with the wrappers of all, so that one which raises takes no answer from others.
+    asked alone, with the wrappers of all, so that one that raises does not lose the answers of
+    others.
     """
 
     def __init__(self) -> None:
         super().__init__(PROJECT)
         self.add_hookspecs(hooks)
-        #: Grows with each plug-in that comes or goes: who keeps answers compares it.
+        #: Grows with each plug-in that comes or goes; caches of answers compare this number.
         self.changes = 0
         #: Classes of laws that are registered in this program, by kind and name.
         self.laws: dict[str, type] = {}
@@ -182,7 +183,7 @@ class Manager(pluggy.PluginManager):
         with guard(info.source, "could not be imported"):
             plugin = metadata.EntryPoint(info.name, info.module, PROJECT).load()
         took = time.perf_counter() - started
-        if took > SLOW and info.distribution != PROJECT:  # of ours no user can mend it
+        if took > SLOW and info.distribution != PROJECT:  # a user cannot mend ours
             rule = f"took {took:.0f} s to import, and every command that asks for its kind waits"
             remedy = "import what takes long where it is used, in the function"
             warnings.warn(f"{info.source} {rule}; {remedy}", PluginWarning, stacklevel=4)
@@ -194,7 +195,7 @@ class Manager(pluggy.PluginManager):
         if known is not None:
             self.unregister(known)
         self._infos[name] = info
-        self.faults.pop(info.qualified, None)  # what is imported anew is judged anew
+        self.faults.pop(info.qualified, None)  # a new import is judged anew
         theirs = [each for each in self.installed() if each.module == info.module]
         declared = {hook for each in theirs for hook in _hooks(each.kind)}
         place = self._place(name)
@@ -243,7 +244,7 @@ class Manager(pluggy.PluginManager):
         self._load((kind, only, os.environ.get(BLOCK_VARIABLE, "")), again=again)
 
     def _load(self, key: tuple[str, str, str], *, again: bool) -> None:
-        """Load the plug-ins of a kind, what is only wanted of them, and what is blocked."""
+        """Load the plug-ins of a kind, all or one name of them, but not the blocked ones."""
         kind, only, _ = key
         if kind not in COLLECTIONS:
             return
@@ -266,8 +267,8 @@ class Manager(pluggy.PluginManager):
     ) -> list[Told]:
         """Return what all plug-ins bring of a kind, with the plug-in of each.
 
-        A kind that is asked for in every run is not ``silent``: nothing keeps it from stdout, and
-        no folder is looked at again.
+        A kind that every run asks for is not ``silent``: its hooks may print, and no folder is read
+        again.
         """
         blocked = os.environ.get(BLOCK_VARIABLE, "")  # asking takes long
         self._load((kind, only, blocked), again=silent)
@@ -296,7 +297,7 @@ class Manager(pluggy.PluginManager):
         return found
 
     def _find_hooks(self, hook: str, blocked: str) -> list[tuple[PluginInfo, Callable[..., Any]]]:
-        """Return the plug-ins with a hook, in order, and what asks each alone with all wrappers.
+        """Return the plug-ins with a hook, in order, and the callers that ask each of them alone.
 
         Those that are ``blocked`` are left out.
         """
@@ -341,7 +342,7 @@ class Manager(pluggy.PluginManager):
 
 
 def no_list(answer: object) -> bool:
-    """Return whether an answer is one thing, or none that can be listed; None lists nothing."""
+    """Return whether an answer is no list of things; None counts as an empty list."""
     one = isinstance(answer, str | bytes | Mapping) or hasattr(answer, "_fields")
     return answer is not None and (one or not isinstance(answer, Iterable))
 

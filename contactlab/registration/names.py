@@ -12,7 +12,7 @@ from pathlib import Path
 
 import attrs
 
-#: Name of the program, of its own distribution and of the group of entry points.
+#: Name of the program, of its distribution and of its group of entry points.
 PROJECT = "contactlab"
 BLOCK_VARIABLE = "CONTACTLAB_BLOCK_PLUGINS"
 KINDS = ("normal", "tangential", "integrator")
@@ -21,8 +21,8 @@ COMMAND = "command"
 #: The kind of an entry point that offers a page of the guide: ``page.fitting = "package"``, the
 #: file ``fitting.md`` of that package.
 PAGE = "page"
-#: Kinds that every plug-in is asked for at once: ``materials.polymers``. Those of one name do not
-#: clash; what they bring does (see ``bring.by_name``).
+#: Kinds that every plug-in is asked for at once: ``materials.polymers``. Equal names do not clash;
+#: what they bring does (see ``bring.by_name``).
 COLLECTIONS = (
     "materials", "columns", "shapes", "cases", "checks", "measurements", "cautions", "options",
 )  # fmt: skip
@@ -51,7 +51,7 @@ def name_from(folder: Path, name: str, *, trusted: bool) -> str:
     """Return a name in a file of ``folder``: the path of a law in a file begins there."""
     if re.search(r"\.py(:|$)", name):
         name = str(folder / os.path.expanduser(name))
-    # The mark stands on the text itself, so that no door that takes names can forget it.
+    # The text itself carries the mark, so that no function that takes names can forget it.
     return Untrusted(name) if is_place(name) and not trusted else name
 
 

@@ -1,4 +1,4 @@
-"""Which scenes a law runs: it may refuse one itself, and needs units where its options have any."""
+"""Which scenes a law runs: a law may refuse a scene, and options with units need a scene with units."""
 
 from __future__ import annotations
 
@@ -34,19 +34,19 @@ def with_units(law_class: type[Law]) -> tuple[Option, ...]:
 
 
 def in_units(law: Law) -> tuple[Option, ...]:
-    """Return the options with a unit that a law was given or took by default; None is no value."""
+    """Return the options with a unit whose value, from the user or by default, is not None."""
     return tuple(each for each in with_units(type(law)) if getattr(law, each.name) is not None)
 
 
 def may_refuse(law: Law) -> bool:
-    """Return whether there are scenes that ``accept`` refuses for a law."""
+    """Return whether ``accept`` can refuse a scene for a law."""
     return type(law).accept is not Law.accept or bool(in_units(law))
 
 
 def accept(law: Law, scene: Scene) -> None:
     """Refuse a scene without units to options that have one; let the law refuse it.
 
-    Whatever else a law raises is a refusal too.
+    Any error that the law raises counts as a refusal.
     """
     if not scene.has_units and (options := in_units(law)):
         name, unit = options[0]

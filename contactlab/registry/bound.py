@@ -74,7 +74,7 @@ def bind_law(law: Law, scene: Scene) -> tuple[Law, dict[str, Any]]:
 
 
 def _each(name: str, unit: str, value: Array, scene: Scene) -> OfImpacts:
-    """Return the numbers of the impacts of a scene; a part of a batch has had them before."""
+    """Return the numbers of the impacts of a scene; part of a batch already holds its own."""
     before: OfImpacts | None = scene._options.get(f"{name} ({unit})")
     if before is not None and before.whole == mark_of(value):
         return before
@@ -84,7 +84,7 @@ def _each(name: str, unit: str, value: Array, scene: Scene) -> OfImpacts:
 def _from_materials(law: Law, option: Read, scene: Scene) -> Law:
     """Return a law with an option that two materials give.
 
-    It is as it is if they have none, or if another option stands in its place.
+    The law stays as it is if they have none, or if another option stands in its place.
     """
     name, unit = option.name, option.unit
     place = f"{law_kind(law)}: {name}"
@@ -111,7 +111,7 @@ def _from_materials(law: Law, option: Read, scene: Scene) -> Law:
     try:
         attrs.evolve(changed, **{name: float(np.nanmax(next(iter(found.values()))))})
     except ValueError:
-        # Another option was given that says the same otherwise, as a restitution does: it stands.
+        # The user gave another option for the same quantity, such as a restitution.
         return law
     if lacking := [body for body in bodies if body not in found]:
         _refuse_misspelt(law, name, {body: bodies[body] for body in lacking})
@@ -138,12 +138,12 @@ def _from_materials(law: Law, option: Read, scene: Scene) -> Law:
 
 
 def _same(given: Real, value: Real) -> bool:
-    """Return whether an option has the value that the materials give, as of a law of a run."""
+    """Return whether an option equals the value that the materials give, as after a run."""
     return np.shape(given) == np.shape(value) and bool(np.all(given == value))
 
 
 def _refuse_misspelt(law: Law, name: str, bodies: Mapping[str, Body]) -> None:
-    """Refuse a property that is nearly, and not, the name that a law reads."""
+    """Refuse a property whose name is a misspelling of a name that a law reads."""
     known = {option.name for option in options_read(type(law))}
     for body, each in bodies.items():
         for heading in each.material.properties:

@@ -1,4 +1,4 @@
-"""What three laws can do: found once when they are composed, as every run asks it."""
+"""What three laws can do: worked out once when they are composed, as every run asks."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ from contactlab.registry.capability import Capability
 from contactlab.registry.law_classes import is_law_class, unfit
 from contactlab.registry.registry import REGISTRY, PluginError
 
-#: Defaults are plug-in names: of a list the first that is installed and fits. Coulomb's law at
+#: Defaults are plug-in names; from a list the first that is installed and fits is taken. Coulomb's law at
 #: every point comes first, for any normal law with a radius, then laws that need less.
 DEFAULT_NORMAL = "hertz"
 PREFERRED = {
@@ -38,7 +38,7 @@ PREFERRED = {
 #: Laws that the core and the studies request by purpose: exact answers between elastic spheres,
 #: fixed steps, prescribed paths, and a restitution.
 EXACT = {"tangential": "fronts", "integrator": "events"}
-#: Option of the exact law that follows every impact, none from a table.
+#: Option of the exact law by which it follows every impact and reads no table.
 FOLLOWED = {"table": False}
 FIXED_STEPS = "symplectic"
 #: Integrators of fixed steps under which laws are mapped, the usual one first.
@@ -52,7 +52,7 @@ FOR_COUPLED = (EXACT, {"tangential": ON_A_PATH, "integrator": FIXED_STEPS})
 RESTITUTION = {"normal": "viscoelastic", "tangential": "springs"}
 #: Contracts of tangential laws that can be run; every law must be derived from one of them.
 WAYS = (SteppedTangentialLaw, PathTangentialLaw, WholeImpactTangentialLaw)
-#: Their words; of laws that answer to steps, and in no other way.
+#: The words of ``WAYS``.
 RUN = frozenset({"stepped", "path", "whole"})
 STEPS = {"stepped"}
 
@@ -75,7 +75,7 @@ class Laws:
     reason: str = ""
     asked: Laws | None = None
     capability: Capability = attrs.field(init=False, eq=False, repr=False)
-    #: What stands in for these laws, by what it was asked for: to compose laws takes longer.
+    #: Laws that stand in for these, by the arguments of the question; composing laws takes longer.
     stand_ins: dict[Any, Laws] = attrs.field(init=False, eq=False, repr=False, factory=dict)
 
     @capability.default
@@ -98,7 +98,7 @@ class Laws:
         return attrs.evolve(self, **laws)
 
 
-#: Words for what a law needs of a normal law, and for the laws that an integrator runs.
+#: Sentences for the words that a law needs of a normal law, or an integrator of its laws.
 NEEDS = {
     "elastic_hertz": "elastic Hertz contact",
     "radius": "a contact radius",
@@ -139,7 +139,7 @@ def law(kind: str, value: object, **options: object) -> Law:
 
 @lru_cache(maxsize=128)
 def _with_defaults(name: str, _: type[Law]) -> Law:
-    """Return the law of a name with its defaults; laws are immutable, so that one serves all."""
+    """Return the law of a name with its defaults; one immutable law serves all simulations."""
     # The class is part of the key: another plug-in may take the name over.
     return REGISTRY.create(name)
 
@@ -167,7 +167,7 @@ def compose(normal: object, tangential: object, integrator: object) -> Laws:
 
 @lru_cache(maxsize=256)
 def _by_names(normal: object, tangential: object, integrator: object, _: object) -> Laws:
-    """Return the laws that fit of three names; the plug-ins at hand are part of the key."""
+    """Return three laws that fit, by their names; the plug-ins at hand are part of the key."""
     return _compose(normal, tangential, integrator)
 
 
@@ -233,7 +233,7 @@ def _prefer(kind: str, *before: Law, after: tuple[Law, ...] = ()) -> tuple[str, 
 def _refuse_rigid(
     rigid: str, elastic: Sequence[tuple[str, TangentialLaw]], normal: Law, integrator: Law
 ) -> None:
-    """Refuse an integrator beside which no friction law is left but one of rigid bodies."""
+    """Refuse an integrator that runs no friction law but that of rigid bodies."""
     for name, tangential in elastic:
         if _fits(normal, tangential):
             runs, _ = _prefer("integrator", normal, tangential)
@@ -269,7 +269,7 @@ def misfit(normal: Law, tangential: Law, integrator: Law | None = None) -> str |
 
 
 def _lacking(law: Law, other: Law) -> str | None:
-    """Return what a law needs and another has not, with the names of both; or None."""
+    """Return what one law needs and another lacks, with the names of both; or None."""
     others = law_kind(other)
     lacking = [need for need in requirements(law) if not _has(other, others, need)]
     if not lacking:
@@ -285,7 +285,7 @@ def _lacking(law: Law, other: Law) -> str | None:
 
 
 def _has(law: Law, kind: str, need: str | type) -> bool:
-    """Return whether a law has what is needed; what laws of other kinds must have is no matter."""
+    """Return whether a law has what is needed; needs of other kinds of law do not count."""
     if isinstance(need, str):
         return kind != "normal" or need in claims(law)
     return law_kind(need) != kind or isinstance(law, need)
@@ -294,7 +294,7 @@ def _has(law: Law, kind: str, need: str | type) -> bool:
 def _would_fit(laws: Laws) -> str:
     """Return a phrase that names, for each kind that is named, the law that would fit best.
 
-    Laws that nobody named are chosen anew beside each; the preferred law of a kind comes first.
+    Laws that the user did not name are chosen anew beside each; preferred laws come first.
     """
     names = []
     for kind in (kind for kind in KINDS if kind in (laws.named or KINDS)):
@@ -308,7 +308,7 @@ def _would_fit(laws: Laws) -> str:
 
 
 def _completes(named: Mapping[str, Law]) -> bool:
-    """Return whether laws fit that are completed by preferred ones."""
+    """Return whether laws fit once preferred laws complete them."""
     try:
         return _fits(*_complete(named))
     except ValueError:
@@ -326,7 +326,7 @@ def _usual(kind: str, others: Mapping[str, Law]) -> str:
 
 
 def _candidates(kind: str) -> Iterator[tuple[str, Any]]:
-    """Yield names and laws, made with their defaults, that need no import of a foreign plug-in."""
+    """Yield names and laws with their defaults, without an import of a foreign plug-in."""
     for info in REGISTRY.installed():
         if info.kind != kind or info.blocked or not REGISTRY.at_hand(info):
             continue

@@ -1,4 +1,4 @@
-"""What a class of laws must have beside its methods: checked once, before the class is used."""
+"""Rules of a class of laws beside its methods, checked once before the class is used."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import TypeGuard
 
 from contactlab.contracts.law import API_VERSION, Law, law_kind
 
-#: Methods of integrators that are called with the impact, its normal motion and the law, and their
-#: first arguments. One in another order would be run with arguments exchanged.
+#: Methods of integrators that are called with impact, normal motion and law, and their first
+#: arguments. A method with another order would get its arguments exchanged.
 ORDERED = ("integrate", "integrate_coupled", "errors", "cautions")
 ARGUMENTS = ("scene", "normal", "tangential")
 
@@ -52,7 +52,7 @@ def is_law_class(value: object) -> TypeGuard[type[Law]]:
 
 
 def _find_exchange(law: type[Law]) -> str | None:
-    """Return which method of an integrator is not as the contract has it, by its arguments."""
+    """Return which method of an integrator has other arguments than the contract states."""
     if hasattr(law, "resolution_for"):
         return (
             f"{law.__name__}.resolution_for is not asked; return the resolution of each impact as "

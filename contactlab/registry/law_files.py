@@ -1,6 +1,6 @@
 """The user's own files that hold the classes of laws, with checksums of their text.
 
-What else a law needs, functions, files of data and notebooks, is seen by what it does: a resumed
+A change of functions, files of data and notebooks shows in what the law answers: a resumed
 sweep computes blocks again (``recomputed.py``).
 """
 
@@ -32,7 +32,7 @@ def code_of(tree: object) -> dict[str, str]:
 
     The keys are names of modules, and file names for scripts and laws in files. Files that a
     package manager installed are left out, as a version tells their code; contactlab itself counts
-    as one file where it is a working copy. A class of a notebook is in no file.
+    as one file where it is a working copy. A class of a notebook has no file.
     """
     code = {}
     for name in _modules(tree):

@@ -28,7 +28,7 @@ def name_of(law: Law) -> str:
 
 
 def keep_answers(make: Callable[P, T]) -> Callable[P, T]:
-    """Return a function of laws that keeps its answers, but of laws that have no hash."""
+    """Return a function of laws that keeps its answers, except for laws without a hash."""
     keep = lru_cache(maxsize=256)(make)
 
     @wraps(make)
@@ -45,7 +45,7 @@ def keep_answers(make: Callable[P, T]) -> Callable[P, T]:
 def in_words(law: Law) -> str:
     """Return the name of a law with the options that differ from their defaults.
 
-    They are those of an attrs class; of another class the name stands alone.
+    A class that is not of attrs is told by its name alone.
     """
     told = own_options(law)
     return f"{name_of(law)} ({told})" if told else name_of(law)
@@ -62,7 +62,7 @@ def own_options(law: Law) -> str:
 
 
 def tell_assumptions(*laws: Law) -> list[str]:
-    """Return a caution of each number that laws took as nobody gave it."""
+    """Return a caution for each ``Taken`` default that the user left."""
     return [text for law in laws for text in _tell_taken(law)]
 
 
@@ -96,7 +96,7 @@ def _show_value(value: object) -> str:
 
 
 def _differs(value: object, default: object) -> bool:
-    """Return whether an option has another value than its default; no if others decide it."""
+    """Return whether an option differs from its default; False if other options decide it."""
     if isinstance(default, attrs.Factory):  # type: ignore[arg-type]
         return False
     try:

@@ -102,7 +102,7 @@ def _module(path: str) -> ModuleType:
     try:
         exec(compile(content, path, "exec", dont_inherit=True), vars(module))
     finally:
-        with contextlib.suppress(ValueError):  # the file may have taken it out, or added others
+        with contextlib.suppress(ValueError):  # the file may have changed sys.path itself
             del sys.path[len(sys.path) - 1 - sys.path[::-1].index(folder)]
     if other := _mistaken(module, content, folder):
         raise ImportError(f"it imports {other}, not the file beside it; rename one of the two")
@@ -118,7 +118,7 @@ def _mistaken(module: ModuleType, content: bytes, folder: str) -> str | None:
     """Return a file that a law's file imports in place of its neighbour of that name, or None."""
     from contactlab.registry.law_files import is_users  # laws by name need none of this
 
-    # Python has one module of a name: that of another law's folder, or of an earlier folder.
+    # Python keeps one module of a name, which may be from another law's folder or an earlier one.
     names = [each.__name__ for each in vars(module).values() if isinstance(each, ModuleType)]
     for statement in ast.walk(ast.parse(content)):
         if isinstance(statement, ast.Import):
@@ -172,8 +172,8 @@ def check_class(law: object, kind: str, source: str) -> type[Law]:
 def register(plugin: Any, name: str | None = None) -> str | None:
     """Register a plug-in in this program: an object with hooks, or the class of a law by name.
 
-    ``register(Brush, "tangential.brush")``; ``register(MyHooks())``. It is known at once to
-    everything that asks for its kind, and forgotten by ``plugin_manager().unregister``.
+    ``register(Brush, "tangential.brush")``; ``register(MyHooks())``. The plug-in is known at once
+    to all that ask for its kind, and forgotten by ``plugin_manager().unregister``.
 
     Parameters
     ----------

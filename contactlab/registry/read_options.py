@@ -1,4 +1,4 @@
-"""Options of laws that materials give, or that each impact has its own of."""
+"""Options of laws that follow from the materials, or that have one number for each impact."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from contactlab.numeric.checks import Rule
 
 
 class Read(NamedTuple):
-    """An option of a law that is not one number of its own.
+    """An option that follows from the materials, or has one number for each impact.
 
     Attributes
     ----------
@@ -37,7 +37,7 @@ class Read(NamedTuple):
 
 @lru_cache(maxsize=128)
 def options_read(law_class: type[Law]) -> tuple[Read, ...]:
-    """Return the options of a law that materials give, or that each impact has its own of."""
+    """Return the options of a law that follow from materials, or have one number an impact."""
     fields = attrs.fields(law_class) if attrs.has(law_class) else ()
     return tuple(
         Read(

@@ -198,7 +198,7 @@ class Registry:
             raise ValueError(f"{name}: {error}") from error
 
     def short_name(self, law: Law | type[Law]) -> str:
-        """Return the name of an installed law, without its kind; that of its class if it has none.
+        """Return the name of an installed law, without its kind; else the name of its class.
 
         A law in a file has the name of the file and of the class.
         """

@@ -1,4 +1,4 @@
-"""Laws that stand in where friction changes the approach and those at hand have no answer."""
+"""Laws that stand in where friction changes the approach and the composed laws have no answer."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from contactlab.registration.names import KINDS
 from contactlab.registry.composition import FOR_COUPLED, RIGID, Laws, misfit
 from contactlab.registry.registry import REGISTRY
 
-#: What integrators offer that march the contacts of gatherings.
+#: The word of integrators that march the contacts of a gathering.
 SEVERAL = "several_contacts"
 
 
@@ -32,7 +32,7 @@ def stand_in(laws: Laws, part: Scene) -> Laws:
 
 
 def _find_stand_in(laws: Laws, part: Scene) -> Laws:
-    """Return what ``stand_in`` returns."""
+    """Return the result of ``stand_in``, which keeps it."""
     lacking = _no_answer(laws, part)
     if lacking is None and not _rigid_in_silence(laws):
         return laws

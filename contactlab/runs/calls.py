@@ -1,4 +1,4 @@
-"""Calls that solve parts of a sweep in an executor, and what they answer."""
+"""Calls that solve parts of a sweep in an executor, and their replies."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MODULE_REMEDY = "define its class at the top of a module that can be imported"
 
 
 class Calls:
-    """Calls of one sweep in an executor, which may be exchanged for another."""
+    """Calls of one sweep in an executor; the executor may be replaced."""
 
     def __init__(self, laws: Laws, executor: Executor) -> None:
         self.executor, self.answered = executor, False
@@ -42,13 +42,13 @@ class Calls:
         future.add_done_callback(self._finished.put)
 
     def next(self) -> tuple[Part, Piece | Exception]:
-        """Return a part that is finished, with its piece, or with what the executor raised."""
+        """Return a finished part with its piece, or with the error of the executor."""
         future = self._finished.get()
         part = self._waiting.pop(future)
         return part, self._answer(future, part)
 
     def alone(self, part: Part) -> Piece | Exception:
-        """Return the piece of a part as soon as it is solved, or what the executor raised."""
+        """Return the piece of a part once it is solved, or the error of the executor."""
         return self._answer(self._submit(part), part)
 
     def cancel(self) -> None:
@@ -66,7 +66,7 @@ class Calls:
         except BrokenExecutor as error:
             future = Future()
             future.set_exception(error)
-        except Exception as error:  # of executors that are shut, each library has one of its own
+        except Exception as error:  # each library has its own error for a shut executor
             rule = f"takes no work: {short(error)}"
             raise refuse("executor", self.executor, rule, "open one") from error
         if not callable(getattr(future, "add_done_callback", None)):
@@ -74,7 +74,7 @@ class Calls:
         return future
 
     def _answer(self, future: Future[Reply], part: Part) -> Piece | Exception:
-        """Return the piece of a future, or what the executor raised; refuse what is no answer."""
+        """Return the piece of a future, or the executor's error; refuse any other answer."""
         try:
             answer = future.result()
         except Exception as error:  # the executor failed: ``reply`` returns errors of the laws
@@ -129,7 +129,7 @@ def reply(sent: bytes, part: bytes, chunk: Chunk, block: int) -> Reply:
 
 
 def _lock(tree: Tree) -> Tree:
-    """Return a tree with its arrays read-only: pickling loses that flag."""
+    """Return a tree with read-only arrays, a flag that pickling loses."""
     kind: type = type(tree)
     if attrs.has(kind):
         for field in attrs.fields(kind):

@@ -31,7 +31,7 @@ def _content(tree: object, update: Callable[[bytes], None]) -> None:
     """Pass the bytes of a tree to ``update``."""
     kind = type(tree)
     if not attrs.has(kind):
-        with contextlib.suppress(Exception):  # a function made in a function is known by its work
+        with contextlib.suppress(Exception):  # only answers tell a nested function
             update(pickle.dumps(tree))
         return
     for field in attrs.fields(kind):

@@ -60,7 +60,7 @@ def sweep_into(
         remedy = "make the generator anew: it gives its scenes once"
         raise refuse("scenes", scenes, "must hold at least one Scene", remedy)
     given, (laws, _) = laws, bind(laws, begin)
-    accept_scene(laws, begin)  # of scenes that are refused there is no folder
+    accept_scene(laws, begin)  # refused scenes make no folder
     form = form_of(check_folder("into", folder))
     more = {"form": KIND, STATUSES: " ".join(NAMES)}
     waiting: dict[Chunk, tuple[Scene, str, Scene]] = {}
@@ -72,7 +72,9 @@ def sweep_into(
         nonlocal failed
         try:
             yield from parts(target)
-        except Exception as error:  # of who makes the scenes: chunks that are sent come first
+        except (
+            Exception
+        ) as error:  # the generator of scenes failed: finish the chunks that were sent
             failed = error
 
     def parts(target: ChunkFolder) -> Iterator[Part]:

@@ -40,7 +40,7 @@ OTHER_COLUMNS = "sweep them into another folder, or with the plug-ins that the f
 
 
 class ChunkFolder:
-    """The chunks of a sweep in a folder: which are there, and how another is written."""
+    """The chunks of a sweep in a folder: which are written, and writing of further ones."""
 
     def __init__(self, folder: Path, sweep: str, form: Form) -> None:
         self.folder, self.sweep, self.form = folder, sweep, form
@@ -116,12 +116,12 @@ class ChunkFolder:
             computer=piece.computer,
         )
         with write_piece("into", self.folder, piece.chunk, "impacts", self.form) as stream:
-            # A sweep that grew and was stopped is not the one that was finished.
+            # a further chunk makes the sweep unfinished again
             (self.folder / self.form.finished).unlink(missing_ok=True)
             self.form.write(stream, arrays, about, NAMES)
 
     def _same_columns(self, units: dict[str, str], chunk: Chunk) -> None:
-        """Refuse a scene with other columns than those before."""
+        """Refuse a scene with other columns than the scenes before."""
         if self.units is None:
             self.units = units
         if units != self.units:
@@ -138,7 +138,7 @@ class ChunkFolder:
                 raise refuse_file("into", path, rule, remedy)
         path, words = self.folder / self.form.finished, json.dumps({"impacts": impacts}) + "\n"
         if path.is_file() and path.read_text("utf-8") == words:
-            return  # nothing is to be written, and maybe nothing can be
+            return  # already finished; the folder may be read-only
         with replace_file(path) as stream:
             stream.write(words)
 

@@ -1,6 +1,6 @@
-"""Parts of a sweep that an executor lost: solved again alone, in halves where a process ends.
+"""Parts of a sweep that an executor lost are solved again, in halves where a process ends.
 
-So a law that ends its process at one impact of a pool costs that impact. An executor of another
+A law that ends its process at one impact costs that impact alone. An executor of another
 library is asked once more for the whole part: it has tried it several times itself, and dask's,
 asked for halves again and again, runs out of workers and waits for ever.
 """

@@ -1,4 +1,4 @@
-"""Where an argument belongs that a simulation does not have: to a law, or to the scene."""
+"""Where an argument that a simulation lacks belongs: to a law, or to the scene."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def remedy_of(name: str, value: object) -> str:
         law = known[name][0]
         made = f"create({law!r}, {name}={quote(value)})"
         return f"{name} belongs to {law}: write {kind_of(law)}={made}; "
-    if not isinstance(value, str):  # a name is that of a law
+    if not isinstance(value, str):  # text may name a law
         for entry in (name, *SYMBOLS.get(name, ())):
             for made, call in OF_SCENES.items():
                 if entry in signature(call).parameters:

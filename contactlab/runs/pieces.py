@@ -34,7 +34,7 @@ class Part(NamedTuple):
 class Piece(NamedTuple):
     """The columns of the plan and the motion of a chunk.
 
-    ``computer`` tells what computed it. The piece is not ``solved`` if the executor lost it, so
+    ``computer`` is the processor, NumPy and threads that computed it. The piece is not ``solved`` if the executor lost it, so
     that the same sweep tries it again.
     """
 

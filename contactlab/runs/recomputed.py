@@ -1,6 +1,6 @@
-"""Finished blocks that a resumed sweep computes again: other bits than those kept are refused.
+"""Finished blocks that a resumed sweep computes again; it refuses other bits than those kept.
 
-So whatever a law needs is seen by what it does: functions, files of data, notebooks.
+Other bits show a change of any code or data that a law uses: functions, files, notebooks.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Finished(NamedTuple):
 
 
 class Sample:
-    """Finished blocks to compute again: one that is drawn, and those at both ends of psi1 and chi.
+    """Finished blocks to compute again: a random one, and those at both ends of psi1 and chi.
 
     A change may show at one end only.
     """
@@ -49,7 +49,7 @@ class Sample:
     def add(self, chunk: Chunk, scene: Scene, block: int, ended: Mask) -> None:
         """Consider the blocks of a finished chunk, but those with impacts that ``ended`` a process.
 
-        They would end this one too.
+        Such impacts would end this process too.
         """
         starts = np.arange(0, chunk.size, block)
         places = np.flatnonzero(~np.logical_or.reduceat(ended, starts))

@@ -90,7 +90,7 @@ def sweep_columns(
                     progress(done, size)
         except KeyboardInterrupt as error:
             if kept is not None and finished:
-                kept.keep(finished[-1])  # which may have been on its way to the disk
+                kept.keep(finished[-1])  # the interruption may have stopped its writing
             if not return_partial:
                 where = f" are in {keep}: the same sweep goes on" if keep else ""
                 raise type(error)(f"{done} of {size} impacts{where}") from None
@@ -117,7 +117,7 @@ def _keep_pieces(
 
 
 def one_axis(scene: Scene) -> None:
-    """Refuse a scene that is no batch of one axis."""
+    """Refuse a scene that is not a batch of one axis."""
     refuse_gathering(scene)
     if len(scene.shape) != 1:
         rule = "must be a sequence, or a one-dimensional batch"

@@ -1,4 +1,4 @@
-"""The folder that a sweep is written into: one sweep at a time, and no other one's."""
+"""The folder that a sweep is written into: of one sweep, and written by one process at a time."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ ANOTHER = "delete the folder, or name another for this sweep"
 
 
 def check_folder(argument: str, folder: object) -> Path:
-    """Return the path of a folder, or refuse what is none."""
+    """Return the path of a folder, or refuse a value that is no such path."""
     path = Path(of_kind(argument, folder, str, os.PathLike, rule="must be the path of a folder"))
     if os.path.lexists(path) and not os.path.isdir(path):
         what = "is a link to nothing" if os.path.islink(path) else "is a file"
@@ -60,7 +60,7 @@ def hold_folder(
     try:
         with alone_with(path / form.about) as (stream, locked):
             _begin_or_compare(argument, path, stream, about, form)
-            for part in path.glob(PARTS) if locked else ():  # of a sweep that was killed
+            for part in path.glob(PARTS) if locked else ():  # left by a killed sweep
                 part.unlink(missing_ok=True)
             # "options" has what the words of a law have
             yield path, fingerprint(about | origins)

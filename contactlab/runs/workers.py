@@ -22,7 +22,7 @@ from contactlab.runs.pieces import Part, Piece, solve_chunk
 #: Most processes: more than any machine has processors.
 MOST_PROCESSES = 1024
 
-#: What has a method submit: in general, and of libraries whose pools have none.
+#: Remedies: objects with a method submit, in general and for libraries whose pools have none.
 USUAL = "give ProcessPoolExecutor(4), or client.get_executor() of dask"
 GIVE = {
     "joblib": "give joblib.externals.loky.get_reusable_executor(4)",
@@ -78,7 +78,7 @@ def _answer_until_lost(
             yield answer
             continue
         lost.append(Lost(part, answer))
-        if not isinstance(answer, BrokenExecutor):  # the executor goes on with what it has
+        if not isinstance(answer, BrokenExecutor):  # the executor goes on with the parts it has
             return lost
 
 

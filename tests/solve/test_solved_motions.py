@@ -49,7 +49,7 @@ def test_bodies_may_turn_so_often_before_they_part():
             assert motion.duration == pytest.approx((2 * turns - 1) * quarter, rel=1e-6)
             assert abs(motion.maximum_approach) == pytest.approx(np.sqrt(MASS / 1e6), rel=1e-9)
     words = f"{motion.status.value} {motion.detail}"
-    assert words.startswith("The bodies did not part: the contact was given up. At step ")
+    assert words.startswith("The bodies did not part within the steps allowed. At step ")
     assert words.endswith(f": the bodies do not separate, from Swinging in {__name__}.")
 
 
