@@ -242,7 +242,7 @@ def load_path(
 def _laws(
     scene: Scene, normal: object, tangential: object
 ) -> tuple[NormalLaw, SteppedTangentialLaw, Scene]:
-    """Return the two laws of a path, with options from the materials, and the scene; or refuse them."""
+    """Return the laws of a path, with options from the materials, and the scene; or refuse them."""
     first = composition.law("normal", normal)
     second = composition.law("tangential", tangential)
     rule = "must be a law of steps, a SteppedTangentialLaw"

@@ -69,7 +69,7 @@ def advance_steps(
 def follow_path(
     normal: NormalLaw, tangential: SteppedTangentialLaw, scene: Scene, points: Points
 ) -> Followed:
-    """Return what the laws answer at the points of a path.
+    """Return the answers of the laws at the points of a path.
 
     Raises
     ------

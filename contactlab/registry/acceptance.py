@@ -1,4 +1,4 @@
-"""Which scenes a law runs: a law may refuse a scene, and options with units need a scene with units."""
+"""Which scenes a law runs: it may refuse some, and options with units need scenes with units."""
 
 from __future__ import annotations
 

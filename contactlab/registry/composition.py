@@ -25,7 +25,7 @@ from contactlab.registry.capability import Capability
 from contactlab.registry.law_classes import is_law_class, unfit
 from contactlab.registry.registry import REGISTRY, PluginError
 
-#: Defaults are plug-in names; from a list the first that is installed and fits is taken. Coulomb's law at
+#: Defaults are plug-in names; the first of a list that is installed and fits wins. Coulomb's law at
 #: every point comes first, for any normal law with a radius, then laws that need less.
 DEFAULT_NORMAL = "hertz"
 PREFERRED = {

@@ -87,7 +87,7 @@ def law_at(place: str) -> type[Law]:
 def _module(path: str) -> ModuleType:
     """Return a file as a module, loaded again if it changed."""
     from contactlab.outcome.files import stamp
-    from contactlab.registry.law_files import checksum  # laws by name need none of this
+    from contactlab.registry.law_files import checksum  # only laws in files need it
 
     # A module's name has no dots, and no two paths may agree.
     name = path.removesuffix(".py").replace("%", "%25").replace(".", "%2E")
@@ -116,7 +116,7 @@ def _module(path: str) -> ModuleType:
 
 def _mistaken(module: ModuleType, content: bytes, folder: str) -> str | None:
     """Return a file that a law's file imports in place of its neighbour of that name, or None."""
-    from contactlab.registry.law_files import is_users  # laws by name need none of this
+    from contactlab.registry.law_files import is_users  # only laws in files need it
 
     # Python keeps one module of a name, which may be from another law's folder or an earlier one.
     names = [each.__name__ for each in vars(module).values() if isinstance(each, ModuleType)]

@@ -72,9 +72,7 @@ def sweep_into(
         nonlocal failed
         try:
             yield from parts(target)
-        except (
-            Exception
-        ) as error:  # the generator of scenes failed: finish the chunks that were sent
+        except Exception as error:  # scenes failed: sent chunks come first
             failed = error
 
     def parts(target: ChunkFolder) -> Iterator[Part]:

@@ -34,8 +34,8 @@ class Part(NamedTuple):
 class Piece(NamedTuple):
     """The columns of the plan and the motion of a chunk.
 
-    ``computer`` is the processor, NumPy and threads that computed it. The piece is not ``solved`` if the executor lost it, so
-    that the same sweep tries it again.
+    ``computer`` is the processor, NumPy and threads. A piece that the executor lost is not
+    ``solved``, so that the same sweep tries it again.
     """
 
     chunk: Chunk

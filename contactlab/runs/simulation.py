@@ -264,14 +264,15 @@ class Simulation:
         """Run many impacts, vectorised, a block at a time.
 
         The laws choose the size of a block, counted from the first impact: 16384 if nothing is
-        marched, as in the exact solution up to chi = 2.5, 20 if impacts are followed one by one,
-        1000 for most other laws and where friction changes the approach. Neither ``chunk`` nor
+        marched, as in the exact solution up to chi = 2.5; 20 if impacts are followed one by one;
+        1000 for most other laws, and where friction changes the approach. Neither ``chunk`` nor
         ``executor`` changes the blocks, so neither changes a bit of an answer, within one
         installation, one kind of processor and one number of BLAS threads (with NumPy 2 that number
         matters only to laws that multiply large matrices).
 
-        An impact takes about 1 us where psi2 is tabulated, exact or with a restitution to 5e-5, 20
-        us by 50 springs without loss, to 2e-4, and 80 us with loss; ``contactlab bench`` times all.
+        An impact takes about 1 us where psi2 is tabulated: to 1e-9, or with a restitution to 5e-5.
+        It takes 20 us by 50 springs without loss, to 2e-4, and 80 us with loss; ``contactlab
+        bench`` times all.
 
         Parameters
         ----------
