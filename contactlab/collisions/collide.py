@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from contactlab.collisions.gathered import GatheringResult
 
 SEPARATING = ("refuse", "pass")
-#: Remedies for what is given in place of an encounter, or of a simulation.
+#: Remedies for objects that users give in place of an encounter, or of a simulation.
 WITH_ARRAYS = (
     "make a single Encounter with arrays of vectors, shape (..., 3); bodies that touch at several "
     "contacts at once are a Gathering(bodies, touches)"
@@ -61,8 +61,8 @@ def collide(
 ) -> Collision | GatheringResult:
     """Return velocities and spins of both bodies after an encounter, or after each of a batch.
 
-    Of a ``Gathering`` it returns those of all bodies and what each contact went through: the
-    contacts march together, by springs in even steps unless a simulation has other laws.
+    For a ``Gathering`` it returns velocities and spins of all bodies, and impulses of each contact.
+    The contacts march together, by springs in even steps unless a simulation has other laws.
 
     Between bodies that are no spheres each impact goes its own way: as spheres where friction does
     not change the approach, else by laws that are exact in a plane, psi2 to 1e-9 in 0.2 ms, and by
@@ -142,7 +142,7 @@ def collide(
         moved = impulses.strike(encounter, restitution=e, strict=strict)
         return Collision(encounter=encounter, **moved, restitution=e)
     met: Mask = np.ones(encounter.shape, dtype=bool) if encounter.shape else True
-    if separating == "pass":  # else the scene refuses bodies that separate
+    if separating == "pass":  # without "pass" the scene refuses them
         met = encounter.approaching
     about: dict[str, Any] = {"simulation": simulation, "restitution": e}
     if not some(met):
@@ -184,7 +184,7 @@ def _solve_gathering(
 
 
 def _check_restitution(given: object, encounter: Encounter) -> Real:
-    """Return a restitution that was given, one number or one for each encounter."""
+    """Return the user's restitution, one number or one for each encounter."""
     numbers: object = _at_speeds(given, encounter) if callable(given) else given
     e = real("restitution", numbers, rule=RESTITUTIONS, remedy="leave it out for 1", empty=True)
     return e if isinstance(e, float) else spread_over("restitution", e, encounter.shape)

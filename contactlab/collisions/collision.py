@@ -95,7 +95,7 @@ class Collision(Answer, Generic[Each]):
         The result of the encounters that collided; None where ``contactlab.rebound`` answered.
     """
 
-    #: Where attributes are that a collision has not itself.
+    #: Objects whose attributes users look for on a collision, by name.
     _within: ClassVar[Mapping[str, type]] = {"result": ImpactResult}
     encounter: Encounter
     velocity: Array
@@ -135,7 +135,7 @@ class Collision(Answer, Generic[Each]):
 
     @classmethod
     def by(cls, encounter: Encounter, result: ImpactResult, met: Mask, **about: Any) -> Collision:
-        """Return the collision of ``encounter`` by the result of those that ``met``.
+        """Return the collision of ``encounter`` by the result of the encounters that ``met``.
 
         Parameters
         ----------
@@ -244,7 +244,7 @@ class Collision(Answer, Generic[Each]):
     def energy(self) -> EnergyLedger[Each]:
         """The energy books of the relative motion, in J; its loss is the loss of both bodies.
 
-        All entries are 0 of bodies that are no spheres and passed through.
+        All entries are 0 for bodies that are no spheres and passed through.
         """
         if not self.encounter.of_spheres:
             return self._energy_of_bodies()
@@ -265,7 +265,7 @@ class Collision(Answer, Generic[Each]):
             return books(energies, (self.friction_work, shear), exchange, unread == 0.0)
 
     def _spread(self, *quantities: Real | Mask) -> list[Real]:
-        """Return quantities of the encounters that collided as those of all, else 0."""
+        """Return quantities of all encounters, 0 for those without a collision."""
         return [plain(row) for row in _columns(self.encounter, self.collided, *quantities)]
 
     def _energy_of_bodies(self) -> EnergyLedger:
@@ -342,7 +342,7 @@ class Collision(Answer, Generic[Each]):
         shape, both = self.encounter.shape, not isinstance(self.encounter.target, HalfSpace)
         lines = [repr(self)]
         if not shape and not both:
-            return lines  # which tells it
+            return lines  # the failure is told
         for index in itertools.islice(np.ndindex(shape), MOST_TOLD):
             where = f"encounter {', '.join(map(str, index))}, " if shape else ""
             lines.append(moving(f"{where}body", self.velocity[index], self.spin[index]))

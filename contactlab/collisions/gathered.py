@@ -1,4 +1,4 @@
-"""The outcome of a gathering: velocities of all bodies, and what each contact went through."""
+"""The outcome of a gathering: velocities of all bodies, impulses and work of each contact."""
 
 from __future__ import annotations
 
@@ -95,24 +95,24 @@ class GatheringResult(Answer):
 
     @cached_property
     def plan(self) -> GatheringPlan:
-        """What is computed, what is left out, and the cautions; ``per_micron`` when it is read."""
+        """What is computed, what is left out, and cautions; reading ``per_micron`` computes it."""
         laws = None if self.simulation is None else self.simulation.laws
         told = bool(self.history)
         return plan_of_gathering(self.gathering, laws, self._way, self._motion, history=told)
 
     def _shape(self, value: Real, *trailing: int) -> Array:
-        """Return what each gathering has in the batch shape."""
+        """Return an entry of each gathering in the batch shape."""
         return np.asarray(value).reshape(*self.gathering.shape, *trailing)
 
     def _of_contacts(self, value: Real, *trailing: int) -> Array:
-        """Return what each contact has in the batch shape, NaN of gatherings that failed."""
+        """Return an entry of each contact in the batch shape, NaN if the gathering failed."""
         lost = np.where(self._motion.status == Status.SUCCESS, 0.0, np.nan)
         whole = np.broadcast_to(value, (*self._scene.shape, *trailing))
         lost = lost.reshape(*lost.shape, *(1 for _ in trailing))
         return np.asarray(self._shape(whole + lost, self._scene.shape[-1], *trailing))
 
     def _read_contacts(self, name: str, *trailing: int) -> Array:
-        """Return an entry of the contacts that the march tells."""
+        """Return an entry of the march's ``Contacts``."""
         told = self._motion.contacts
         value = np.nan if told is None else getattr(told, name)
         return self._of_contacts(value, *trailing)

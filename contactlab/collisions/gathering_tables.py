@@ -27,7 +27,7 @@ def contacts_table(hit: GatheringResult) -> Rows:
 
 
 def _rows(hit: GatheringResult, rows: str) -> Rows:
-    """Return headings with units, and rows; of a batch each begins with the place of its batch."""
+    """Return headings with units, and rows; in a batch each row begins with its place."""
     sheet = hit._sheet(rows)
     places = np.indices(sheet.shape)
     axes = zip(sheet.axes.items(), places, strict=True)
@@ -62,7 +62,7 @@ def write_json(hit: GatheringResult, path: str | Path) -> None:
 
 
 def write_csv(hit: GatheringResult, path: str | Path) -> None:
-    """Write one row for each body, then one for each contact; what a row has not is empty."""
+    """Write one row for each body, then one for each contact; cells without a value are empty."""
     (body, bodies), (contact, contacts) = bodies_table(hit), contacts_table(hit)
     shared = [name for name in body if name in contact]
     headings = [*(name for name in body if name != "status"), *contact[len(shared) - 1 : -1]]

@@ -21,7 +21,7 @@ Moved: TypeAlias = dict[str, Any]
 
 
 def pass_through(encounter: Encounter) -> Moved:
-    """Return two bodies that passed through, of every encounter of a batch."""
+    """Return both bodies of every encounter, unchanged as they passed through."""
     shape = encounter.shape
     vectors = {name: np.broadcast_to(getattr(encounter, name), (*shape, 3)) for name in VELOCITIES}
     zero = spread(0.0, shape)
@@ -119,7 +119,7 @@ def strike(
 
 
 def turn_bodies(encounter: Encounter, moved: Moved, change: Real) -> Moved:
-    """Return what ``strike`` returned, with a change (rad/s) of the relative spin about the normal.
+    """Return the bodies of ``strike`` after a change (rad/s) of the relative spin about the normal.
 
     The couple is opposite on both spheres: each takes its share by its inertia.
     """

@@ -12,7 +12,7 @@ import numpy as np
 from contactlab.numeric.checks import of_kind, quote, real, refuse
 from contactlab.numeric.labels import library_of
 
-#: Names of what is returned: psi2 and its derivatives.
+#: Names of the answers: psi2 and its derivatives.
 ANSWERS = ("psi2", "dpsi2_dpsi1", "dpsi2_dchi", "dpsi2_de")
 #: The class of each package whose labels, or laziness, the answer keeps.
 KINDS = {"xarray": "DataArray", "pandas": "Series", "dask": "Array"}
@@ -22,7 +22,7 @@ MODULES = {"xarray": "xarray", "pandas": "pandas", "dask": "dask.array"}
 def by_labels(
     function: Callable[..., object], answers: int, arguments: Mapping[str, object]
 ) -> object:
-    """Return what a function of arrays answers to labelled or lazy arrays, labelled or lazy too.
+    """Return the answers of a function to labelled or lazy arrays, labelled or lazy too.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ from contactlab.numeric.checks import Rule, real, refuse
 from contactlab.numeric.labels import library_of, numbers_of
 from contactlab.numeric.types import AnyArray
 
-#: In the names of types that are not of real numbers.
+#: Parts of names of types that are not of real numbers.
 NO_NUMBERS = ("complex", "bool")
 #: The shortest type that answers are computed in; shorter ones are widened.
 SHORTEST = "float32"
@@ -135,7 +135,7 @@ class _Torch:
             }
 
     def compile_late(self, function: Callable[..., Any]) -> Callable[..., Any]:
-        """Return the function as it is: who compiles calls torch.compile."""
+        """Return the function unchanged: a user who compiles calls torch.compile."""
         return function
 
     def with_slopes(
@@ -166,7 +166,7 @@ def find_library(name: str) -> TracingLibrary:
 
 
 def read_numbers(library: str, name: str, value: Any, rule: Rule, remedy: str = "") -> Any:
-    """Return the checked numbers of an argument; None if they are not known, but traced.
+    """Return the checked numbers of an argument; None if they are traced, hence unknown.
 
     Raises
     ------
@@ -180,10 +180,10 @@ def read_numbers(library: str, name: str, value: Any, rule: Rule, remedy: str = 
         return real(name, value, rule=rule, remedy=remedy, empty=True)
     try:
         numbers = numbers_of(value)
-    except TypeError as error:  # of sparse tensors
+    except TypeError as error:  # sparse tensors raise
         raise refuse(name, value, f"cannot be read: {error}", remedy) from error
     if numbers is not None:
         return real(name, numbers, rule=rule, remedy=remedy, empty=True)
-    if any(word in str(value.dtype) for word in NO_NUMBERS):  # it is traced, its type is not
+    if any(word in str(value.dtype) for word in NO_NUMBERS):  # a traced array has a type
         raise refuse(name, value, "must be a real number", remedy)
     return None

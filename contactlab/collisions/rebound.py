@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 Yes: TypeAlias = Literal[True]
 No: TypeAlias = Literal[False]
-#: An array of another library, which gives one of the same.
+#: An array of another library; the answer is one of the same library.
 Labels = TypeVar("Labels", bound=Labelled)
 
 #: Springs of the laws for a restitution; the steps are four times as many.
@@ -52,12 +52,12 @@ SLIPS_THROUGHOUT = 1e5
 NO_JOIN = 0.99
 #: The default of ``tolerance``.
 USUAL = 1e-5
-#: Libraries of arrays that may be traced, with what differentiates ``rebound`` in each.
+#: Libraries of arrays that may be traced, with the functions by which each differentiates.
 DIFFERENTIATE = {
     "jax": "jax.grad, jax.jvp and jax.hessian",
     "torch": "torch.autograd and torch.func",
 }
-#: Arrays that are looked at number by number: NumPy takes longer to begin.
+#: Arrays up to this size are checked number by number: NumPy takes longer to begin.
 FEW_NUMBERS = 40
 
 
@@ -413,7 +413,7 @@ def _below_one(restitution: Any, psi1: Any) -> TypeGuard[Real]:
 def _within(psi1: Any, chi: Any, span: tuple[float, float]) -> bool:
     """Return whether arguments are two floats or two equal arrays of floats, chi in a range.
 
-    A quick look: arguments of other kinds, and bad ones, are False.
+    This is a quick test: other kinds of argument, and bad ones, give False.
     """
     low, high = span
     if isinstance(psi1, float):

@@ -1,4 +1,4 @@
-"""Impacts with a restitution in place of laws: their results, and their plans."""
+"""Results and plans of impacts with a restitution in place of laws."""
 
 from __future__ import annotations
 

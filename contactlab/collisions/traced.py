@@ -11,7 +11,7 @@ from contactlab.contracts.whole_impact import Tabulated
 from contactlab.numeric.array_api import Traced
 from contactlab.numeric.checks import Rule, refuse
 
-#: Where a known number is out of a table.
+#: Remedy for a number outside a table.
 ENDS = "the table ends there: give such impacts to rebound as NumPy arrays"
 #: Tables as arrays of a library, by law, library, type and place.
 _TABLES: dict[tuple[object, ...], Mapping[str, Traced]] = {}

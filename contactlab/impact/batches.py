@@ -1,4 +1,4 @@
-"""What a scene does as a batch of impacts: parts of it, scenes stacked, the axes of a grid."""
+"""A scene as a batch of impacts: its parts, stacked scenes, the axes of a grid."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Batches(Motions):
 
     @property
     def varied(self) -> Mapping[str, Array]:
-        """The values of each entry that varies, of each impact, by name; empty if not known."""
+        """The values of each varying entry, one for each impact, by name; empty if not recorded."""
         if not self._axes:
             return MappingProxyType(dict(self._varied))
         from contactlab.impact.grid import product  # needed for grids only
@@ -106,12 +106,12 @@ class Batches(Motions):
                     "give friction_coefficient to every Scene.nondimensional, or to none",
                 )
         if len({id(getattr(scene._of_slip, "law", None)) for scene in scenes}) > 1:
-            scenes = [scene._with(_of_slip=None) for scene in scenes]  # of several functions
+            scenes = [scene._with(_of_slip=None) for scene in scenes]  # several functions
         kinds = {
             tuple(type(getattr(scene.encounter, name, None)) for name in ("body", "target"))
             for scene in scenes
         }
-        if len(kinds) > 1:  # no one encounter has bodies of several kinds
+        if len(kinds) > 1:  # bodies of several kinds fit in no encounter
             scenes = [scene._evolve(encounter=None) for scene in scenes]
         if any(scene.inverse_mass is not None for scene in scenes):
             planar = all(scene.planar for scene in scenes)
@@ -119,7 +119,7 @@ class Batches(Motions):
         stacked = batch.stack_trees(scenes)
         assert isinstance(stacked, cls)
         encounter = stacked.encounter
-        if encounter is not None and not encounter.shape:  # each impact has one, also if all agree
+        if encounter is not None and not encounter.shape:  # one index an impact, even if all agree
             velocity = np.tile(encounter.velocity, (len(scenes), 1))
             stacked = stacked._with(encounter=attrs.evolve(encounter, velocity=velocity))
         if stacked.shape:
@@ -247,7 +247,7 @@ def over(scene: AnyScene, axes: Mapping[str, Numbers]) -> AnyScene:
 
 
 def varying(scene: AnyScene, entries: Mapping[str, Numbers]) -> AnyScene:
-    """Return this batch with the values of the entries that vary in it together.
+    """Return this batch with the values of the entries that vary together.
 
     Parameters
     ----------

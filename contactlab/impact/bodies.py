@@ -30,7 +30,7 @@ from contactlab.numeric.types import Array, Each, Number, Numbers, Real
 SOLID_SPHERE_GYRATION_RATIO = math.sqrt(0.4)
 #: Largest radius in m: the approach to larger ones underflows.
 MOST_RADIUS = 1e100
-#: Power of ten from which a number may leave the range of floating point in a product.
+#: From this power of ten on a product of numbers may overflow or underflow.
 FAR = 70.0
 RADIUS = Rule(
     lambda value: (value > 0.0) & (value <= MOST_RADIUS),
@@ -109,7 +109,7 @@ class Sphere(_SphereArguments, Generic[Each]):
         ) -> Sphere[Array]: ...
         def __new__(cls, *_: object, **__: object) -> Sphere: ...  # noqa: D102
 
-    # That of all numbers takes longer than a collision; equal spheres have equal masses.
+    # A hash of all numbers takes longer than a collision; equal spheres have equal masses.
     def __hash__(self) -> int:
         mass = self.mass
         return hash(mass if type(mass) is float else key(mass))
@@ -309,18 +309,18 @@ ROUND = {
 }  # fmt: skip
 
 
-#: Those of them that are positive.
+#: The positive numbers among them.
 _positive = itemgetter(*sorted(ROUND - {"dundurs_beta"}))
 
 
 @cache
 def _unit_pair() -> Pair:
-    """Return a pair whose numbers are 1, and those that most contacts have not as usual."""
+    """Return a pair whose numbers are 1; optional numbers have their defaults."""
     return Pair(**dict.fromkeys(ROUND, 1.0))
 
 
 def _find_loss(*bodies: Sphere | HalfSpace) -> ValueError | None:
-    """Return the ValueError of the number that makes those of the contact 0 or infinite, if any."""
+    """Return the ValueError of a number that makes the contact's numbers 0 or infinite, if any."""
     numbers: dict[str, Real] = {}
     for name, body in zip(("sphere", "target"), bodies, strict=True):
         numbers[f"{name}.material.shear_modulus"] = body.material.shear_modulus

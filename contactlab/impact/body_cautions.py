@@ -35,7 +35,7 @@ SPREAD, OVER_ARM = 100.0, 200.0
 #: Least radius of gyration over the distance of the contact below which it is suspect: a rod ten
 #: thousand times as long as wide has a third of it.
 UNDER_ARM = 1e-4
-#: As of spheres: spin in rad/s, and speed it gives the contact over that of the centre.
+#: As for spheres: spin in rad/s, and speed that spin gives the contact over that of the centre.
 LEAST_SPIN, MOST_RIM = 50.0, 8.0
 
 
@@ -78,9 +78,9 @@ def shells(scene: Scene, bodies: Mapping[str, Sphere | HalfSpace | RigidBody]) -
 def _of_solid(body: Sphere | RigidBody) -> Array:
     """Return the masses over those of solid bodies of their density, 1 of unknown density.
 
-    Of a rigid body the solid is the ellipsoid of its mass and inertia: its semi-axes squared are 5
-    times the mean squares of x, y and z of its mass. Of a cylinder it has 1.08 of the volume,
-    whatever the length, and of a box 1.13.
+    For a rigid body the solid is the ellipsoid of its mass and inertia: its semi-axes squared are 5
+    times the mean squares of x, y and z of its mass. This ellipsoid has 1.08 times the volume of a
+    cylinder of any length, and 1.13 times that of a box.
     """
     density = body.material.density
     if density is None:
@@ -96,7 +96,7 @@ def _of_solid(body: Sphere | RigidBody) -> Array:
 
 
 def _spring(scene: Scene, body: Sphere) -> str:
-    """Return what is known of the contact of a thin shell.
+    """Return words on the contact of a thin shell.
 
     Reissner, J. Math. Phys. 25 (1946) 279-300: F = 4 E h²/(R sqrt(3 (1 - nu²))) times the
     deflection under a force at a point, until the wall buckles at about its thickness.
@@ -157,9 +157,9 @@ def units_of_bodies(encounter: Encounter) -> list[str]:
 
 
 def tell_radii(encounter: Encounter, *, several: bool = False) -> list[str]:
-    """Return one sentence for each radius of curvature that nobody gave.
+    """Return one sentence for each radius of curvature that the user left out.
 
-    It moves velocities where there are ``several`` contacts at once.
+    That radius changes velocities if there are ``several`` contacts at once.
     """
     said = []
     for name, body in (("body", encounter.body), ("target", encounter.target)):

@@ -192,9 +192,9 @@ def add_coupling(
     one: tuple[Side, Sequence[Vector]],
     other: tuple[Side, Sequence[Vector]],
 ) -> None:
-    """Add to rows of W in 1/kg how a body moves one of its contacts by forces at another.
+    """Add to rows of W in 1/kg the motion of one contact of a body by forces at another.
 
-    A contact is its body and its axes; with itself it is a block on the diagonal of W.
+    Equal contacts give a block on the diagonal of W.
     """
     (here, axes), (there, across) = one, other
     mass = here.body.mass
@@ -229,7 +229,7 @@ def relative_velocity(encounter: _Meeting, bodies: Sequence[Side]) -> Vector:
 def spin_about(encounter: _Meeting, normal: Sequence[Real]) -> Real:
     """Return the spin about the normal of the first body over the target, in rad/s."""
     if encounter.shape and not (moving(encounter.spin) or moving(encounter.target_spin)):
-        return 0.0  # of one encounter three products take less
+        return 0.0  # for one encounter a product is quicker
     spins = [components(spin) for spin in (encounter.spin, encounter.target_spin)]
     omega: Real = 0.0
     for n, one, other in zip(normal, *spins, strict=True):
@@ -242,9 +242,9 @@ def spin_about(encounter: _Meeting, normal: Sequence[Real]) -> Real:
 
 
 def _spin_alone(encounter: _Meeting, bodies: Sequence[Side], n: Vector, round_: Mask) -> Real:
-    """Return the spin about the normal that a couple alone moves; ``round_`` where it may.
+    """Return the spin about the normal that a couple alone changes; ``round_`` where it can.
 
-    It is 0 where a body is off centre, or the normal is no principal axis of its inertia.
+    The spin counts as 0 where a body is off centre, or the normal no principal axis of its inertia.
     """
     spin = choose(round_, spin_about(encounter, n), 0.0)
     for _, body, arm, _ in bodies:
@@ -301,7 +301,7 @@ def frame(encounter: _Meeting, bodies: Sequence[Side], normal: Vector) -> Frame:
     # vectors of the tangent plane are complex numbers
     coupling = W[0][1] + 1j * W[0][2]
     slip = dot(velocity, one) + 1j * dot(velocity, other)
-    # the first of coupling, slip and any axis that is not lost in rounding, as ``ways`` judges it
+    # coupling if above rounding, as ``ways`` judges, else slip, else any axis
     least = (
         inverse_mass.ROUNDING * square_root(0.5 * W[0][0] * (W[1][1] + W[2][2])),
         inverse_mass.ROUNDING * square_root(dot(velocity, velocity)),
@@ -430,7 +430,7 @@ def _along_an_axis(
 
 
 def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
-    """Return the scene in numbers; it keeps the inverse mass if any impact needs it."""
+    """Return the scene in numbers, with the inverse mass if any impact needs it."""
     shape, bodies = encounter.shape, sides(encounter, normal)
     axes, W, (speed, *slip), gap = frame(encounter, bodies, normal)
     if not every(speed >= LEAST):
@@ -520,7 +520,7 @@ def in_space(axes: Array, vectors: Array) -> Array:
 def resolve_velocity(scene: Scene, velocity: Array) -> tuple[Real, Real]:
     """Return the components along the normal and ``scene.along`` of a velocity of the first body.
 
-    They are relative to the surface that it strikes, in m/s, numbers for one impact.
+    Components are relative to the surface that the body strikes, in m/s, numbers for one impact.
     """
     encounter, axes, along = scene.encounter, scene.frame, scene.along
     assert axes is not None
@@ -563,7 +563,7 @@ def changes_of(
 ) -> Iterator[tuple[Side, dict[str, Vector]]]:
     """Yield each body that moves, and the changes of its velocity and spin, as of ``push_bodies``.
 
-    They are vectors by their components.
+    Changes are vectors by their components.
     """
     (normal, one, other), (p, q, r) = rows(axes), components(impulse)
     (n, a, d), (m, b, e), (k, c, f) = zip(normal, one, other, strict=True)

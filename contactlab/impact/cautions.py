@@ -23,7 +23,7 @@ DOUBTFUL_SIZE_RATIO = 0.1
 #: Growth of beta0 of deep contacts over C² = z/R, and the deepest of the 13 bounces of a superball
 #: from which it is (theory §15; ``study/measured/superball.toml``).
 DEEPER, DEEPEST = (0.8, 2.0), 0.175
-#: What a caution says in place of a size beyond its measurements.
+#: Words of a caution whose size lies beyond its measurements.
 OUTSIDE = "outside the measured range"
 #: Range of attraction of surfaces in m, about the distance between atoms.
 RANGE = 3e-10
@@ -150,7 +150,7 @@ def yielding(scene: Scene, peak: Real | None = None) -> tuple[str, ...]:
     limits = np.stack(
         [np.broadcast_to(FIRST_YIELD * stress, scene.shape) for stress in stresses.values()]
     )
-    limit = np.fmin.reduce(limits)  # NaN where the yield stress is not known
+    limit = np.fmin.reduce(limits)  # NaN without a yield stress
     yields = pressure > limit
     if not yields.any():
         return ()
@@ -284,7 +284,7 @@ def _like_radians(scene: Scene) -> bool:
 
 
 def unlikely(scene: Scene) -> list[str]:
-    """Return one sentence for each number of ``scene`` that few contacts have."""
+    """Return one sentence for each unusual number of ``scene``."""
     bodies = name_bodies(scene)
     if not bodies:
         return []

@@ -113,7 +113,7 @@ class Encounter:
     target_spin: Array = vector("rad/s", default=NOTHING)
     contact: Array = vector("m", default=NOTHING)
     target_contact: Array = vector("m", default=NOTHING)
-    #: How friction follows from slip; None where it is given by numbers.
+    #: Friction as a function of slip; None where friction is given by numbers.
     of_slip: OfSlip | None = attrs.field(default=None, eq=False, repr=False, kw_only=True)
     #: Batch shape: () for one encounter.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
@@ -175,7 +175,7 @@ class Encounter:
             self._set_friction(shape)
 
     def _set_friction(self, shape: tuple[int, ...]) -> None:
-        """Set the friction that follows from the slip; numbers that were put in its place stay."""
+        """Set the friction that follows from the slip, unless numbers took its place."""
         slip = self.meeting().slip
         if is_law_of_slip(self.friction_coefficient):
             found: OfSlip | None = OfSlip.of(law_of_slip(self.friction_coefficient), slip, shape)
@@ -362,7 +362,7 @@ class Encounter:
         )
 
     def _jam(self, index: tuple[int, ...]) -> str:
-        """Return in words that friction alone presses sliding bodies together, else nothing."""
+        """Return a sentence if friction alone presses sliding bodies together, else nothing."""
         if self.of_spheres:
             return ""
         one = self.take(index)

@@ -26,15 +26,14 @@ RESTITUTION = Rule(
     lambda value: (value >= 0.01) & (value <= 1.0),
     "must be from 0.01 to 1: rebound over approach velocity of this contact alone",
 )
-#: Cosine between two normals, and distance of two contacts over the arms, of one contact given
-#: twice.
+#: Difference of normals, and distance of contacts over the arms, up to which two contacts are one.
 SAME = 1e-9
 
 
 @state_arguments
 @attrs.frozen(init=False)
 class Body:
-    """A body of a ``Gathering``: what it is, and how it moves when the first bodies touch.
+    """A body of a ``Gathering``, and its motion when the first bodies touch.
 
     Every vector may be an array of shape ``(..., 3)``.
 
@@ -166,7 +165,7 @@ class Gathering:
         names the contact.
     """
 
-    #: As it was given, which attrs.evolve passes on.
+    #: The argument, which attrs.evolve passes on.
     _given: Mapping[str, Body] | Sequence[Body] = attrs.field(alias="bodies", repr=False)
     bodies: tuple[Body, ...] = attrs.field(init=False)
     touches: tuple[Touch, ...]
@@ -320,7 +319,7 @@ class Gathering:
         return bool(np.any((along > 1.0 - SAME) & near))
 
     def _check_load(self) -> None:
-        """Refuse loads that no force makes, and those that statics does not determine."""
+        """Refuse loads without a force, and loads that statics does not determine."""
         loaded: dict[int, int] = {}
         for k, touch in enumerate(self.touches):
             if not touch.loaded:
@@ -402,7 +401,7 @@ class Gathering:
 
 
 def _as_tuple(name: str, value: object) -> tuple[Any, ...]:
-    """Return a sequence as a tuple, or refuse what is none or is empty."""
+    """Return a sequence as a tuple; refuse an empty one and other objects."""
     if isinstance(value, str | bytes) or not isinstance(value, Sequence):
         raise refuse(name, value, f"must be a list of {name}", f"give {name}=[...]")
     if not len(value):

@@ -94,7 +94,7 @@ class Assembly:
         return spread.take(np.full(self._wide, True)) if len(self._wide) > 1 else spread
 
     def flat(self, value: Real, *trailing: int) -> Array:
-        """Return what each gathering has, shape (count, *trailing)."""
+        """Return numbers of each gathering, shape (count, *trailing)."""
         whole = np.empty((*self.gathering.shape, *trailing), dtype=np.asarray(value).dtype)
         whole[...] = value
         return whole.reshape(self.count, *trailing)

@@ -17,7 +17,7 @@ MOST_IMPACTS = 10_000_000
 
 
 def axes_of(entries: Mapping[str, Numbers]) -> dict[str, Array]:
-    """Return the entries that are lists, as arrays of one dimension; at least one must be."""
+    """Return the entries that are lists, at least one, as arrays of one dimension."""
     axes: dict[str, Any] = {}
     for name, values in entries.items():
         try:

@@ -1,4 +1,4 @@
-"""Closed forms of the paper: Hertz's impact, gross slip, the rigid rebound; floats or arrays."""
+"""Closed forms of the paper, for floats or arrays: Hertz's impact, gross slip, rigid rebound."""
 
 from __future__ import annotations
 

@@ -68,7 +68,7 @@ def ways(tensor: Rows, speed: Real, slip: Vector, cross_stiffness_ratio: Real = 
     turned = magnitude((W[1][1] * x + W[1][2] * y) * y - (W[2][1] * x + W[2][2] * y) * x)
     leaves = magnitude(y) > ROUNDING * (magnitude(x) + magnitude(speed))
     moved = x * x + y * y
-    # across its line slip changes by a share of itself: a slip that is rounding turns by nothing
+    # the change across the line scales with the slip: a slip of rounding size does not turn
     turns = turned > ROUNDING * W[1][1] * (moved + square_root(moved) * magnitude(speed))
     turns = turns | (leaves & (cross_stiffness_ratio != 1.0))
     leaves = (
@@ -83,7 +83,7 @@ def presses(tensor: Rows) -> Mask:
 
 
 def _coupled_size(tensor: Rows) -> Real:
-    """Return what entries of W that couple approach and slip are compared with, in 1/kg."""
+    """Return the scale in 1/kg against which W's coupling of approach and slip is small."""
     W = tensor
     return square_root(W[0][0] * 0.5 * (W[1][1] + W[2][2]))
 

@@ -1,4 +1,4 @@
-"""What a scene tells of its slip and its inverse mass, for spheres and for bodies of any shape."""
+"""Slip, inverse mass and dimensionless groups of a scene, for spheres and bodies of any shape."""
 
 from __future__ import annotations
 
@@ -162,7 +162,7 @@ class Motions:
         return self._with(tangential_velocity=slip, pair=pair, **alone)
 
     def _with(self, **entries: object) -> Self:
-        """Return this scene with other entries, of numbers that were checked before."""
+        """Return this scene with other entries, whose numbers were checked before."""
         return batch.change_entries(
             self, **{name: batch.lock_arrays(each) for name, each in entries.items()}
         )
@@ -175,7 +175,7 @@ class Motions:
         return inverse_mass.ways(rows(W), speed, slip, self.pair.cross_stiffness_ratio)
 
     def _going(self, way: Real) -> Self:
-        """Return this scene as it is solved in one way."""
+        """Return this scene in the form that one way of solving takes."""
         if way == inverse_mass.CENTRAL:
             return self.central
         if way == inverse_mass.SPATIAL or self.planar:
@@ -281,7 +281,7 @@ def along_slip(scene: Motions, velocity: Real) -> Real:
 
 
 def batch_of(scene: Motions) -> tuple[int, ...]:
-    """Return the shape of what is solved by itself: without the contacts of a gathering."""
+    """Return the shape of independent problems: the scene's, less the contacts of a gathering."""
     return scene.shape if scene.links is None else scene.shape[:-1]
 
 
@@ -387,7 +387,7 @@ def most_slip_change(scene: Motions) -> Real:
 
 
 def parts(scene: AnyScene, *, as_one: bool = False) -> list[tuple[Any, AnyScene]]:
-    """Return places and scenes of the impacts that are solved alike, at most three.
+    """Return places and scenes of impacts that are solved in the same way, at most three.
 
     A part has no inverse mass where W does not couple and slip keeps its line, and is planar
     where slip stays along t1.

@@ -23,7 +23,7 @@ Inverse: TypeAlias = Array | SparseMatrix
 
 #: Eigenvalues of W over the largest that are zero: W of a box on four corners has six of twelve.
 RANK = 1e-12
-#: Error of the energy of contacts over it where W is sparse.
+#: Relative error of the energy of contacts where W is sparse.
 TOLERANCE = 1e-10
 
 

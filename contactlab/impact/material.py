@@ -20,7 +20,7 @@ from contactlab.numeric.types import Array, Each, Number, Numbers
 from contactlab.registration.bring import by_name, own_first
 from contactlab.registration.hooks import hookimpl
 
-#: Remedy for what is no material.
+#: Remedy for an object that is no material.
 A_MATERIAL = "make one, Material(...), or by its name: Material.named('steel')"
 #: Arguments of a material, which are no properties.
 OWN_NUMBERS = ("shear_modulus", "young_modulus", "poisson_ratio", "density", "yield_stress")
@@ -35,7 +35,7 @@ OTHER_NAMES = {
 
 
 class _MaterialArguments:
-    """What a material takes, without overloads: ``attrs.evolve`` is checked by it."""
+    """Arguments of a material, without overloads, as types for ``attrs.evolve``."""
 
     __slots__ = ()
 
@@ -143,7 +143,7 @@ class Material(_MaterialArguments, Generic[Each]):
         return f"Material({', '.join(f'{each}={getattr(self, each)!r}' for each in told)})"
 
     def find_property(self, name: str) -> tuple[Each | float, str] | None:
-        """Return a property and the unit that was given with it, empty if none; None without it.
+        """Return a property with its unit, empty if none was given; None without the property.
 
         Parameters
         ----------
@@ -251,7 +251,7 @@ def entry(name: str) -> Entry:
     """
     of_kind("name", name, str, rule="must be the name of a material", remedy="such as 'steel'")
     if own_first("materials") and (own := _own_by_key().get(_key(name))) is not None:
-        return own  # nothing of others is read for a name of contactlab's own
+        return own  # contactlab's own names need no plug-in
     collection = _collection()
     distribution, _, plain = name.rpartition(":")
     key = f"{distribution}:{_key(plain)}" if distribution else _key(plain)

@@ -1,4 +1,4 @@
-"""How far spin about the normal moves an impact where its friction is left out."""
+"""Effect of spin about the normal on an impact, where its friction is left out."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Nodes(NamedTuple):
 
 
 class NormalSpin(NamedTuple):
-    """Spin about the normal that no law answers, and what its friction would change.
+    """Spin about the normal that the law leaves out, and the changes by its friction.
 
     Attributes
     ----------
@@ -135,7 +135,7 @@ def gross_slip(psi1: Array, chi: Array, w: Array) -> tuple[Array, Array]:
 
 
 def normal_spin(scene: Scene, *, answered: Mask = False) -> NormalSpin | None:
-    """Return what spin about the normal does in each impact, or None if nothing turns.
+    """Return the effect of spin about the normal in each impact, or None without such spin.
 
     Parameters
     ----------

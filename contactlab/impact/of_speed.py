@@ -1,6 +1,6 @@
 """Numbers that follow from a speed before the impact: a restitution, a friction coefficient.
 
-They are given as a function of the speed, or as a table in which they are linear between speeds.
+The user gives a function of the speed, or a table that is linear between speeds.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ SAME_SLIP = 1e-12
 def numbers_at(
     argument: str, function: Callable[..., Numbers], speed: Real, shape: tuple[int, ...]
 ) -> AnyArray:
-    """Return what a function gives at speeds in m/s, as an array of ``shape``; unchecked numbers.
+    """Return the unchecked numbers of a function at speeds in m/s, as an array of ``shape``.
 
     The function takes one float, or an array of ``shape``.
     """
@@ -47,7 +47,7 @@ def spread_over(argument: str, numbers: Real, shape: tuple[int, ...]) -> Array: 
 @overload
 def spread_over(argument: str, numbers: Numbers, shape: tuple[int, ...]) -> AnyArray: ...
 def spread_over(argument: str, numbers: Numbers, shape: tuple[int, ...]) -> AnyArray:
-    """Return numbers of the shape of the impacts, read-only, or refuse those of another."""
+    """Return read-only numbers of the shape of the impacts; refuse another shape."""
     try:
         return np.broadcast_to(np.asarray(numbers), shape)
     except ValueError:
@@ -130,7 +130,7 @@ class OfSlip:
         return cls(law, numbers, spread(slip, shape))
 
     def at(self, friction: Real, slip: Real, shape: tuple[int, ...]) -> OfSlip | None:
-        """Return it for other slip speeds; None where another friction coefficient was given."""
+        """Return the law at other slip speeds; None if numbers replaced the friction."""
         if np.shape(friction) != np.shape(self.numbers) or not np.all(friction == self.numbers):
             return None
         alike = np.shape(self.slip) == shape and np.allclose(slip, self.slip, SAME_SLIP, 0.0)
@@ -140,7 +140,7 @@ class OfSlip:
 
 
 def friction(*, empty: bool = False) -> Any:
-    """Return the attrs field of a friction coefficient: numbers, or how they follow from slip."""
+    """Return the attrs field of a friction coefficient: numbers, or a function or table of slip."""
     return quantity("1", rule=NON_NEGATIVE, empty=empty, instead=is_law_of_slip)
 
 

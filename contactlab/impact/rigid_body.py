@@ -165,7 +165,7 @@ class RigidBody:
     cross_radius: Either = _curvature_field(default=None)
     curvature_axis: Array | None = _array("1", (3,))
     bending_period: Either = quantity("s", rule=POSITIVE, default=None, unknown=True)
-    #: Inertia about the centre of mass, in kg m², shape (..., 3, 3), whatever was given.
+    #: Inertia about the centre of mass, in kg m², shape (..., 3, 3), also from principal moments.
     inertia: Array = attrs.field(init=False, eq=False, repr=False)
     #: Batch shape of mass, inertia and curvature together.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
@@ -220,7 +220,7 @@ class RigidBody:
         object.__setattr__(self, "shape", shape)
 
     def _check_axis(self) -> None:
-        """Refuse two radii without an axis, and an axis that says nothing."""
+        """Refuse two radii without an axis, and an axis without two radii."""
         axis = self.curvature_axis
         if axis is None and np.any(np.not_equal(self.curvature_radius, self.crossing)):
             rule = "is needed where curvature_radius and cross_radius differ"
@@ -233,7 +233,7 @@ class RigidBody:
             raise refuse("curvature_axis", axis.tolist(), "must not be zero")
 
     def _ball_radius(self) -> Taken:
-        """Return the radius in m of a solid ball of this mass, or refuse what it cannot be."""
+        """Return the radius in m of a solid ball of this mass, or refuse an impossible radius."""
         remedy = "give it in m"
         if self.cross_radius is not None or self.curvature_axis is not None:
             raise refuse("curvature_radius", None, "is needed beside cross_radius", remedy)
@@ -310,7 +310,7 @@ class RigidBody:
 
     @staticmethod
     def alike(bodies: Sequence[RigidBody]) -> list[RigidBody]:
-        """Return bodies that are given by the same entries, to be stacked.
+        """Return bodies with the same entries, ready to be stacked.
 
         All have their inertia if any has principal moments, and two radii of curvature if any has.
 

@@ -57,7 +57,7 @@ def _tensors(value: Numbers | None) -> Array | None:
 
 
 class _SceneArguments:
-    """What a scene takes, without overloads: ``attrs.evolve`` is checked by it."""
+    """Arguments of a scene, without overloads, as types for ``attrs.evolve``."""
 
     __slots__ = ()
 
@@ -193,7 +193,7 @@ class Scene(_SceneArguments, Batches, Generic[Each]):
     )
     planar: bool = instance(bool, default=True, kw_only=True, repr=False)
     _options: Mapping[str, Any] = attrs.field(default=NOTHING, kw_only=True, repr=False)
-    #: How friction follows from slip; None where it is given by numbers.
+    #: Friction as a function of slip; None where friction is given by numbers.
     _of_slip: OfSlip | None = attrs.field(default=None, eq=False, kw_only=True, repr=False)
     links: Links | None = attrs.field(default=None, eq=False, repr=False, kw_only=True)
     #: Batch shape: () for one impact.
@@ -309,7 +309,7 @@ class Scene(_SceneArguments, Batches, Generic[Each]):
         self._check_scales()
 
     def _set_friction(self, shape: tuple[int, ...]) -> None:
-        """Set the friction that follows from the slip; numbers that were put in its place stay."""
+        """Set the friction that follows from the slip, unless numbers took its place."""
         slip = kinetics.slip_speed(self)
         if is_law_of_slip(self.friction_coefficient):
             if not self.has_units:
@@ -688,7 +688,7 @@ class Scene(_SceneArguments, Batches, Generic[Each]):
     def _maker(
         cls, bodies: Sequence[object], entries: Mapping[str, object]
     ) -> Callable[..., Scene]:
-        """Return what makes a scene of bodies and entries."""
+        """Return a function that makes a scene from bodies and entries."""
         if not bodies and {"psi1", "chi", "lam"} & set(entries):
             return cls.nondimensional
         return cls.at_angle if {"speed", "angle_deg"} & set(entries) else cls
@@ -730,6 +730,6 @@ UNITS: dict[str, str] = {
 def entry_unit(name: str) -> str:
     """Return the unit of an entry; the name may be dotted: ``"sphere.radius"`` has the unit m.
 
-    That of a property of a material, or of an option of a law, is not known here: ``SI``.
+    The unit of a material's property, or of a law's option, is not known here: ``SI``.
     """
     return UNITS.get(name.rpartition(".")[2], "SI") if "." in name else UNITS[name]

@@ -48,8 +48,8 @@ FREE_ENDS = 4.730040744862704**2
 #: The same of a needle, an ellipsoid far longer than wide, over its half-length: the root of the
 #: least eigenvalue of ((1 - s²)² w'')'' = q² (1 - s²) w that is no rigid motion.
 NEEDLE = 8.206954742
-#: As these, of a thin disc with a free rim that bends about two diameters: radius and thickness in
-#: place of length and radius of gyration; 1.78 for nu = 0, 1.62 for 0.3, 1.55 for 0.5.
+#: The same of a thin disc with a free rim that bends about two diameters: radius and thickness in
+#: place of length and radius of gyration. It is 1.78 for nu = 0, 1.62 for 0.3, 1.55 for 0.5.
 DISC = 1.62
 
 
@@ -61,7 +61,7 @@ def __getattr__(name: str) -> Never:
 
 
 def _pose_each(one: Maker) -> Maker:
-    """Return a function of one pose as one of many."""
+    """Return a function of many poses from one of a single pose."""
 
     @functools.wraps(one)
     def posed(*values: Any, **given: Any) -> tuple[RigidBody, Array]:
@@ -70,7 +70,7 @@ def _pose_each(one: Maker) -> Maker:
             arrays = {name: np.asarray(real(name, pose)) for name, pose in poses.items()}
             fronts = [array.shape[: array.ndim - POSE[name]] for name, array in arrays.items()]
             shape = np.broadcast_shapes(*fronts)
-        except ValueError:  # refused for one pose
+        except ValueError:  # the function of one pose refuses it
             return one(*values, **given)
         if not shape or values:
             return one(*values, **given)
@@ -105,7 +105,7 @@ def _stack(made: list[tuple[RigidBody, Array]], shape: tuple[int, ...]) -> tuple
 
 
 def _radii(radii: list[Real], shape: tuple[int, ...]) -> Real:
-    """Return radii as an array, or one number that nobody gave."""
+    """Return radii as an array, or as one number if the user gave none."""
     taken = [isinstance(each, Taken) for each in radii]
     if any(taken) and not all(taken):
         rule = "is needed where some poses touch with an edge, and others with a corner"
@@ -528,7 +528,7 @@ def _round_box(half: Array, r: float) -> tuple[float, Array]:
     return volume, (inside + faces + along + around + corners) / volume
 
 
-@functools.cache  # NumPy takes longer to find them than all else of a body
+@functools.cache  # NumPy takes longer here than for the rest of a body
 def _gauss(count: int) -> tuple[Array, Array]:
     """Return points and weights of Gauss's rule on [-1, 1]."""
     points, weights = np.polynomial.legendre.leggauss(count)
