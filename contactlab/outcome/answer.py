@@ -1,4 +1,4 @@
-"""What every result of a run says: failures, cautions, and a check that raises them."""
+"""Failures and cautions of every result, and a check that raises them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class ImpactError(RuntimeError):
 
 
 class Checked(Plotted):
-    """Base of what tells failures and cautions, and raises them on demand."""
+    """Base of results that tell failures and cautions, and raise them on demand."""
 
     __slots__ = ()
 
@@ -58,7 +58,7 @@ class Checked(Plotted):
         """Return the status of an impact by its index in C order."""
 
     def _tell_missing(self) -> str:
-        """Return what was not computed, and how to go on; empty if all was."""
+        """Return which impacts were not computed, and how to go on; empty if none is missing."""
         return ""
 
     def check(self, *, cautions: bool = False) -> Self:
@@ -85,7 +85,7 @@ class Checked(Plotted):
         return self
 
     def _first_lines(self) -> list[str]:
-        """Return what ``str`` begins with."""
+        """Return the first lines of ``str``."""
         return [repr(self)]
 
     def __str__(self) -> str:
@@ -107,11 +107,11 @@ class Answer(Checked):
 
     @abstractmethod
     def _statuses(self) -> tuple[Statuses, Details]:
-        """Return statuses and details of what was run."""
+        """Return statuses and details of the impacts."""
 
     def _iterate_failures(self) -> Iterator[tuple[int, str]]:
         ends = self._statuses()
-        if succeeded(ends[0]):  # a look at each of a million takes long
+        if succeeded(ends[0]):  # a loop over a million takes long
             return
         statuses, details = (np.ravel(np.array(entry, dtype=object)) for entry in ends)
         for index, (status, detail) in enumerate(np.broadcast(statuses, details)):

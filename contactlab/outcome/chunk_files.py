@@ -17,7 +17,7 @@ import attrs
 from contactlab.numeric.types import AnyArray
 from contactlab.outcome.chunk_forms import NPZ, About, ByName, Chunk, Form, checksum, read_notes
 
-#: What reading a damaged file raises.
+#: Errors that reading a damaged file raises.
 DAMAGED = (
     OSError, EOFError, KeyError, TypeError, ValueError, RuntimeError,
     zipfile.BadZipFile, tokenize.TokenError,
@@ -55,7 +55,7 @@ def refuse_file(argument: str, path: Path, rule: str, remedy: str) -> ValueError
 
 
 def refuse_damage(argument: str, path: Path, error: Exception) -> ValueError:
-    """Return the refusal of a file that cannot be read; one that may be whole is not given up."""
+    """Return the refusal of an unreadable file; a file that may be whole is not to be deleted."""
     # Damage of an archive makes an OSError without a number, or of a seek that is out of range.
     if isinstance(error, OSError) and error.errno not in (None, errno.EINVAL):
         return refuse_file(argument, path, f"cannot be read: {error.strerror}", "try again")
@@ -63,7 +63,7 @@ def refuse_damage(argument: str, path: Path, error: Exception) -> ValueError:
 
 
 def refuse_place(argument: str, path: Path, chunk: Chunk, form: Form = NPZ) -> ValueError:
-    """Return the refusal of a file whose name has other impacts than its ``chunk``."""
+    """Return the refusal of a file whose name tells other impacts than its ``chunk``."""
     rule = f"contains impacts {chunk.first} to {chunk.stop}, which are not those of its name"
     remedy = f"rename it to {name_of(chunk, form)}, or delete this file"
     return refuse_file(argument, path, rule, remedy)
@@ -103,7 +103,7 @@ class _Compared:
 
 
 def read_about(path: Path, form: Form, argument: str = "path") -> About:
-    """Return what a chunk tells, or refuse a damaged file and one of another version."""
+    """Return the notes of a chunk, or refuse a damaged file and a file of another version."""
     with columns_of(path, form, argument=argument) as content:
         told = read_notes(str(content["about"]))
     if told.keys() != {*About._fields}:
@@ -116,9 +116,9 @@ def read_about(path: Path, form: Form, argument: str = "path") -> About:
 
 
 def abouts_in(folder: Path, form: Form) -> list[tuple[Path, About]]:
-    """Return the files of a folder, in order, with what each tells.
+    """Return the files of a folder, in order, each with its notes.
 
-    Sentences on failures stay in the files: those of a million impacts take more than the memory.
+    Sentences on failures stay in the files: a million of them would not fit into memory.
 
     Raises
     ------

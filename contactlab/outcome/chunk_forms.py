@@ -19,10 +19,9 @@ from contactlab.outcome.frames import import_optional
 COLUMN_OF_STATUS = "status"
 #: Compression of columns of Parquet; no checksum covers the word of a file about it.
 CODEC = "SNAPPY"
-#: In the metadata of a Parquet file: what the chunk tells.
+#: Key of the notes of a chunk in the metadata of a Parquet file.
 TOLD = b"contactlab"
-#: Numbers of a column that are added up before they are hashed, each with those so many places on:
-#: a hash of all bytes takes 6 % of a sweep.
+#: A hash of all bytes takes 6 % of a sweep, so numbers this many places apart are first added up.
 LANES = 1021
 
 
@@ -39,7 +38,7 @@ class Chunk(NamedTuple):
 
 
 class About(NamedTuple):
-    """What a chunk tells beside its columns.
+    """The notes of a chunk, beside its columns.
 
     Attributes
     ----------
@@ -86,7 +85,7 @@ class About(NamedTuple):
 
 
 def read_notes(text: str) -> dict[str, Any]:
-    """Return what a chunk tells, by name; ``ValueError`` if it is not what was written."""
+    """Return the notes of a chunk by name; ``ValueError`` if they are not as written."""
     words, checksum = json.loads(text)
     if zlib.crc32(words.encode()) != checksum:
         raise ValueError("its words are not those that were written")
@@ -189,7 +188,7 @@ def _read_parquet(path: Path, names: Sequence[str]) -> Iterator[ByName]:
 
 
 class _ParquetColumns:
-    """The columns of a file of Parquet by name, and what the chunk tells."""
+    """The columns of a file of Parquet by name, and the notes of the chunk."""
 
     def __init__(self, parquet: ModuleType, path: Path, names: Sequence[str]) -> None:
         self.file = parquet.ParquetFile(path, page_checksum_verification=True)
@@ -200,7 +199,7 @@ class _ParquetColumns:
             return np.array(self.file.schema_arrow.metadata[TOLD].decode())
         column = self.file.read([name], use_threads=False).column(name).combine_chunks()
         place = self.file.schema_arrow.get_field_index(name)
-        # Only after a column is read: pyarrow ends the process if asked for a codec it has not.
+        # Read a column first: asked for a codec that it lacks, pyarrow ends the process.
         codec = self.file.metadata.row_group(0).column(place).compression
         if codec != CODEC:
             raise ValueError(f"{name} is compressed by {codec}, not {CODEC}")

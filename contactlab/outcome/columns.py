@@ -174,7 +174,7 @@ COMPARISON_TABLE = (
 )  # fmt: skip
 
 
-#: What plug-ins brought, and its columns in order.
+#: The answers of plug-ins, and their columns in order.
 _SORTED: tuple[list[Mapping[str, Column]], list[Column]] = ([], [])
 
 
@@ -236,7 +236,7 @@ class _Size(Column):
 class _Quantities(Mapping[str, Column]):
     """The columns of numbers by name; plug-ins are asked for them at the first use.
 
-    ``"|name|"`` is the size of one; it is not among those listed.
+    ``"|name|"`` is the size of a column; lists leave it out.
     """
 
     def __init__(self) -> None:
@@ -295,9 +295,9 @@ def columns_of(scene: Scene) -> tuple[Column, ...]:
 
 
 def columns(result: WithScene, whole: Scene | None = None) -> list[tuple[str, str, object]]:
-    """Return name, unit and values of every column; entries that vary and are none come first.
+    """Return name, unit and values of every column; varying entries that are no columns come first.
 
-    A part of a ``whole`` batch has the columns of all: it may be without spin by chance.
+    A part of a ``whole`` batch has the columns of the batch: the part may lack spin by chance.
     """
     scene, table = result.scene, []
     for column in columns_of(whole or scene):

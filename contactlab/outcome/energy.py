@@ -20,8 +20,8 @@ from contactlab.numeric.types import Each, Json, Mask, Real
 from contactlab.outcome.motion import Motion, all_finite
 from contactlab.outcome.plan import PlanColumns
 
-#: A normal restitution above this is energy from nothing where no error of it is declared: an
-#: explicit scheme with the fewest steps leaves e - 1 = 3e-3.
+#: Without a declared error, a normal restitution above this is energy from nothing: an explicit
+#: scheme with the fewest steps leaves e - 1 = 3e-3.
 LARGEST_RESTITUTION = 1.02
 #: Losses below zero, over the energy at the start: rounding, and what steps of both motions leave
 #: where no error is declared. The jump of DMT's force as contact ends left 0.003 in 200 steps, 0.01
@@ -138,7 +138,7 @@ def passes(
 ) -> bool:
     """Return whether ``sound`` and the judges leave one impact as it is: all in a few floats.
 
-    ``bare`` is ``coupled`` of ``sound``. A change of the spin about the normal is left to them.
+    ``bare`` is ``coupled`` of ``sound``. The judges alone judge a change of spin about the normal.
     """
     if motion.status is not Status.SUCCESS or not all_finite(motion, bare):
         return False
@@ -253,7 +253,7 @@ def _spoils(motion: Motion, scene: Scene, bound: Real) -> bool:
 def _mark_imbalance(
     motion: Motion, scene: Scene, bound: Real, alone: Mask, gain: Real
 ) -> tuple[Motion, Real]:
-    """Return ``motion`` with the status of each impact whose books do not balance, and how far.
+    """Return ``motion`` with the status of impacts whose books do not balance, and by how much.
 
     ``alone`` marks impacts whose slip alone friction changed; ``gain`` is what the normal force may
     make of the energy at the start, NaN if no error of it is declared.
@@ -264,7 +264,7 @@ def _mark_imbalance(
     after: Real = kinetics.size_of(scene, scene.slip_velocity + motion.slip_velocity_change)
     imbalance = magnitude(books.imbalance)
     start: Real = books.start
-    if kinetics.turns(scene):  # a spin that friction left has no part in what is judged
+    if kinetics.turns(scene):  # unchanged spin does not count
         left = kinetics.energies(scene, motion.normal_velocity, motion.slip_velocity_change)
         start = np.where(motion.normal_spin_change == 0.0, left[0], start)[()]  # a number for one
     made: Real = -np.divide(books.normal_loss, start)
@@ -279,7 +279,7 @@ def _mark_imbalance(
         (alone & (after > LARGEST_SLIP * before),
          "The contact slips {:.4g} times as fast as it met.",
          lambda: (np.divide(after, before),)),
-        # a gain beyond the largest number is none
+        # an overflow is no gain
         (coupled & np.logical_not(books.end <= LARGEST_RESTITUTION**2 * books.start),
          "The bodies gain {:.2g} of their energy.",
          lambda: (np.nan_to_num(books.end / books.start - 1.0, nan=math.inf),)),
@@ -293,7 +293,7 @@ def _mark_imbalance(
 
 
 def gains_of_losses(books: EnergyLedger, start: Real, bound: Real) -> list[Judged]:
-    """Return what is judged of losses that are below zero by more than books may be off."""
+    """Return the judgement of losses below zero by more than the books may be off."""
     work, shear_loss = np.divide(books.friction_work, start), np.divide(books.shear_loss, start)
     most: Real = np.minimum(bound, STEPS_LEAVE) + ROUNDING
     words = "The {} is {{:.2g}} of the energy at the start."

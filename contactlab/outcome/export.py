@@ -27,7 +27,7 @@ from contactlab.outcome.result import ImpactResult
 
 #: A column of texts or numbers, or one text that all rows have.
 Cells: TypeAlias = "str | AnyArray"
-#: Rows of a CSV file from which pyarrow is worth its import, and that are made at once.
+#: Rows of a CSV file from which on pyarrow is worth its import; also the rows of one batch.
 MANY = 50_000
 #: Rows that one format writes.
 AT_ONCE = 500
@@ -96,14 +96,14 @@ def _lines(cells: Sequence[Cells], rows: int) -> Iterator[str]:
 
 
 def _form(cell: Cells) -> str:
-    """Return how a cell stands in the format of a row."""
+    """Return the format of a cell within the format of a row."""
     if isinstance(cell, str):
         return cell.replace("%", "%%")
     return "%s" if cell.dtype.kind == "U" else "%r"
 
 
 def _lines_of_many(cells: Sequence[Cells], rows: int) -> Iterable[str]:
-    """Return the same numbers by pyarrow, which writes 1 for 1.0, and them twice as fast."""
+    """Return the same numbers by pyarrow, twice as fast; it writes 1 for 1.0."""
     if all(isinstance(each, str) for each in cells):  # no column tells how many rows there are
         return _lines(cells, rows)
     pyarrow, compute = map(importlib.import_module, ("pyarrow", "pyarrow.compute"))
@@ -137,7 +137,7 @@ def write_npz(result: ImpactResult, path: str | Path) -> None:
 
 
 def _write_arrays(stream: IO[bytes], arrays: Mapping[str, AnyArray]) -> None:
-    """Write arrays as npz, compressed where numbers repeat: others hardly shrink, and take long."""
+    """Write arrays as npz, compressed only where numbers repeat and so shrink."""
     with zipfile.ZipFile(stream, "w", compresslevel=1) as archive:
         for name, values in arrays.items():
             archive.compression = _kind_of(np.ascontiguousarray(values))  # of what is opened next

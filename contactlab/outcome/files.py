@@ -1,4 +1,4 @@
-"""Files are written to a temporary file, then renamed: a file is complete or absent.
+"""Files are written under a temporary name, then renamed: a file is complete or absent.
 
 Every file that contactlab writes goes through ``replace_file``. A full disk, an error or a killed
 process leaves the old file unchanged; only a killed process leaves a file
@@ -33,12 +33,12 @@ TEXT: OfText = {
 }  # fmt: skip
 #: Largest scene or table that is read, in bytes: enough for a sweep of a million numbers.
 LARGEST = 32_000_000
-#: Names of temporary files, with ``*`` for what is drawn.
+#: Names of temporary files, with ``*`` for random letters.
 PARTS = ".contactlab-*.part"
 
 
 def stamp(path: str | Path) -> tuple[int, ...]:
-    """Return what changes when a file is written; nothing of one that is not there."""
+    """Return a value that changes when a file is written; empty for a missing file."""
     try:
         status = os.stat(path)
     except OSError:

@@ -18,7 +18,7 @@ HISTORY = "history"
 
 
 class WithScene(Protocol):
-    """What columns and functions of a plug-in read: one impact, or a batch of them."""
+    """Argument of columns and functions of plug-ins: the result of an impact or of a batch."""
 
     @property
     def scene(self) -> Scene:
@@ -41,7 +41,7 @@ def values_of(
 ) -> object:
     """Return the values of a function of a result, NaN and a warning for impacts where it fails.
 
-    A function that needs a history has no value without.
+    A function that needs a history has no value without a history.
     """
     if HISTORY in needs and not result.history:
         return None
@@ -55,7 +55,7 @@ def values_of(
 
 
 def _numbers(value: Callable[[WithScene], object], result: WithScene) -> object:
-    """Return the numbers of a function of a result, or refuse what is none, or of another shape."""
+    """Return the numbers of a function of a result; refuse other objects and other shapes."""
     given = value(result)
     shape = result.scene.shape
     if given is None or type(given) is float:

@@ -191,7 +191,7 @@ class Recorder:
     def history(self) -> History:
         """Return the history of the samples; its arrays have length 0 if there are none."""
         shape, count = self._shape, len(self._rows)
-        batch = (math.prod(shape),) if shape else ()  # what is recorded has one axis
+        batch = (math.prod(shape),) if shape else ()  # records have one axis
         columns: dict[str, Array] = {}
         for index, name in enumerate(_names()):
             first = np.shape(self._rows[0][index]) if count else ()

@@ -15,7 +15,7 @@ from contactlab.outcome.style import Width, curve_colour, figure_size, styled, z
 
 
 class Forces(Protocol):
-    """What is drawn of a history."""
+    """The part of a history that is drawn."""
 
     @property
     def time(self) -> Array:

@@ -1,4 +1,4 @@
-"""Files that one process has for itself: the operating system ends the lock with the process."""
+"""Locks of files, which the operating system ends with the process."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _OURS: set[int] = set()
 
 
 class InUseError(Exception):
-    """Another, in this process or another, holds the lock of a file."""
+    """Other code, in this process or another, holds the lock of a file."""
 
 
 @contextlib.contextmanager
 def alone_with(path: Path) -> Iterator[tuple[IO[str], bool]]:
-    """Open a text, made if there is none, and hold its lock, which only one has at a time.
+    """Open a text file, made if missing, and hold its exclusive lock.
 
     The second entry is False on a disk without locks. Where nothing can be written the text is
     open for reading.

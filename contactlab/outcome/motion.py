@@ -96,7 +96,7 @@ class Motion(TangentialMotion[Each]):
                 own = Ends.of(tangential.normal)
                 if not math.isnan(own.final_rate):
                     ends, exchange, compressions = own, _exchange(normal, own), own.compressions
-            alone: dict[str, Any] = {  # named entry by entry: a loop is slower than all else here
+            alone: dict[str, Any] = {  # entry by entry: a loop would take most of the time
                 "status": tangential.status,
                 "detail": tangential.detail,
                 "counters": tangential.counters,
@@ -146,7 +146,7 @@ class Motion(TangentialMotion[Each]):
 def _gather_ends(
     normal: NormalMotion, tangential: TangentialMotion | WholeImpact, entries: Mapping[str, Real]
 ) -> Mapping[str, Real]:
-    """Return the entries of the normal motion that came of the friction, and the exchange."""
+    """Return the entries of the normal motion that friction changed, and the exchange."""
     own = Ends.of(tangential.normal)
     # NaN, unequal to itself, where friction left the normal motion as it was.
     alone = own.final_rate != own.final_rate
@@ -172,7 +172,7 @@ def _exchange(normal: NormalMotion, own: Ends) -> Real:
     return moved
 
 
-#: What a law that answers both motions together must know.
+#: Numbers that a law must give if it answers both motions together.
 MOVED = (
     "normal_velocity", "slip_velocity_change", "friction_work", "shear_loss", "normal_spin_change",
 )  # fmt: skip
@@ -183,7 +183,7 @@ _numbers, _moved = attrgetter(*CHECKED), attrgetter(*MOVED)
 
 
 def all_finite(motion: Motion, coupled: bool) -> bool:
-    """Return whether the sum of the numbers is finite, which it is not if one of them is not.
+    """Return whether all numbers are finite, by their sum.
 
     ``coupled`` is that of ``sound``.
     """

@@ -1,4 +1,4 @@
-"""What a plan says of spin about the normal where its friction is left out."""
+"""Words of a plan on spin about the normal whose friction is left out."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LEAST_SHIFT, LEAST_LOSS = 1e-3, 1e-2
 
 
 def with_normal_spin(words: Words, scene: Scene, *, answered: Mask = False) -> Words:
-    """Return the words of a plan with what spin about the normal would change.
+    """Return the words of a plan, with cautions of the changes by spin about the normal.
 
     ``answered`` marks impacts whose law answers spin about the normal, unless a body is off centre.
     """

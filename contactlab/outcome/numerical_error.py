@@ -33,7 +33,7 @@ class WithPlan(WithScene, Protocol):
 def error_words(result: WithPlan) -> str:
     """Return the numerical error of psi2 in words, estimated and declared."""
     if result.psi2_error_estimate is None and isinstance(result.plan.psi2_error, float):
-        error = result.plan.psi2_error  # one number for all: no array is made
+        error = result.plan.psi2_error  # one number for all needs no array
         told = "not declared" if math.isnan(error) else f"at most {error:.1g}, declared"
         return "; ".join(["not estimated", told, *_of_spin(result.plan)])
     estimate, declared = _errors(result)
@@ -52,7 +52,7 @@ def error_words(result: WithPlan) -> str:
 
 
 def _of_spin(plan: Plan) -> list[str]:
-    """Return that spin about the normal is left out, if it is."""
+    """Return words on spin about the normal if it is left out, else nothing."""
     return [WITHOUT_SPIN] if any(clause.code == NORMAL_SPIN for clause in plan.left_out) else []
 
 
@@ -88,7 +88,7 @@ def _is_fine(result: WithPlan) -> bool:
     plan = result.plan
     if result.scene.shape or result.psi2_error_estimate is not None:
         return False
-    if not plan.marched:  # nobody steps
+    if not plan.marched:  # no steps, no estimate
         return True
     unit, width, _ = range_of(result.scene)
     return isinstance(plan.psi2_error, float) and bool(plan.psi2_error * unit <= COARSE * width)

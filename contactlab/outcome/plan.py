@@ -1,4 +1,4 @@
-"""The plan of an impact: statements on what is computed and what is left out, and cautions."""
+"""The plan of an impact: what is computed, what is left out, and cautions."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ TANGENTIAL_MOTION, PSI2_ERROR = "tangential_motion", "psi2_error"
 NORMAL_SPIN = "normal_spin"
 #: Words beside an error of psi2 where bodies spin about the normal.
 WITHOUT_SPIN = "without spin about the normal"
-#: Codes of impacts that no whole-impact answer is for: marched, without an end of the normal
-#: motion, and unknown. Other codes are places in the reasons.
+#: Codes of impacts without a whole-impact answer: marched, without an end of the normal motion, and
+#: unknown. Other codes are places in the reasons.
 MARCHED, ENDLESS, UNKNOWN = -1, -2, -3
 
 
 class Reason(NamedTuple):
-    """Why impacts are not marched.
+    """The reason why impacts are not marched.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Reason(NamedTuple):
 
 
 class PlanColumns(NamedTuple):
-    """What a plan says of each impact, as numbers.
+    """The plan of each impact as numbers.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class PlanColumns(NamedTuple):
 
     @classmethod
     def nothing(cls, shape: tuple[int, ...]) -> PlanColumns:
-        """Return the columns of impacts of which nothing is known."""
+        """Return the columns of impacts without a plan."""
         code = np.full(shape, UNKNOWN, dtype=np.int16)
         unknown = np.full(shape, math.nan) if shape else math.nan
         return cls(code, unknown, (), unknown)
@@ -123,13 +123,13 @@ class PlanColumns(NamedTuple):
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, Any]) -> PlanColumns:
-        """Return the columns that ``to_arrays`` was called of."""
+        """Return the columns from the arrays of ``to_arrays``."""
         reasons = tuple(Reason(*each) for each in json.loads(str(arrays["reasons"])))
         return cls(arrays["code"], arrays["psi2_error"], reasons, arrays["restitution_error"])
 
 
 class Clause(NamedTuple):
-    """A statement of a plan: words, the impacts that they are said of, and the values in them.
+    """A statement of a plan: its words, its impacts, and the values in the words.
 
     Attributes
     ----------
@@ -180,7 +180,7 @@ KINDS = ("computed", "left_out", "cautions")
 
 @attrs.frozen(eq=False, slots=False)  # frozen slots are slow to fill
 class Plan:
-    """What will be computed, what is left out, and what to be wary of.
+    """What is computed, what is left out and why, and cautions.
 
     Parameters
     ----------

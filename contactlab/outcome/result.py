@@ -92,7 +92,7 @@ class ImpactResult(Answer, Generic[Each]):
         return f"ImpactResult({self._tell()}; {tell_statuses(self.status)}; {laws})"
 
     def _tell(self) -> str:
-        """Return what ``repr`` says of the answer."""
+        """Return the words of ``repr`` on the answer."""
         scene, psi2 = self.scene, np.asarray(self.psi2)
         if scene.shape:
             finite, what = psi2, "psi2"
@@ -169,7 +169,7 @@ class ImpactResult(Answer, Generic[Each]):
     def rebound_normal_velocity(self) -> Each | Any:
         """Velocity of the sphere along the normal, in m/s; negative: away from the target.
 
-        None for bodies that are no spheres, but where the scene has a tangent ``along``: see
+        None for bodies that are no spheres, unless the scene has a tangent ``along``: see
         ``velocity_in_space`` and ``normal_velocity``.
         """
         speed, pair = self.scene.normal_speed, self.scene.pair
@@ -237,8 +237,8 @@ class ImpactResult(Answer, Generic[Each]):
     def rebound_normal_spin(self) -> Each:
         """Spin about the normal of the first body over the target after the impact, in rad/s.
 
-        By the right-hand rule about the normal into the target. Where the law does not answer spin
-        about the normal it is the one before, and the plan cautions.
+        By the right-hand rule about the normal into the target. A law that does not answer spin
+        about the normal leaves the spin before, and the plan cautions.
         """
         axes = self.scene.frame
         if axes is None:
@@ -296,7 +296,7 @@ class ImpactResult(Answer, Generic[Each]):
 
     @property
     def tangential_restitution(self) -> Each | Any:
-        """e_t = centre's tangential velocity after over before; NaN where zero before."""
+        """e_t = tangential velocity of the centre after over before; NaN if zero before."""
         after, before = self.rebound_tangential_velocity, self.scene.tangential_velocity
         if self.scene.along is not None:
             before = _see(self.scene, self.scene.encounter.velocity)[1]
@@ -304,7 +304,7 @@ class ImpactResult(Answer, Generic[Each]):
 
     @property
     def beta0(self) -> Each:
-        """-psi2/psi1: minus the slip velocity after over before, along the slip; NaN where zero."""
+        """-psi2/psi1, minus the slip velocity after over before; NaN if zero before."""
         scene = self.scene
         slips = self.rebound_slip_velocity, scene.slip_velocity
         after, before = (kinetics.along_slip(scene, slip) for slip in slips)
@@ -353,7 +353,7 @@ class ImpactResult(Answer, Generic[Each]):
     def _statuses(self) -> tuple[Statuses, Details]:
         return self.motion.status, self.motion.detail
 
-    if TYPE_CHECKING:  # a status of one impact, an array of a batch
+    if TYPE_CHECKING:
         status: ClassVar[StatusOf]
     else:
 

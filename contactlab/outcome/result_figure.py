@@ -28,7 +28,7 @@ from contactlab.outcome.style import (
 
 
 class Drawn(WithHistory, Protocol):
-    """What is drawn of a result."""
+    """The part of a result that is drawn."""
 
     def __getitem__(self, index: int, /) -> WithScene: ...
 
@@ -63,8 +63,8 @@ def draw_result(
 ) -> Axes:
     """Draw ``y`` over ``x`` for a batch, or the course of a single impact.
 
-    The course is that of the forces; where friction changes the approach the path of slip, over
-    the velocity of approach in the plane, and as a vector in space.
+    The course is that of the forces. Where friction changes the approach it is the path of slip:
+    over the velocity of approach in the plane, as a vector in space.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def draw_result(
 
 
 def _abscissa(result: Drawn) -> str:
-    """Return psi1, or the first entry that varies where psi1 does not tell the impacts apart."""
+    """Return psi1, or the first varying entry where psi1 is the same in all impacts."""
     psi1 = result.psi1
     if np.shape(psi1) == result.scene.shape and np.ptp(psi1) > 0.0:
         return "psi1"

@@ -1,4 +1,4 @@
-"""Columns of a result with their axes and units: what frames, data sets and figures are made of."""
+"""Columns of a result with their axes and units, for frames, data sets and figures."""
 
 from __future__ import annotations
 

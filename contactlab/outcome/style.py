@@ -187,7 +187,7 @@ def styled(look: Look = "print", width: Width | None = None) -> Iterator[None]:
 def darken(figure: Figure) -> None:
     """Put a figure on the dark ground of slides: greys are turned round, colours lightened."""
     kept = {*map(mpl.colors.to_rgb, own_colours())}
-    # every colour is read before any is changed: some follow others
+    # read all colours first: some follow others
     changes: list[tuple[Any, Any]] = []
     for artist in figure.findobj(lambda each: not isinstance(each, Figure | Axes)):
         if getattr(artist, "get_array", lambda: None)() is not None:  # coloured by a map
@@ -210,7 +210,7 @@ def darken(figure: Figure) -> None:
 
 
 def _on_dark(colour: Array, kept: Set[tuple[float, float, float]]) -> tuple[float, ...]:
-    """Return a colour for the dark ground, or one that is kept; what is transparent stays so."""
+    """Return a colour for the dark ground; some colours, and transparency, are kept."""
     red, green, blue, alpha = map(float, colour)
     if (red, green, blue) in kept:
         return red, green, blue, alpha
@@ -267,7 +267,7 @@ def own_colours() -> list[ColorType]:
 
 
 def curve_colour(number: int) -> ColorType:
-    """Return the colour of the curve at place ``number``: one's own, or of the palette."""
+    """Return the colour of the curve at place ``number``, the user's or that of the palette."""
     colours = own_colours() or LAW_COLOURS
     return colours[number % len(colours)]
 

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
     from contactlab.outcome.style import Width
 
-#: What ``sweep.json`` says of a folder of this kind, and of the codes of its statuses.
+#: Words of ``sweep.json`` for a folder of this kind, and for the codes of its statuses.
 KIND, STATUSES = "columns of results", "statuses"
 #: A number in a sentence.
 NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?")
@@ -62,7 +62,7 @@ def about_of(
     sums: Mapping[str, int],
     computer: str,
 ) -> About:
-    """Return what the chunk of a result tells.
+    """Return the notes of the chunk of a result.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def about_of(
 
 
 def _tell(same: list[tuple[list[float], str, About]], total: int) -> str:
-    """Return one sentence for those of several chunks, which differ in numbers only."""
+    """Return one sentence for several chunks whose sentences differ in numbers only."""
     _, sentence, about = max(same, key=lambda each: each[0])
     if len(same) == total and all(other == sentence for _, other, _ in same):
         return sentence
@@ -97,7 +97,7 @@ def _tell(same: list[tuple[list[float], str, About]], total: int) -> str:
 
 
 class _Unchanged(NamedTuple):
-    """A chunk's file, what it tells, and its stamp when the folder was opened."""
+    """A chunk's file, its notes, and its stamp when the folder was opened."""
 
     path: Path
     about: About
@@ -236,7 +236,7 @@ class SweepFolder(Checked):
             yield slice(*about.chunk), _read(path, self._form, self._names, about, wanted)
 
     def _find_names(self, names: Sequence[str]) -> Sequence[str]:
-        """Return names of columns, all of them if none is given, or refuse what is none."""
+        """Return names of columns, by default all, or refuse a name of no column."""
         wanted = names or tuple(self.units)
         for name in wanted:
             rule, remedy = "must be the name of a column", "'psi2', or chunks('psi1', 'psi2')"
@@ -333,7 +333,7 @@ class SweepFolder(Checked):
         return frame
 
     def _draw(self, axes: Axes | None, x: str | None, y: str | None, width: Width | None) -> Axes:
-        """Draw one column over another, by default psi2 over psi1; no other is read."""
+        """Draw one column over another, by default psi2 over psi1; only these two are read."""
         from contactlab.outcome.sheet_figure import draw_sheet  # matplotlib only when drawing
 
         x, y = x or "psi1", y or "psi2"
@@ -342,7 +342,7 @@ class SweepFolder(Checked):
     def __getitem__(self, name: str) -> NDArray[Any]:
         """Return a column of the sweep up to its last chunk, shape (n,); no chunk may be missing.
 
-        An unfinished sweep has fewer impacts: ``check`` tells.
+        An unfinished sweep has fewer impacts, which ``check`` tells.
         """
         return self._columns(name)[name]
 

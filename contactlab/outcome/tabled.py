@@ -1,4 +1,4 @@
-"""The doors of every result: plain numbers, frames, data sets, a notebook's view and a figure."""
+"""Conversions of every result: plain numbers, frames, data sets, a notebook's view, a figure."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Tabled:
-    """Base of results that have columns: one list of them serves every door."""
+    """Base of results that have columns: one list of columns serves every conversion."""
 
     __slots__ = ()
 
@@ -83,10 +83,10 @@ class Plotted(Tabled):
         axes: Axes | None = None,
         width: Width | None = None,
     ) -> Axes:
-        """Return axes with ``y`` over ``x``, or without them with what each kind of result shows.
+        """Return axes with ``y`` over ``x``; without these names, the usual figure of the result.
 
-        That is psi2 over psi1 of a batch or a folder, forces over time of a history, of an impact
-        and of a gathering that kept one, and friction force over displacement of a load path.
+        The usual figure is psi2 over psi1 of a batch or a folder, forces over time where a history
+        was kept, and friction force over displacement of a load path.
 
         Parameters
         ----------

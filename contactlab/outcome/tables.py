@@ -66,7 +66,7 @@ def time(seconds: float) -> str:
 def answer(result: ImpactResult) -> list[tuple[str, str]]:
     """Return psi2 of one impact, its numerical error and the run time, as (name, words).
 
-    The dimensionless groups of bodies come with it.
+    The dimensionless groups of bodies follow.
     """
     groups = _groups(result.scene) if has_bodies(result.scene) else []
     return [

@@ -1,4 +1,4 @@
-"""Whole-impact answers: what a tangential law knows of a scene without a march."""
+"""Whole-impact answers of a tangential law to a scene, without a march."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ from contactlab.numeric.types import Real
 
 Mask = NDArray[np.bool_]
 
-#: The mask of a single impact: NumPy takes longer to make one than to say what it says.
+#: The mask of a single impact: making an array costs more than the test of a mask.
 ONE: Mask = lock_arrays(np.array(True))
 #: The numbers of a whole-impact answer: one call is faster than a loop over names.
 _numbers = attrgetter("slip_velocity_change", "friction_work", "shear_loss", "normal_spin_change")
-#: Their types in most answers to one impact.
+#: Types of these numbers in most answers to one impact.
 FLOATS = {float}
 #: Instants in the history of an impact that is not marched.
 INSTANTS = 201
 
 
 class Answered(NamedTuple):
-    """A whole-impact answer and the impacts that it is taken for."""
+    """A whole-impact answer and the impacts that take it."""
 
     where: Mask
     answer: WholeImpact
@@ -74,7 +74,7 @@ def answers(
     for answer in tangential.whole_impacts(scene, normal):
         where = left & answer.where
         if where.shape != shape:
-            np.broadcast_to(answer.where, shape)  # raises what is wrong
+            np.broadcast_to(answer.where, shape)  # raises for a mask of another shape
         if not always:
             where &= np.logical_not(_falls_short(answer, history, largest_error))
         if where.any():
@@ -153,7 +153,7 @@ def _fields(
 
 
 def _falls_short(answer: WholeImpact, history: bool | str, largest_error: Real) -> bool | Mask:
-    """Return where a march is more accurate than an answer, or has a course that is asked for."""
+    """Return where a march is more accurate than an answer, or has a requested course."""
     if history and answer.course is None:
         return True
     return answer.psi2_error > largest_error
@@ -186,9 +186,9 @@ def _complain_of_gaps(law: TangentialLaw) -> faults.LawFaultError:
 def check_motion(
     motion: object, shape: tuple[int, ...], axes: tuple[int, ...] = ()
 ) -> TangentialMotion:
-    """Return the motion that a law or an integrator gave, or raise what is wrong with it.
+    """Return the motion of a law or an integrator, or raise an error for a malformed one.
 
-    ``axes`` are those of a slip velocity beside the batch's.
+    ``axes`` are the axes of a slip velocity behind those of the batch.
     """
     if not isinstance(motion, TangentialMotion):
         raise TypeError(f"gave {quote(motion)}, not a TangentialMotion")

@@ -39,13 +39,13 @@ CANCELS = 1e-4
 NEAR_SINGULAR = ((0.1, 0.07), (0.01, 0.4), (0.001, 1.2))
 #: Springs of gatherings that are solved at a time.
 IN_CACHE = 25_000
-#: Least slip at which cautions are ask, over the larger of two.
+#: Least slip about which cautions are asked, over the larger of two.
 LITTLE = 1e-3
 #: Statuses by which a law ends a whole batch: its impacts are then solved one by one.
 GIVEN_UP = (Status.LAW_RAISED, Status.MALFORMED, Status.NON_FINITE)
-#: Statuses of impacts that were not followed to an end, by no fault of a law's answer.
+#: Statuses of impacts that were not followed to an end although the law's answers were sound.
 WITHOUT_END = (Status.NOT_SEPARATED, Status.TOO_FEW_STEPS, Status.UNRESOLVED)
-#: What a plan says of such impacts.
+#: Sentence of a plan on such impacts.
 BOTH_MOTIONS = "normal and tangential motion together: {}"
 OF_CONTACT = "restitution: set for a frictionless impact; that of the bodies follows from it"
 OF_SPHERES = "sizes in cautions of laws: measured on spheres. For this body they are a rough guide."
@@ -62,7 +62,7 @@ class Coupled(Way):
 
     @classmethod
     def of(cls, where: Index, scene: Scene, laws: Laws) -> Self:
-        """Return the way of such impacts, by laws that have an answer to them."""
+        """Return the way of such impacts, under laws that have an answer to them."""
         return cls(where, scene, stand_ins.stand_in(laws, scene))
 
     def prepare(self, history: bool | str) -> Prepared:
@@ -86,20 +86,20 @@ class Coupled(Way):
         many = isinstance(apart, np.ndarray)
         code = np.where(apart, known, ENDLESS) if many else known if apart else ENDLESS
         errors: object
-        if normal._known == "nothing":  # no law is asked about an approach that is not known
+        if normal._known == "nothing":  # without an approach there is nothing to ask
             errors = Errors()
         elif law is not None:
             errors = law.errors(scene, normal, np.inf, laws.capability.accuracy)
         elif scene.links is None:
             errors = laws.integrator.errors(scene, normal, laws.tangential)
-        else:  # what laws declare is of one contact
+        else:  # laws declare errors of one contact
             code, errors = np.full(scene.shape, MARCHED), Errors()
         judged = judges.judge_errors(laws.tangential, errors, scene.shape)
         psi2, restitution = (spread(error, scene.shape) for error in judged[:2])
         return PlanColumns(code, psi2, () if law is None else (WHOLE,), restitution)
 
     def solve(self, prepared: Prepared, recorder: Recorder | None) -> Motion:
-        """Return the motion, of a batch with the impacts solved again that failed beside others."""
+        """Return the motion; impacts that fail within a batch are solved again alone."""
         scene, normal = self.scene, prepared.normal
         if normal._known == "nothing":
             return Motion.nothing(
@@ -118,7 +118,7 @@ class Coupled(Way):
         try:
             if law is not None:
                 answer = law.solve_coupled(scene, normal, able.accuracy, observer)
-            else:  # other laws are stood in for
+            else:  # other laws have stand-ins
                 assert able.marcher is not None
                 assert able.causal is not None
                 answer = able.marcher.integrate_coupled(scene, normal, able.causal, observer)
@@ -179,13 +179,13 @@ class Coupled(Way):
     def _gripping(self) -> Scene:
         """The central impacts at the smaller slip, but no less than a little of the larger.
 
-        Some cautions hold of contacts that grip alone.
+        Some cautions hold only for contacts that grip.
         """
         slips = self._slips()
         return self._at_slip(np.maximum(np.minimum(*slips), LITTLE * np.maximum(*slips)))
 
     def _slips(self) -> tuple[Real, Real]:
-        """Return the slip speed at first touch, and that which pressure alone leaves."""
+        """Return the slip speed at first touch, and the slip speed that pressure alone leaves."""
         scene = self.scene
         drag = kinetics.coupling(scene, 2.0 * np.asarray(scene.normal_speed))
         return kinetics.slip_speed(scene), kinetics.size_of(
@@ -215,7 +215,7 @@ class Coupled(Way):
         return masks.ended
 
     def remarks(self, masks: Masks) -> list[Clause]:
-        """Return that both motions are found together, and of what a restitution is."""
+        """Return words on both motions together, and on the meaning of the restitution."""
         affected = bool(np.any(self.scene.lam))
         why = "friction affects the approach" if affected else "the slip changes its direction"
         said = [BOTH_MOTIONS.format(why)]
@@ -225,14 +225,14 @@ class Coupled(Way):
         return [Clause(text, masks.known) for text in said]
 
     def errors(self, columns: PlanColumns) -> Mapping[str, Real]:
-        """Return both errors; of spheres that of the restitution is far smaller."""
+        """Return the errors of psi2 and of the restitution."""
         return {"psi2": columns.psi2_error, "the normal restitution": columns.restitution_error}
 
     def motion_of_cautions(self, motion: Motion | None) -> None:
         """Return None: friction changed the normal motion of the run."""
 
     def cautions_of_laws(self, scene: Scene, normal: NormalMotion, known: Mask) -> list[str]:
-        """Return what the laws say, and what one that shares the loss adds of the smaller slip."""
+        """Return the cautions of the laws, at the smaller slip too where shear shares the loss."""
         said, law = super().cautions_of_laws(scene, normal, known), self.laws.tangential
         if self.laws.capability.shares_loss:
             grip = self._gripping if every(known) else self._gripping.take(known)
@@ -241,11 +241,11 @@ class Coupled(Way):
         return said
 
     def cautions_of_contact(self, scene: Scene, normal: NormalMotion) -> list[str]:
-        """Return those of yield and of a large contact, which hold for any bodies."""
+        """Return the cautions of yield and of a large contact, which hold for any bodies."""
         return list(NormalLaw.cautions(self.laws.normal, scene, normal))
 
     def own_cautions(self, of_laws: bool) -> list[str]:
-        """Return a sentence for each doubt that only such impacts raise."""
+        """Return a sentence for each doubt about coupled impacts alone."""
         scene, able = self.scene, self.laws.capability
         said = [OF_SPHERES] if of_laws else []
         if not scene.planar and "partial_slip" in able.tangential_claims:

@@ -1,4 +1,4 @@
-"""Impacts of spheres: a normal motion that is known before friction acts, and slip along it."""
+"""Impacts of spheres: the normal motion comes first, then slip along a line."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ from contactlab.solve.answers import Answered, answers, check_motion, separates,
 from contactlab.solve.normal_motion import try_normal
 from contactlab.solve.way import ONE_BY_ONE, Prepared, Way, halves
 
-#: Error of what is known in closed form, over max(1, |psi1|).
+#: Error of a closed form, over max(1, |psi1|).
 CLOSED_FORM = 1e-12
-#: Statuses of a law's fault, by which an integrator gives a whole batch up.
+#: Statuses of a law's fault with which an integrator ends a whole batch.
 GIVEN_UP = (Status.LAW_RAISED, Status.MALFORMED, Status.NON_FINITE, Status.UNSETTLED)
-#: What few answers have: 0 of all others.
+#: Entries that few answers have; the others have 0.
 SELDOM = ("shear_loss", "normal_spin_change")
-#: Errors that differ by less, over themselves, are equal.
+#: Relative difference of errors that counts as none.
 ROUNDING = 1e-12
 
 
 class Decoupled(Way):
-    """Impacts that friction slows along a line, and whose approach it leaves as it is."""
+    """Impacts that friction slows along a line without a change of the approach."""
 
     __slots__ = ()
 
@@ -67,7 +67,7 @@ class Decoupled(Way):
             size, accuracy = psi_magnitude(scene), laws.capability.accuracy
             most = math.inf if accuracy is None else accuracy * (1.0 + ROUNDING) * size
             always = laws.capability.whole is not None
-            law = (laws.asked or laws).tangential  # which answers impacts as a whole
+            law = (laws.asked or laws).tangential  # whole impacts need no resolution
             answered = answers(normal, law, always=always, history=history, largest_error=most)
             bound = judges.books_bound_of(laws.tangential, scene)
             return Prepared(normal, answered, self._columns(normal, answered, size), bound)
@@ -90,7 +90,7 @@ class Decoupled(Way):
     def _columns(self, normal: NormalMotion, answered: list[Answered], size: Real) -> PlanColumns:
         """Return the columns of the plan: why impacts are not marched, and the declared error.
 
-        ``size`` is that of psi, over which errors are relative.
+        Errors are relative to ``size``, that of psi.
         """
         shape = normal.scene.shape
         if not shape and answered:  # one impact has one answer
@@ -113,7 +113,7 @@ class Decoupled(Way):
         restitution: Real = CLOSED_FORM + 2.0 * normal.accuracy
         for each in answered:
             if each.answer.normal is not None:
-                restitution = math.nan  # the law changed it, and declares no error of it
+                restitution = math.nan  # the law changed it, without a declared error
         if shape:
             restitution = np.full(shape, restitution)
         return PlanColumns(code, self._error(normal, answered, marched, size), reasons, restitution)
@@ -136,7 +136,7 @@ class Decoupled(Way):
     def _declare(self, normal: NormalMotion) -> Real:
         """Return the error of psi2 that the integrator declares of marched impacts."""
         if normal._known == "ends" or math.isnan(normal.accuracy):
-            return math.nan  # no better known than the motion, nor asked of one without a course
+            return math.nan  # no better than a motion of unknown error, or without a course
         laws, scene = self.laws, normal.scene
         with np.errstate(all="ignore"):
             errors = laws.integrator.errors(scene, normal, laws.tangential)

@@ -1,4 +1,4 @@
-"""Cautions of a march: a declared error that is large, or none where errors are large."""
+"""Cautions of a march: a large declared error, or no declared error where errors are large."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ TURNS = 8
 def of_errors(laws: Laws, scene: Scene, error: Real, marched: Mask, advice: str) -> list[Clause]:
     """Return the cautions of impacts that are marched.
 
-    ``error`` is the declared one of psi2; without ``advice`` it is estimated, and known.
+    ``error`` is the declared one of psi2. Without ``advice`` an estimate exists.
     """
     error = np.asarray(error)
     clauses = []
@@ -68,7 +68,7 @@ def _remedy(laws: Laws, scene: Scene) -> str:
 
 
 def _errors(laws: Laws, normal: NormalMotion, scene: Scene) -> tuple[Array, Array]:
-    """Return the declared errors, and the part of them that steps do not change."""
+    """Return the declared errors, and the part that steps do not change."""
     all_of = laws.integrator.errors(scene, normal, laws.tangential).psi2
     own = laws.tangential.errors(scene, normal, math.inf).psi2
     return np.asarray(all_of), np.nan_to_num(own)

@@ -117,7 +117,7 @@ def _distance(
     last, before, all_of = (
         np.abs(each) for each in (finest - fine, fine - answer, finest - answer)
     )
-    # by a ratio, if the answers converge; steps of a tolerance fall by none
+    # answers of counts converge by a ratio; those of a tolerance need not
     falls = (before > last) & (len(options) == len(counts))
     ratio = last / np.where(falls, before - last, 1.0)
     left = np.where(falls, np.clip(ratio, *LEFT), LEFT[0])

@@ -1,4 +1,4 @@
-"""Normal motions without a course: of a law that failed, or not followed."""
+"""Normal motions without a course: the law failed, or no step can follow them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from contactlab.numeric.types import Index, Real
 
 
 class _UnknownMotion(NormalMotion):
-    """A normal motion without numbers: every one is NaN."""
+    """A normal motion whose numbers are all NaN."""
 
     def __init__(self, law: Law, scene: Scene) -> None:
         self.law, self.scene = law, scene
@@ -58,7 +58,7 @@ class FailedMotion(_UnknownMotion):
 
 
 class UnfollowedMotion(_UnknownMotion):
-    """A normal motion of which the rate at separation and the load impulse alone are known."""
+    """A normal motion with only a rate at separation and a load impulse."""
 
     accuracy = 0.0
     _known = "ends"

@@ -1,4 +1,4 @@
-"""Several contacts at once: the laws of a gathering, its way, its bodies afterwards, its plan."""
+"""Several contacts at once: laws and plan of a gathering, and its bodies after the impact."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def way_of(gathering: Gathering, laws: Laws | None) -> Coupled:
 
 
 def bodies_after(gathering: Gathering, motion: Motion) -> tuple[Array, Array]:
-    """Return velocities and spins of the bodies, shape (..., N, 3); NaN of a failure."""
+    """Return velocities and spins of the bodies, shape (..., N, 3); NaN after a failure."""
     shape = (*gathering.shape, len(gathering.bodies), 3)
     told = motion.contacts
     if told is None:
@@ -54,7 +54,7 @@ def plan_of_gathering(
     *,
     history: bool | str = False,
 ) -> GatheringPlan:
-    """Return the plan of a gathering; of a run its ``way`` and its ``motion`` are known."""
+    """Return the plan of a gathering, after a run with its ``way`` and its ``motion``."""
 
     def widen() -> Array:
         return _per_micron(gathering, laws)
@@ -64,7 +64,7 @@ def plan_of_gathering(
 
 
 def history_of(history: bool | str) -> bool:
-    """Return ``history``, or refuse a value that gatherings have not."""
+    """Return ``history``, or refuse a value that gatherings lack."""
     if history not in (True, False):
         rule = "must be True or False: fields are those of one contact"
         raise refuse("history", history, rule, "give history=True")

@@ -25,10 +25,10 @@ from contactlab.solve.way import ask
 
 #: gap/deep from which contacts act one after another (theory §18).
 IN_SEQUENCE = 3.0
-#: A gap wider by this is what ``per_micron`` tells of, in m; its largest share of v1, and that of
-#: weight, g T/v1, without a caution.
+#: Widening of a gap for ``per_micron``, in m; largest share of v1 by it, and by weight, g T/v1,
+#: without a caution.
 MICRON, SHARE, WEIGHT = 1e-6, 0.01, 0.01
-#: Most contacts whose cautions ask what a micron does, by as many gatherings.
+#: Most contacts whose cautions include ``per_micron``, which solves as many gatherings.
 FEW = 20
 #: Contact radius over the distance of two contacts of a body, and path v1 T over the least radius,
 #: from which there is a caution; change of the approach by the first (recalled: a point load on a
@@ -40,7 +40,7 @@ TURNING = 1e-9
 
 @attrs.frozen(eq=False, slots=False)
 class GatheringPlan(Plan):
-    """What is computed of a gathering of C contacts, what is left out, and the doubts.
+    """The plan of a gathering of C contacts: what is computed, what is left out, and the doubts.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class GatheringPlan(Plan):
     def per_micron(self) -> Array:
         """Largest change of a velocity if any gap were one micron wider, shape (...), in m/s.
 
-        It is found when it is first read, by 1 + C gatherings.
+        The first reading solves 1 + C gatherings.
         """
         return self._widened()
 
@@ -142,7 +142,7 @@ class _Words:
         return shaped if shaped.ndim else float(shaped)
 
     def computed(self, plan: GatheringPlan) -> Clauses:
-        """Return what is computed."""
+        """Return the clauses on what is computed."""
         links, law = self.scene.links, self.laws
         assert links is not None
         open_ = links.gap > 0.0
@@ -193,7 +193,7 @@ class _Words:
         return np.asarray(times.max(axis=-1) / times.min(axis=-1))
 
     def left_out(self) -> Clauses:
-        """Return what is left out, and why."""
+        """Return the clauses on what is left out, and why."""
         said = [
             "numerical error: not declared for several contacts; twice the springs and steps "
             "show it"
@@ -216,7 +216,7 @@ class _Words:
             yield self._everywhere(text)
 
     def _gaps(self, plan: GatheringPlan) -> Iterator[Clause]:
-        """Yield the caution of a micron, which a batch is too dear to be asked for."""
+        """Yield the caution of ``per_micron``, which would cost a batch too much."""
         if not self._tells_gaps():
             return
         share = float(plan.per_micron) / float(self.speed[0])
@@ -228,11 +228,11 @@ class _Words:
             yield self._everywhere(text, share)
 
     def _tells_gaps(self) -> bool:
-        """Return whether cautions ask what a micron does: of one gathering of a few contacts."""
+        """Return whether cautions include ``per_micron``: for one gathering of a few contacts."""
         return not self.gathering.shape and 1 < len(self.gathering.touches) <= FEW
 
     def _sizes(self) -> Array:
-        """Return the greatest contact radius of each contact: of the run, or alone at v1."""
+        """Return the greatest contact radius of each contact: in the run, or alone at v1."""
         told = self.normal if self.motion is None else self.motion
         return np.broadcast_to(told.maximum_radius, self.scene.shape)
 

@@ -35,8 +35,8 @@ class Seen(NamedTuple):
 class Alone:
     """The solver of one normal motion; ``motion_solver.Solver`` says what its numbers are.
 
-    It asks the law less often: the slope at the end of a step is that at the beginning of the next,
-    and a step that misses the tolerance is not looked at but at its end.
+    This solver calls the law less often: the slope at the end of a step serves the next step, and a
+    step that misses the tolerance is checked at its end only.
     """
 
     def __init__(self, law: NormalLaw, scene: Scene) -> None:
@@ -51,7 +51,7 @@ class Alone:
         #: Width of the last step that set one, and the eighth root of its error.
         self.before = rule.FIRST_STEP, 1.0
         self.begun, self.active, self.tried = False, True, 0
-        #: Whether the last step ended at an event, at whose place nothing is judged.
+        #: Whether the last step ended at an event, where no sign is judged.
         self.at_event = True
         self.status, self.detail = Status.SUCCESS, ""
         self.first = self._slope(self.place)
@@ -64,7 +64,7 @@ class Alone:
             if columns is not None:
                 edges.append(edges[-1] + width)
                 values.append(columns)
-        if not values:  # of a contact that is abandoned in its first step
+        if not values:  # abandoned in its first step
             edges, values = [0.0, 0.0], [self._columns([self.seen] * NODES)[0]]
         table = MotionTable.make(
             shape=law.shape,
@@ -114,7 +114,7 @@ class Alone:
             return 0.0, None
         if ended:
             contacts = [self._contact(step.at(until * point)) for point in self.points]
-        elif len(contacts) < NODES:  # an event so close to the end that it is there
+        elif len(contacts) < NODES:  # the event is at the end of the step
             asked = self.points[len(contacts) : -1]
             contacts += [*(self._contact(step.at(point)) for point in asked), end]
         if not all(math.isfinite(each.force + each.radius + each.load) for each in contacts):
@@ -131,7 +131,7 @@ class Alone:
         self.at_event = planned or until < 1.0
         before, self.place = self.place[1], [*step.end[:2], impulse]
         law.steps, law.time = law.steps + 1, self.time * self.unit
-        if state is not law.state and not ended:  # the law remembers: its slope is asked anew
+        if state is not law.state and not ended:  # a law with memory: call it again
             law.state = state
             step.last = list(self._slope(self.place))
         else:
@@ -178,7 +178,7 @@ class Alone:
                 contacts.append(end)
             return 1.0, False
         out = begun and not there.overlap > 0.0
-        turns = quiet(there._replace(rate=before.rate))  # alone: the law has no part in it
+        turns = quiet(there._replace(rate=before.rate))  # the rate alone, without the law
         for _ in range(rule.HALVINGS):
             if not (high - low) * width > 0.1 * max(close, doubt * low * width):
                 break
@@ -198,7 +198,7 @@ class Alone:
         factor = rule.SAFETY / root
         if rule.sets_width(missed, sure, width, self.width):
             if not missed:
-                # as errors went from the step before to this one, so they go on (Gustafsson)
+                # the trend of the errors continues (Gustafsson)
                 before, its_root = self.before
                 factor *= min(1.0, width / before * its_root / root)
                 self.before = width, root

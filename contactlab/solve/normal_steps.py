@@ -67,7 +67,7 @@ def sets_width(
     missed: NDArray[np.bool_], sure: Array, width: Array, allowed: Array
 ) -> NDArray[np.bool_]: ...
 def sets_width(missed: Mask, sure: Real, width: Real, allowed: Real) -> object:
-    """Return whether a step sets the next width: none that an event shortened, or missed over."""
+    """Return whether a step sets the next width; a step that an event shortened does not."""
     return choose(missed, sure == 1.0, width == allowed)
 
 
@@ -86,7 +86,7 @@ def next_event(width: Real, sure: Real, rejected: Mask) -> Real:
 
 
 def too_short(law: ScaledNormalLaw) -> faults.LawFaultError:
-    """Return the fault of steps that no error allows."""
+    """Return the fault of steps below the shortest."""
     if law.finite:
         return law.fault(Status.UNRESOLVED, "steps became too short")
     return law.fault(Status.NON_FINITE, "a force that is not finite")
@@ -95,7 +95,7 @@ def too_short(law: ScaledNormalLaw) -> faults.LawFaultError:
 def is_endless(turns: Real, rate: Real, change: Real, approach: Real, radius: Real) -> Mask:
     """Return whether a contact does not end.
 
-    ``change`` is that of the rate by the present force over the time since first touch.
+    ``change`` is the change of the rate by the present force over the time since first touch.
     """
     at_rest = (magnitude(rate) < AT_REST) & (magnitude(change) < AT_REST)
     return (turns > MOST_TURNS) | at_rest | (approach > DEEPEST * radius)

@@ -70,8 +70,8 @@ def plan_of(
     """Return the plan of a scene, with words that are made when they are first read.
 
     ``motion`` is that of a run, with the numbers of impacts that failed; None before a run. Errors
-    that are ``estimated`` need no advice. Ways and normal motions that were not ``found`` yet are
-    found by the words.
+    that are ``estimated`` need no advice. The words make ways and normal motions that are not yet
+    ``found``.
     """
     words = partial(_words_of_ways, laws, scene, columns, motion, history, estimated, found)
     return Plan(columns, words)
@@ -91,7 +91,7 @@ def _words_of_ways(
 
     answered = ~columns.marched & (
         "normal_spin" in laws.capability.tangential_claims
-    )  # no march takes spin
+    )  # a march leaves spin out
     asked_for = _Asked(history, estimated)
     solved: Sequence[tuple[Way, NormalMotion | None]] = found
     if not solved:
@@ -181,7 +181,7 @@ def _loses_in_pressure_alone(way: Way) -> bool:
 
 
 def _in_place(laws: Laws, used: Laws) -> str:
-    """Return which laws stand in for those that nobody named, and why; empty if none does."""
+    """Return which laws stand in for unnamed ones, and why; empty if none does."""
     pairs = [
         f"{name_of(new)} for {name_of(old)}"
         for old, new in zip(laws, used, strict=True)
@@ -191,7 +191,7 @@ def _in_place(laws: Laws, used: Laws) -> str:
 
 
 class _Asked(NamedTuple):
-    """What a run was asked for beside the answer: a history, and an estimate of the error."""
+    """Requests beside the answer: a history, and an estimate of the error."""
 
     history: bool | str
     estimate: bool
@@ -281,7 +281,7 @@ def _books(laws: Laws, scene: Scene, motion: Motion) -> list[Clause]:
 
 
 class _AfterRun:
-    """The normal motion of a run by its end and its maxima; the rest is made when it is asked."""
+    """The normal motion of a run by its end and its maxima; other entries are made on request."""
 
     def __init__(self, law: NormalLaw, scene: Scene, motion: Motion) -> None:
         self.law, self.scene, self._motion = law, scene, motion
@@ -300,7 +300,7 @@ class _AfterRun:
 
 
 def _say_why_whole(columns: PlanColumns, masks: Masks) -> list[Clause]:
-    """Return why impacts are not marched, and whose books check nothing."""
+    """Return why impacts are not marched, and which impacts have books that check nothing."""
     march = "stepping through the contact"
     clauses = [
         Clause(f"{march}: {reason.text}", np.asarray(columns.code == place))
@@ -314,7 +314,7 @@ def _say_why_whole(columns: PlanColumns, masks: Masks) -> list[Clause]:
 
 
 def _absent(way: Way) -> list[str]:
-    """Return what contactlab can do and these impacts do not need, each with why."""
+    """Return abilities of contactlab that these impacts do not need, each with the reason."""
     scene, pair = way.scene, way.scene.pair
     absent = []
     if name_bodies(scene) and not np.any(scene.pair.dundurs_beta):
@@ -331,7 +331,7 @@ def _absent(way: Way) -> list[str]:
 
 
 def _no_history(history: bool | str, columns: PlanColumns, marched: Mask) -> list[str]:
-    """Return what a history leaves out, and why."""
+    """Return the clauses on an absent history, with the reason."""
     fields = "traction and stick/slip fields"
     if not history:
         return ["history (not requested)"]
@@ -345,7 +345,7 @@ def _no_history(history: bool | str, columns: PlanColumns, marched: Mask) -> lis
 
 
 def _error_clauses(what: str, error: Real, ended: Mask, advice: str) -> list[Clause]:
-    """Return what a plan says of a numerical error."""
+    """Return the clauses on a numerical error."""
     undeclared = np.asarray(ended & np.isnan(error))
     declared = np.asarray(ended & ~undeclared)
     code = PSI2_ERROR if what == "psi2" else ""

@@ -1,4 +1,4 @@
-"""Resolutions that nobody named: those that the tangential law asks for, or the usual ones."""
+"""Default resolutions: the tangential law's choice, or the usual ones."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from contactlab.solve.way import Way
 def with_resolutions(way: Way, *, as_one: bool) -> list[Way]:
     """Return the ways of impacts whose laws have resolutions alike, each named.
 
-    Impacts ``as_one`` have the finest that one of them asks for.
+    Impacts ``as_one`` share the finest resolution among them.
     """
     laws, scene = way.laws, way.scene
     found = None
@@ -59,7 +59,7 @@ def _choose(laws: Laws, parts: float, steps: float, reason: str) -> Laws:
 
 
 def _usual(laws: Laws) -> Laws:
-    """Return the laws with the usual resolutions of those that have none by name."""
+    """Return the laws with the usual resolutions where the user named none."""
     given = tuple((law_kind(law), resolution_of(law)) for law in laws.capability.unnamed)
     return _with(laws, given, "")
 
@@ -75,7 +75,7 @@ def _with(laws: Laws, resolutions: tuple[tuple[str, float], ...], reason: str) -
 
 
 def tell_resolution(laws: Laws, marched: Mask) -> list[Clause]:
-    """Return what is chosen of resolutions, if the tangential law says why."""
+    """Return words on the chosen resolutions, if the tangential law gives a reason."""
     if not laws.reason:
         return []
     found = {

@@ -77,14 +77,14 @@ def versions_of(found: Sequence[Way]) -> dict[str, str]:
     return {kind: " and ".join(dict.fromkeys(each[kind] for each in used)) for kind in KINDS}
 
 
-@np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
+@np.errstate(under="ignore")  # small numbers may vanish
 def outcome(
     found: Sequence[Way], scene: Scene, history: bool | str, recorder: Recorder | None
 ) -> tuple[PlanColumns, Motion]:
     """Return columns of the plan, and motion, of a scene whose ways were ``found``.
 
-    A law that raises costs its impacts only. Numbers of impacts that failed are what the laws made
-    of them. A history of a batch is refused if its impacts have instants of their own.
+    A law that raises costs its impacts only. Numbers of failed impacts stay as the laws left them.
+    A history of a batch is refused if its impacts have instants of their own.
     """
     if len(found) == 1:
         columns, motion = found[0].outcome(history, recorder)

@@ -177,7 +177,7 @@ def units_over(first: Scene, scene: Scene) -> Units:
 class SolvedMotion(NormalMotion):
     """A normal motion interpolated in a table; its phase is proportional to time.
 
-    The table may be that of other impacts, in Hertz's units of a ``first``.
+    The table may belong to other impacts, in Hertz's units of a ``first``.
     """
 
     accuracy = ACCURACY
@@ -210,7 +210,7 @@ class SolvedMotion(NormalMotion):
 
     @property
     def shared(self) -> dict[Any, Any] | None:
-        """What batches of one table share that have as many axes."""
+        """Values that batches of one table and of equal dimension share."""
         if not self.alike or self.first is not None:
             return None
         kept: dict[Any, Any] = self.table.shared.setdefault(len(self.scene.shape), {})

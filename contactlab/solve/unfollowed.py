@@ -1,6 +1,6 @@
 """Impacts whose normal motion no step can follow: answered as a whole, or refused.
 
-Such is clay, whose restitution is 0: its damping is infinite, and its contact never ends.
+Clay, of restitution 0, is an example: its damping is infinite, and its contact never ends.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from contactlab.solve.way import Way
 def follow_apart(laws: Laws, where: Any, part: Scene) -> list[tuple[Any, Scene]]:
     """Return places and scenes of the impacts that no step follows, and of the others.
 
-    Numbers that the former do not have are then nowhere beside those of the latter. ``where`` is
+    So NaN of the former never stands beside numbers of the latter. ``where`` is
     the place of ``part`` in the whole scene.
     """
     if (law := laws.capability.unfollowed) is None:
@@ -72,7 +72,7 @@ def refusal(rate: Real, scene: Scene, why: str, remedy: str) -> ValueError:
 
 
 def _find_gaps(way: Way) -> Mask:
-    """Return the impacts without a whole-impact answer; none of a law that fails."""
+    """Return the impacts without a whole-impact answer; no impact if the law fails."""
     try:
         prepared = way.prepare(False)
     except faults.LawFaultError:

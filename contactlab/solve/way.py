@@ -34,7 +34,7 @@ from contactlab.solve.answers import Answered, Mask
 WORK_ACCURACY = 10.0
 #: A failed batch of at most so many impacts is solved one by one; a larger batch is halved first.
 ONE_BY_ONE = 8
-#: Why impacts are not marched in which friction changes the approach.
+#: Reason why impacts whose approach friction changes are not marched.
 WHOLE = Reason("the law solves both motions together")
 
 
@@ -64,7 +64,7 @@ class Masks(NamedTuple):
 
 
 class Entries(NamedTuple):
-    """Entries of a way: the place of its impacts in a scene, their scene, and their laws."""
+    """Impacts of a way: their place in the scene, their own scene, and their laws."""
 
     where: Any
     scene: Scene
@@ -72,13 +72,13 @@ class Entries(NamedTuple):
 
 
 class Way(Entries, ABC):
-    """Impacts that are solved alike."""
+    """Impacts that are solved in the same way."""
 
     __slots__ = ()
 
     #: True if normal and tangential motion are found together.
     both: ClassVar[bool]
-    #: True if answers as a whole are as accurate as the integrator, as those of a march are.
+    #: True if whole-impact answers have the accuracy of the integrator.
     as_integrator: ClassVar[bool]
     #: Imbalance of the energy books, over the energy at the start, that is no failure in any law.
     cancels: ClassVar[float]
@@ -87,7 +87,7 @@ class Way(Entries, ABC):
 
     @abstractmethod
     def prepare(self, history: bool | str) -> Prepared:
-        """Return what is known before the march, or raise LawFaultError."""
+        """Return normal motion, answers and plan before the march, or raise LawFaultError."""
 
     @abstractmethod
     def solve(self, prepared: Prepared, recorder: Recorder | None) -> Motion:
@@ -115,24 +115,24 @@ class Way(Entries, ABC):
         return masks.marched
 
     def remarks(self, masks: Masks) -> list[Clause]:
-        """Return what else is computed."""
+        """Return further clauses on what is computed."""
         return []
 
     def errors(self, columns: PlanColumns) -> Mapping[str, Real]:
-        """Return the numerical errors that the plan tells, by what they are errors of."""
+        """Return the numerical errors that the plan tells, by the name of their quantity."""
         return {"psi2": columns.psi2_error}
 
     def motion_of_cautions(self, motion: Motion | None) -> Motion | None:
-        """Return the motion of a run where its normal motion is that about which cautions ask."""
+        """Return the normal motion of a run, if cautions refer to that motion."""
         return motion
 
     def cautions_of_laws(self, scene: Scene, normal: NormalMotion, known: Mask) -> list[str]:
-        """Return what the laws say of the impacts that have a normal motion."""
+        """Return the cautions of the laws on impacts that have a normal motion."""
         laws = self.laws.normal, self.laws.tangential
         return [text for law in laws for text in ask(law, law.cautions, scene, normal)]
 
     def cautions_of_contact(self, scene: Scene, normal: NormalMotion) -> list[str]:
-        """Return what holds whatever the laws say."""
+        """Return the cautions that do not depend on the laws."""
         return []
 
     def own_cautions(self, of_laws: bool) -> list[str]:
@@ -204,12 +204,12 @@ class Way(Entries, ABC):
 
 
 def ask(law: Law, question: Callable[..., tuple[str, ...]], *about: object) -> list[str]:
-    """Return what a law says; if it raises, what it raised."""
+    """Return the answer of a law, or the error that it raised."""
     try:
         return list(question(*about))
     except KeyboardInterrupt:
         raise
-    except BaseException as error:  # the numbers are sound without; a plug-in ends no process
+    except BaseException as error:  # the numbers do not need this answer; a plug-in ends no process
         return [f"cautions of {name_of(law)}: not known, {faults.tell_error(error)}"]
 
 
