@@ -219,8 +219,8 @@ def save(
 ) -> int:
     """Write each file whose path is not None, and return the exit status.
 
-    After an interruption what is finished goes beside the file, as ``NAME.partial.SUFFIX``, which
-    is told of when the whole is written; a file of an earlier run stays as it was. A file that
+    After an interruption the finished part goes beside the file, as ``NAME.partial.SUFFIX``; a file
+    of an earlier run stays as it was. A later complete run tells of the partial file. A file that
     cannot be written, or that Ctrl-C meets, is reported on stderr, so that the other files and the
     printed results of long work are not lost. A function that has nothing to write says so, and
     returns False.
@@ -270,7 +270,7 @@ def working(wanted: bool | None, what: str) -> Iterator[Callable[[int, int], obj
 
 
 def tell_normal_spin(scene: Scene, *simulations: Simulation | None) -> None:
-    """Say on stderr what spin about the normal would change, where no plan is shown.
+    """Print on stderr the changes by spin about the normal, where no plan is shown.
 
     Nothing is said if all ``simulations`` answer it; None stands for ``contactlab.rebound``.
     """
@@ -367,7 +367,7 @@ def _number_or_words(text: str) -> float | str:
 
 
 def _one_number(text: str) -> float:
-    """Return a coefficient of restitution that scenes of every speed have."""
+    """Return a coefficient of restitution that holds at every speed."""
     try:
         return finite(text)
     except argparse.ArgumentTypeError as error:
@@ -421,7 +421,7 @@ def say_why_incomplete(report: Benchmark | Stability) -> str:
 
 
 def scene_file(arguments: argparse.Namespace, read: Callable[..., SceneFile]) -> SceneFile:
-    """Return the scene file of a command, with what options of plug-ins put in its place.
+    """Return the scene file of a command, or its replacement by an option of a plug-in.
 
     ``read`` returns the file; ``defaults`` are velocities to use where the file has none.
     """

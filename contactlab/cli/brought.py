@@ -1,4 +1,4 @@
-"""What plug-ins bring beside laws, on the command line: rows of a list, and checks."""
+"""Lists and checks of plug-ins other than laws, on the command line."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-#: Kinds whose hooks may have nothing to say of the reference impacts.
+#: Kinds whose hooks may return nothing for the reference impacts.
 SILENT = ("cautions", "options")
 #: Arguments of the hooks that have some.
 NORMAL = np.array([0.0, 0.0, -1.0])
 
 
 class Checked(NamedTuple):
-    """One thing that a plug-in brought, and what is wrong with it; empty if nothing is."""
+    """One thing that a plug-in brought, and its fault; empty without a fault."""
 
     name: str
     complaint: str
@@ -79,7 +79,7 @@ def title(item: object) -> str:
 
 
 def check(info: PluginInfo) -> Iterator[Checked]:
-    """Check what a plug-in brings, each thing alone."""
+    """Check each thing that a plug-in brings, alone."""
     if info.kind == COMMAND:
         yield Checked(info.name, _complaint(_command, info))
         return
@@ -123,7 +123,7 @@ def _column(item: object) -> str:
         return f"is {type(item).__name__}, no Column"
     if fault := fault_of(item):
         return fault
-    alone_only = "history" in item.needs  # a batch has one only where all last equally long
+    alone_only = "history" in item.needs  # a batch may have no history
 
     def read(scene: Scene) -> object:
         return item.read(Simulation().run(scene, history=alone_only).check())

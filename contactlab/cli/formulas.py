@@ -44,7 +44,7 @@ def readable(page: str, width: int) -> str:
 
 
 def _show(found: re.Match[str]) -> str:
-    """Return a formula that was found."""
+    """Return the text of a matched formula."""
     return _unbroken(inline(found[2])) if found[2] else block(found[1])
 
 
@@ -102,14 +102,14 @@ class Reader:
         self.tokens = TOKEN.findall(latex)
 
     def read(self, end: str = "") -> str:
-        """Return all up to a token, which is taken too."""
+        """Return all up to a token, which is consumed."""
         text = ""
         while self.tokens and (token := self.tokens.pop(0)) != end:
             text += self.item(token)
         return text
 
     def group(self) -> str:
-        """Return what stands in braces, or the next token."""
+        """Return the content of braces, or the next token."""
         while self.tokens[0].isspace():
             self.tokens.pop(0)
         token = self.tokens.pop(0)

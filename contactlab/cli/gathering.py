@@ -24,7 +24,7 @@ from contactlab.outcome.columns import json_value
 from contactlab.outcome.text_table import table
 from contactlab.scene_file import LawChoice, SceneFile
 
-#: Options of ``run`` and ``sweep`` that are of impacts with one contact.
+#: Options of ``run`` and ``sweep`` for impacts with one contact only.
 OF_ONE_CONTACT = ("stick_slip", "restitution", "workers", "resume", "csv")
 #: Most gatherings of a batch whose rows are printed.
 MOST_ROWS = 25
@@ -59,7 +59,7 @@ def sweep(arguments: argparse.Namespace, file: SceneFile) -> int:
 
 
 def _refuse(arguments: argparse.Namespace) -> None:
-    """Refuse options of impacts with one contact, and files that gatherings have not."""
+    """Refuse options for impacts with one contact, and forms of files that gatherings lack."""
     for name in OF_ONE_CONTACT:
         if getattr(arguments, name, None):
             option = name.replace("_", "-")

@@ -69,7 +69,7 @@ class Parser(argparse.ArgumentParser):
         if wrong:
             words = re.findall(r"[\w-]+", wrong[2])
             message += f"; {nearest(wrong[1], words)}"
-            if message.startswith("argument COMMAND"):  # they are many
+            if message.startswith("argument COMMAND"):  # the list would be long
                 message = f"no command {wrong[1]!r}; {nearest(wrong[1], words)}"
             if wrong[1] in ("help", "version"):
                 message = f"{wrong[1]} is an option: write contactlab --{wrong[1]}"
@@ -80,7 +80,7 @@ class Parser(argparse.ArgumentParser):
         self.exit(BAD_INPUT, f"{self.prog}: error: {message} (see {self.prog} --help)\n")
 
     def _instead_of(self, word: str) -> str:
-        """Return what to write in place of a word that no option takes; empty if unknown."""
+        """Return the remedy for a word that no option takes; empty if unknown."""
         options = self._options()
         if word.endswith(".toml"):
             return "one scene at a time; give each a command of its own"
@@ -247,7 +247,7 @@ def _list_commands(names: Mapping[str, PluginInfo]) -> list[str]:
 def _docstring(module: str) -> str:
     """Return the docstring of a module, read without an import; "" if there is none to read."""
     spec: ModuleSpec | None = None
-    with contextlib.suppress(Exception):  # whatever is broken is told when it is called
+    with contextlib.suppress(Exception):  # calling a broken command tells its fault
         parts = module.split(".")
         for count in range(1, len(parts) + 1):  # find_spec of a submodule imports the package
             folders = spec.submodule_search_locations if spec else None

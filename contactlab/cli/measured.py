@@ -1,4 +1,4 @@
-"""What ``contactlab validate --measured`` prints and draws: every law beside every measured row."""
+"""Output of ``contactlab validate --measured``: every law against every measured row."""
 
 from __future__ import annotations
 

@@ -69,7 +69,7 @@ def execute(arguments: argparse.Namespace) -> int:
         return _check(arguments)
     if arguments.action == "show":
         return _show(arguments)
-    laws = REGISTRY.installed()  # those of run time among them
+    laws = REGISTRY.installed()  # with laws registered at run time
     infos = [*laws, *(info for info in MANAGER.installed() if info not in laws)]
     infos = sorted(infos, key=lambda info: (RANK.get(info.kind, len(RANK)), info.name))
     entries = [_entry(info) for info in infos if arguments.kind in (None, info.kind)]
@@ -118,7 +118,7 @@ def _no_law(name: str) -> PluginInfo | None:
 
 
 def _show_other(info: PluginInfo, *, as_json: bool) -> int:
-    """Print origin of a plug-in that is no law, and what it brings."""
+    """Print the origin and the content of a plug-in that is no law."""
     from contactlab.cli.brought import items, title
 
     entry: dict[str, Any] = _entry(info)
@@ -136,7 +136,7 @@ def _show_other(info: PluginInfo, *, as_json: bool) -> int:
 
 
 def _check_other(info: PluginInfo, *, as_json: bool) -> int:
-    """Check what a plug-in that is no law brings."""
+    """Check the content of a plug-in that is no law."""
     from contactlab.cli.brought import check
 
     checked = list(check(info))

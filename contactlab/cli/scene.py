@@ -109,7 +109,7 @@ def numbers(text: str) -> Real:
     """Return one number, or an evenly spaced array from START:STOP:COUNT."""
     parts = text.split(":")
     if len(parts) < 3:
-        return shared.finite(text)  # of START:STOP it says what is missing
+        return shared.finite(text)  # START:STOP gets a hint on COUNT
     if len(parts) != 3:
         raise argparse.ArgumentTypeError(f"{text!r}: write START:STOP:COUNT, or one number")
     start, stop = shared.finite(parts[0]), shared.finite(parts[1])

@@ -150,7 +150,7 @@ def _frames(
 ) -> Iterator[NDArray[np.uint8]]:
     """Iterate over frames as arrays of red, green, blue, shape (height, width, 3).
 
-    The frames are all, or those with a place in ``only``.
+    With ``only``, the frames at these places alone.
     """
     assert result.history
     with styled():

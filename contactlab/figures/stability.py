@@ -79,8 +79,8 @@ def draw_least_steps(axes: Axes, maps: Sequence[ErrorMap]) -> Axes:
 def enough_steps(maps: Sequence[ErrorMap]) -> tuple[int, list[str]]:
     """Return the factor of the root of chi that is enough, and the laws for which it is not.
 
-    The factor is that of all laws that stay within ``ALLOWED`` at every chi with the most steps
-    mapped; 0 if there is none.
+    The factor counts laws that stay within ``ALLOWED`` at every chi with the most steps mapped; 0
+    without such a law.
     """
     needs: list[float] = []
     beyond: list[str] = []

@@ -20,7 +20,7 @@ from contactlab.scene_file.build import read_material, read_sphere
 from contactlab.scene_file.entries import SPHERE_KEYS
 from contactlab.scene_file.table import Table, nearest_of
 
-#: What a body is.
+#: Kinds of body.
 KINDS = ("sphere", "body", "half-space")
 #: Vectors of a body that moves, and the keys of a contact, numbers and others.
 MOTION = ("velocity", "spin", "force", "position")
@@ -125,9 +125,9 @@ def _touches(
     walls: Mapping[str, HalfSpace],
     shaped: Mapping[str, list[dict[str, object]]],
 ) -> list[Touch]:
-    """Return a contact, or those that the shape of its first body has where it gives no normal.
+    """Return a contact; without a normal, the contacts that the shape of its first body has.
 
-    The name of a half-space stands for it.
+    A contact names its half-space.
     """
     table = Table(content, path, known=(*OTHERS, *NUMBERS))
     needed = ["first", "second", "friction_coefficient"]

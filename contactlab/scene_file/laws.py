@@ -149,7 +149,7 @@ class LawChoice:
         return choice
 
     def suit_to(self, scene: Scene) -> LawChoice:
-        """Return the choice with every law named, as those that answer a scene."""
+        """Return the choice with every law named, by the laws that answer a scene."""
         choice = self.resolve()
         laws = self.simulation().laws
         for kind, used in ways(laws, scene)[-1].laws.by_kind().items():
@@ -219,7 +219,7 @@ def _of_speed(restitution: object) -> tuple[str, Any]:
 
 
 def _owner(kind: str, name: str, given: Mapping[str, object]) -> str:
-    """Return which law of a kind has an option that the default lacks; empty if none."""
+    """Return the law of a kind that has an option which the default lacks; empty if none."""
     known = options_of_laws(at_hand=True)
     for option in given:
         having = [law for law in known.get(option, ()) if kind_of(law) == kind]

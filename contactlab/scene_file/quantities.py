@@ -34,7 +34,7 @@ def read_units(document: Mapping[str, object]) -> dict[str, object]:
 
 
 def _read(value: object, path: str, own: str, table: object) -> object:
-    """Return a value, or what is within it, with numbers for texts; ``own`` is the unit of SI."""
+    """Return a value, or a list or table, with numbers for texts; ``own`` is the unit of SI."""
     if isinstance(value, Mapping):
         return {
             key: _read(inner, f"{path}.{key}", own if key in ENDS else _unit(key, value), value)

@@ -91,7 +91,7 @@ class SceneFile:
 
     @property
     def of_spheres(self) -> Scene:
-        """The scene, in none of whose impacts friction changes the approach.
+        """The scene, or a refusal if friction changes the approach of any impact.
 
         Raises
         ------
@@ -201,7 +201,7 @@ def _of_gathering(
     allow_code: bool,
 ) -> SceneFile:
     """Return the file of several contacts at once."""
-    from contactlab.scene_file.gathering import read_gathering, read_path  # few files need it
+    from contactlab.scene_file.gathering import read_gathering, read_path
 
     document = root.content
     varied: Mapping[str, Real] = read_sweep(document.get("sweep", {}), read_path).varied

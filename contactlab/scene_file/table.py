@@ -18,14 +18,14 @@ MATERIAL_KEYS = ("shear_modulus", "young_modulus", "poisson_ratio", "density", "
 #: Table of further numbers of a material, which laws of plug-ins read.
 PROPERTIES = "properties"
 
-#: What to write for a number that has no unit to tell it by.
+#: Remedies for missing numbers without a unit.
 ABSENT = {
     "friction_coefficient": "a number such as 0.2; `contactlab fit` finds it from measured rebounds"
 }
 
-#: What to write for a table of the surface that is struck.
+#: Remedy for a missing table of the struck surface.
 PLANE = 'write [target] with kind = "half-space"'
-#: Where keys stand that users write in another table.
+#: Remedies for keys that users write in the wrong table.
 ELSEWHERE = {
     "restitution": "write it under [simulation]",
     "mu": "write friction_coefficient under [impact]",

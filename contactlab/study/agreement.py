@@ -15,7 +15,7 @@ from contactlab.outcome.columns import QUANTITIES, find_quantity
 from contactlab.outcome.result import ImpactResult
 from contactlab.scene_file import Measured
 
-#: Factor between mean squares that tells a sign.
+#: Factor between mean squares from which the other sign is believed.
 MUCH_NEARER = 4.0
 
 
@@ -73,9 +73,9 @@ class Agreement:
 
     @property
     def defined(self) -> NDArray[np.bool_]:
-        """True where the quantity has a number, shape (n,), even if a law failed to find it.
+        """True where the quantity is defined, shape (n,), even if a law failed there.
 
-        The tangential restitution has none without tangential velocity.
+        The tangential restitution is undefined without tangential velocity.
         """
         known = np.zeros(len(self.measured.values), dtype=bool)
         failed = np.ones_like(known)

@@ -1,4 +1,4 @@
-"""Every law beside every row of a measured set: rms, rows within the error, chi²."""
+"""Every law against every row of a measured set: rms, rows within the error, chi²."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from contactlab.study.slopes import Row
 
 @attrs.frozen(kw_only=True, eq=False)
 class ByRow:
-    """One measured quantity of a set, row by row, and what each law gives.
+    """One measured quantity of a set, and the prediction of each law, row by row.
 
     Attributes
     ----------

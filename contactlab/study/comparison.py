@@ -339,7 +339,7 @@ def _time(name: str, simulation: Simulation, scene: Scene, *, history: bool) -> 
     times = [result.run_time]
     if result.run_time < LONG_RUN:
         times = [_run(simulation, scene).run_time for _ in range(REPEATS)]
-    if history:  # after the timing, because keeping the history takes time
+    if history:  # after the timing, which a history would lengthen
         result = simulation.run(scene, history=True)
     impacts = scene.shape[0] if scene.shape else 1
     return LawRun(
@@ -353,6 +353,6 @@ def _time(name: str, simulation: Simulation, scene: Scene, *, history: bool) -> 
 def _model(offers: Set[str], result: ImpactResult) -> str:
     """Return what a law takes the bodies for, by its claims and its declared error."""
     if "partial_slip" in offers:
-        # a law that declares no error has NaN, which is not below
+        # NaN, no declared error, is not below
         return "exact" if np.all(np.less(result.plan.psi2_error, EXACT)) else "elastic"
     return "rigid" if "rigid" in offers else ""

@@ -39,7 +39,7 @@ LESS = {("rebound_angle_deg", "angle_deg"): "rebound angle less angle of inciden
 
 
 class Drawn(Compared, Protocol):
-    """A comparison that is drawn."""
+    """The part of a comparison that is drawn."""
 
     def model(self, law: str) -> str:
         """Return what one law takes the bodies for."""
@@ -93,7 +93,7 @@ def laws_over_sweep(
     """
     varied, x, ordered = find_abscissa(comparison, agreement)
     words = LESS.get((quantity, varied))
-    # of impacts that differ in several entries, a line between two is no impact
+    # between impacts that differ in several entries a line means nothing
     several = len(comparison.varied) > 1 or not np.ptp(x)
     rows = agreement is not None and several and not _axes(comparison)
 
@@ -126,7 +126,7 @@ def laws_over_sweep(
 
 
 def _bars(errors: Array) -> Array | None:
-    """Return the lengths of error bars; None if nobody gave any, so that the legend has none."""
+    """Return the lengths of error bars; None without errors, so that the legend has no bars."""
     return errors if np.any(errors > 0.0) else None
 
 
@@ -227,6 +227,6 @@ def find_abscissa(
 
 
 def describe_law(comparison: Drawn, name: str) -> str:
-    """Return the name of a law, with what it takes the bodies for where the name does not say."""
+    """Return the name of a law, with its model of the bodies if the name does not tell."""
     model = comparison.model(name)
     return f"{name} ({model})" if model and model not in name else name

@@ -1,4 +1,4 @@
-"""Doors of a benchmark: calls that answer a question, each with what is read from its answer."""
+"""Ways of a benchmark to answer a question: calls, each with the reading of its answer."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from contactlab.study.stability_references import converges
 
 #: Function that is timed, after everything was prepared.
 Call: TypeAlias = Callable[[], object]
-#: Calls of C on one impact that are timed as one, so that the way into C does not count.
+#: Calls of C on one impact per timed call, so that the cost of entering C does not count.
 IN_C = 1000
 #: Impacts in C by numbers: of spheres with e, and of bodies in a plane.
 SOURCE = """
@@ -86,7 +86,7 @@ def read_collision(collision: Collision) -> Answer:
 
 @attrs.frozen(kw_only=True)
 class Door:
-    """A way to an answer.
+    """One way to answer a question.
 
     Attributes
     ----------

@@ -24,7 +24,7 @@ CHIS = tuple(np.geomspace(0.05, 30.0, 36).tolist())
 STEPS = (2, 3, 4, 5, 6, 7, 9, 11, 14, 18, 23, 30, 39, 50, 64, 83, 107, 138, 178, 230, 296, 400)
 #: The same of a quick map.
 QUICK_CHIS, QUICK_STEPS = tuple(np.geomspace(0.05, 30.0, 9).tolist()), (3, 9, 30, 100)
-#: Steps of the limit of a law with another limit than the continuum: ten times the most mapped.
+#: Steps that stand for the limit of a law without the continuum's limit: ten times the most mapped.
 LIMIT_STEPS = 4000
 
 
@@ -101,7 +101,7 @@ def error_map(method: Method, *, quick: bool = False) -> ErrorMap:
 
 
 def _limit(law: TangentialLaw) -> Simulation:
-    """Return what a law is judged by: the exact solution, or itself in very many steps."""
+    """Return the reference of a law: the exact solution, or the law itself in very many steps."""
     if converges(law):
         return Simulation(**exact(REFERENCE_TOLERANCES[-1]))
     return Simulation(tangential=law, integrator=fixed_steps(LIMIT_STEPS))

@@ -27,7 +27,7 @@ from contactlab.study.validation import Finding
 
 @attrs.frozen(kw_only=True)
 class MeasuredSet(ABC):
-    """A file of measured or computed numbers beside which laws are set.
+    """A file of measured or computed numbers with which laws are compared.
 
     Attributes
     ----------

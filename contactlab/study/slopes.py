@@ -22,7 +22,7 @@ BODY_KEYS = (
     "target_poisson_ratio", "target_shear_modulus", "restitution", "restitution_error",
     "friction_coefficient", "friction_error",
 )  # fmt: skip
-#: Numbers that no analysis needs.
+#: Numbers that describe a row and enter no analysis.
 DESCRIBED = ("radius", "restitution_error", "friction_coefficient", "friction_error")
 PAIR_KEYS = (*BODY_KEYS, "beta0", "beta0_error")
 SPEED_KEYS = ("normal_speed", "slip_velocity", "rebound_normal_speed", "rebound_slip_velocity")
@@ -104,7 +104,7 @@ def read_slopes(path: str | Path) -> SlopeFile:
             for number, item in enumerate(document.get("pairs", ()))
         ] or [_collisions(root.table("collisions", known=(*BODY_KEYS, *SPEED_KEYS)))]
         words = {key: about.text(key, remedy=f"write {key} = ...").strip() for key in ABOUT_KEYS}
-    except ValueError as error:  # those of TOML and of UTF-8 too
+    except ValueError as error:  # errors of TOML and of UTF-8 too
         raise ValueError(f"{file}: {error}") from error
     return SlopeFile(**words, rows=tuple(rows))
 

@@ -69,7 +69,7 @@ class Stability:
         return len(self.outcomes) - self.count(SKIPPED)
 
     def totals(self) -> dict[str, int]:
-        """Return the number of answers compared, and of those wrong, and of all other cases.
+        """Return the number of answers compared, of wrong answers, and of all other cases.
 
         Compared and without a reference, refused, raised and not run are all cases; wrong answers
         are among the first two.

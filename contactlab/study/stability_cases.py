@@ -44,7 +44,7 @@ FRICTIONS = (0.0, 1e-300, 1e-12, 1e3, 1e12, 1e300)
 #: (psi1, chi) of the scenes on which resolutions are varied.
 LADDER = ((0.3, 0.3), (0.5, CHI), (1.2, CHI), (3.0, CHI), (1.2, 30.0), (0.3, 1e3))
 QUICK_LADDER = ((1.2, CHI), (1.2, 30.0))
-#: Steps over sqrt(chi) at the stability limit, and the multiple of them that large chi is run at.
+#: Steps over sqrt(chi) at the stability limit, and the multiple of that number for large chi.
 LIMIT, ABOVE_LIMIT = 2.85, 8
 
 #: The family of the map: psi1 of the impacts in each cell, its columns and its rows.

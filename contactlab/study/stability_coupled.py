@@ -74,7 +74,7 @@ def in_space(scene: Scene) -> bool:
 
 @lru_cache(maxsize=64)
 def refine_in_space(law: TangentialLaw, scene: Scene) -> Array | None:
-    """Return psi2 in space by the same law in many steps; None if it cannot be marched so.
+    """Return psi2 in space by the same law in many steps; None if the law refuses them.
 
     Springs are then within 0.001 of psi1 of twice as many steps.
     """

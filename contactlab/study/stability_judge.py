@@ -40,7 +40,7 @@ from contactlab.study.stability_references import (
 #: Outcomes. Only the last two are failures of the program.
 ANSWERED, REFUSED, SKIPPED = "answered", "refused", "skipped"
 WRONG, RAISED = "silently wrong", "raised"
-#: Of an answer that is compared with none: its signs and energy books alone are judged.
+#: Outcome of an answer without a reference: only its signs and energy books are judged.
 NO_REFERENCE = "no reference"
 #: Rounding, over the range of psi2.
 ROUNDING = 1e-9

@@ -133,7 +133,7 @@ def validate(progress: Count | None = None) -> Iterator[Finding]:
 
 
 def _of_others(told: Told) -> Finding:
-    """Return the finding of another's check; where it fails, one beyond its bound that says why."""
+    """Return the finding of a plug-in's check, a failed one with the reason if it raises."""
     name = getattr(told.item, "__name__", str(told.item))
     try:
         with guard(f"{name} of {told.info.distribution}", "raised"):

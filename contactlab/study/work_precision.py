@@ -80,7 +80,7 @@ def bench(
 
 
 def _ask(question: Question, posed: Posed, rows: list[Row], until: float, *, quick: bool) -> None:
-    """Add the rows of a question; a resolution that changes no answer is no row of its own."""
+    """Add the rows of a question, without resolutions that change no answer."""
     slow: set[str] = set()
     known: dict[str, list[Array]] = {}
     for door in posed.doors:
@@ -109,7 +109,7 @@ def _ask(question: Question, posed: Posed, rows: list[Row], until: float, *, qui
 def _answers(door: Door, posed: Posed) -> tuple[list[Answer], float]:
     """Return the answers to all impacts, and the mean time of such first calls.
 
-    A limit that answers nothing has none.
+    A limit that answers nothing has no answers.
     """
     if door.read is None:
         return [], 0.0
@@ -121,7 +121,7 @@ def _answers(door: Door, posed: Posed) -> tuple[list[Answer], float]:
 
 
 def _alike(before: list[Array] | None, now: list[Array]) -> bool:
-    """Return whether answers are those of the resolution before, to the last bit."""
+    """Return whether answers equal those of the last resolution to the last bit."""
     return before is not None and all(map(np.array_equal, before, now))
 
 
@@ -156,7 +156,7 @@ def _times(door: Door, posed: Posed, first: float, quick: bool) -> dict[str, Any
 
 
 def least_time(call: Call, longest: float) -> float:
-    """Return the least processor time of several calls, in s; of one that takes ``longest``."""
+    """Return the least processor time of several calls, in s; long calls are made once."""
     least, number, spent, repeats = np.inf, 1, 0.0, 0
     while repeats < REPEATS and (spent < longest or not repeats):
         before = time.process_time()

@@ -1,4 +1,4 @@
-"""Checks of what a law tells beyond forces: drift, bounds, dissipation, partners."""
+"""Checks of the declarations of a law: drift, bounds, dissipation, partners."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ BASES: dict[str, type[Law]] = {
     "tangential": TangentialLaw,
     "integrator": Integrator,
 }
-#: Words that no check tests, by the contract of the laws that offer them.
+#: Words that laws may offer without a check, by contract.
 UNTESTED = {
     "similar": NormalLaw,
     "plastic": NormalLaw,

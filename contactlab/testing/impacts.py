@@ -25,7 +25,7 @@ from contactlab.testing.ways import ROUNDING, Way, bound_error, course, meet, wa
 
 #: Entries of a motion.
 ENTRIES = (*TangentialMotion.numbers(), "status", "detail")
-#: Those that may be 0, one number for a batch.
+#: Entries that may be 0, one number for a batch.
 NO_LOSS = ("shear_loss", "normal_spin_change")
 #: Angles of incidence from nearly central to grazing, and inertia ratios.
 PSI1 = (0.01, 0.3, 0.9, 1.2, 2.0, 3.5, 6.0, 40.0)

@@ -22,7 +22,7 @@ from contactlab.testing.units import ODD_UNITS, Units, in_units
 STEPS = 60
 #: Rounding of force, radius and overlap, over the largest of each.
 ROUNDING = 1e-9
-#: A divisor in place of a largest value of 0, as of a law without force.
+#: A divisor in place of 0, the largest value of a law without force.
 TINY = 1e-300
 ENTRIES = NormalContact._fields
 #: Quantities in which the contacts of a batch differ, and the stride over approaches there.

@@ -19,7 +19,7 @@ from contactlab.testing.ways import Way, ways
 ANSWERS, LEAVES = ("normal_spin", True), ("normal_spin", False)
 #: psi1 of impacts that stick, slip in part, and slip throughout; w and chi_w of the spin.
 PSI1, CHI, RIM, TURNING = (0.0, 0.5, 2.0, 9.0), 1.4412, 0.4, 0.02
-#: Those of the check of all other laws.
+#: psi1 in the check of all other laws.
 FEW = PSI1[:3]
 #: Bounds of psi2 and w2 by rounding, and a w that moves nothing.
 ROUNDING, HARDLY = 1e-9, 1e-9

@@ -13,7 +13,7 @@ from contactlab.testing.check import apply_if, check, hold, within
 from contactlab.testing.load_paths import Bench, slack
 
 WORD = "slip_speed"
-#: Bound of what the slowing of a grazing impact, by a part in 300, changes of the factor.
+#: Bound of the change of the factor as a grazing impact slows by a part in 300.
 SLOWING = 0.02
 #: Steps of a long slip, and slip of each in units of that at which gross slip begins.
 STEPS, MOVED = 24, 0.5

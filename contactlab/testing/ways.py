@@ -187,7 +187,7 @@ def at_resolution(law: SameLaw, value: float) -> SameLaw:
 def ways(law: TangentialLaw | Integrator, normal: NormalLaw | None = None) -> list[Way]:
     """Return the ways in which a law can be run: by steps, by events, as whole impacts.
 
-    Those of an integrator are under the laws of the kit that it can run.
+    An integrator runs the laws of the kit that fit it.
 
     Raises
     ------
@@ -242,7 +242,7 @@ def ways_of_bodies(law: TangentialLaw | Integrator) -> list[Way]:
 
 
 def _marches(way: Way) -> bool:
-    """Return whether the integrator of a way marches the law with the normal motion."""
+    """Return whether the integrator of a way marches the law and the normal motion together."""
     return isinstance(way.integrator, CoupledIntegrator) and isinstance(
         way.law, CausalTangentialLaw
     )
