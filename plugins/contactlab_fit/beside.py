@@ -1,4 +1,4 @@
-"""Measured impacts beside a scene: relative to its struck body, and as series of its file."""
+"""Measured impacts of a scene: relative to its struck body, and as series of its file."""
 
 from __future__ import annotations
 
@@ -35,15 +35,15 @@ SAME = 0.1
 SWEPT = 61
 #: The entry of the spin of the first body.
 SPIN_BEFORE = "spin"
-#: What a file may leave out to be read at all; only its geometry is looked at.
+#: Stand-ins for missing entries of a file of which only the geometry is read.
 DEFAULTS = {"friction_coefficient": 0.1}
 
 
 def as_target_sees(table: Measurements, scene: Scene | SceneFile | str | Path) -> Measurements:
     """Return measurements relative to the surface of the struck body of a scene.
 
-    Its spin moves the surface at the contact, and a file may have what the table does not say of
-    its motion.
+    The spin of the struck body moves its surface at the contact; a file may have the motion that
+    the table lacks.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def as_target_sees(table: Measurements, scene: Scene | SceneFile | str | Path) -
     if isinstance(scene, SceneFile | str | Path):
         own, arm = _of_file(scene, table)
     elif isinstance(scene, Scene) and scene.sphere is None:
-        return table  # of other bodies than spheres columns change a file
+        return table  # for other bodies the columns change the file
     elif isinstance(scene, Scene) and isinstance(scene.target, Sphere):
         arm = -np.asarray(scene.target.radius), 0.0
     spin = table.given.get(SPIN, None if table.struck else own.get(SPIN))
@@ -133,7 +133,7 @@ def _of_file(
 
 
 def first_velocities(table: Measurements) -> dict[str, float]:
-    """Return velocities of the first impact of a table, for a file that has none."""
+    """Return velocities of the first impact of a table, for a file without velocities."""
     names = (*POLAR, *CARTESIAN)
     return {name: float(table.given[name][0]) for name in names if name in table.given}
 

@@ -176,7 +176,7 @@ def _pose(
 def _tell_film(
     error: ValueError, data: Path | SceneFile, arguments: argparse.Namespace
 ) -> ValueError:
-    """Return an error of a table; of one with the headings of a film, that it may be one."""
+    """Return an error of a table; headings of a film add the advice to use --flight."""
     try:
         first = read_text(data).splitlines()[0] if isinstance(data, Path) else ""
     except (ValueError, IndexError):

@@ -1,4 +1,4 @@
-"""Headings whose sign or angle nobody can know: every reading, and what each of them gives."""
+"""Headings of ambiguous sign or angle: every reading, and the fit by each."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ E_T = {
     "-beta0": "is psi2/psi1 of the contact point",
     "tangential_restitution": "is v_t after over before of the centre",
 }
-#: Angles before and after, and what a heading says of them.
+#: Angles before and after, and the words for their reference.
 FROM_NORMAL, FROM_SURFACE = "is from the normal", "is from the surface"
 OTHER_SIDE = "is from the normal, on the other side than before"
 OF_SURFACE = re.compile(r"surface|grazing|horizontal|wall|plane|floor")
@@ -27,9 +27,9 @@ OF_NORMAL = re.compile(r"normal")
 OF_SPORTS = re.compile(r"descent|landing|launch|approach|elevation")
 #: Speeds of launch monitors without a unit.
 OF_MONITORS = ("mph", "m/s", "km/h")
-#: Velocities whose numbers, none below 0, may be sizes.
+#: Velocities that may be magnitudes if no number is below 0.
 SIGNED = ("rebound_tangential_velocity", "rebound_slip_velocity")
-#: Most readings that are told.
+#: Most readings that a message lists.
 LISTED = 6
 
 
@@ -41,16 +41,16 @@ class Reading(NamedTuple):
 
 
 class Result(NamedTuple):
-    """What a command gives with one reading, in words, and whether it runs."""
+    """The fit by one reading, in words, and whether the command runs."""
 
     words: str
     runs: bool
 
 
 class ForeignHeadingsError(ValueError):
-    """Headings of other words.
+    """Headings that are not contactlab's names.
 
-    ``said`` tells so, ``readings`` are the names that they may mean, ``columns`` the first of them.
+    ``said`` is the message, ``readings`` are the possible names, ``columns`` the first of them.
     A note of the error has each reading of several, with the command if it runs.
     """
 

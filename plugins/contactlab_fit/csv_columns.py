@@ -39,9 +39,9 @@ UNITS = {unit for pair in CONVERSIONS for unit in pair} | set(SAME_UNITS) | {"%"
 #: Other names of the entry ``angle_deg``.
 ANGLES = ("angle", "incidence_angle", "incidence_angle_deg")
 ERROR = "_error"
-#: Other words for it, as endings.
+#: Words for an error as endings of a heading.
 DEVIATION = re.compile(r"_(e?rror|err|std|sd|se|sem|sigma|uncertainty)$")
-#: Angles from the surface, by the name of that from the normal.
+#: Names of angles from the surface, with the name of the angle from the normal.
 FROM_SURFACE = {"angle_from_surface": "angle", "rebound_angle_from_surface": "rebound_angle"}
 #: What to write for a table without headings.
 IN_ORDER = (
@@ -333,7 +333,7 @@ def _cells(text: str) -> Cells:
 
     if kept and kept[0] and _is_number(cells(kept[0])[0].strip().replace(",", ".")):
         above_cells = cells(kept[0] - 1)
-        if len(above_cells) == len(cells(kept[0])):  # else a remark
+        if len(above_cells) == len(cells(kept[0])):  # otherwise a remark
             kept.insert(0, kept[0] - 1)
             _check_comment(lines[kept[0]][0], above_cells[0])
     headless = bool(kept) and holds_numbers(cells(kept[0]))

@@ -53,7 +53,7 @@ def check_enough(problem: Problem) -> None:
 
 
 def check_defined(problem: Problem) -> None:
-    """Refuse a number of a quantity that has none there, such as e_t without tangential velocity.
+    """Refuse a number for an undefined quantity, such as e_t without tangential velocity.
 
     Raises
     ------
@@ -125,7 +125,7 @@ def check_determined(problem: Problem, values: Array) -> None:
 
 
 def _turns(problem: Problem, values: Array, place: int) -> bool:
-    """Return whether numbers depend on a parameter whose derivative is 0: where they turn."""
+    """Return whether numbers depend on a parameter at a turning point, of derivative 0."""
     low, high = problem.bounds()
     points = np.tile(values, (3, 1))
     points[1:, place] = np.clip(values[place] * np.array(TURNING), low[place], high[place])
@@ -148,7 +148,7 @@ def check_precise(problem: Problem, values: Array, ends: Spread) -> None:
 
 
 def check_single(problem: Problem, minima: list[Array], ends: Spread) -> None:
-    """Refuse data that other values meet about as well, which lie outside of the intervals.
+    """Refuse data that values outside the intervals meet about as well.
 
     Raises
     ------
@@ -173,7 +173,7 @@ def check_single(problem: Problem, minima: list[Array], ends: Spread) -> None:
 
 
 def _meets(problem: Problem, other: Array, best: Array, ends: Spread) -> bool:
-    """Return whether the F test does not part other values from the best ones."""
+    """Return whether the F test cannot tell other values from the best ones."""
     if math.isnan(ends.rise):
         return problem.criterion(other) - problem.criterion(best) < CLOSE
     scales = problem.scales(problem.residuals(best[None]))

@@ -33,7 +33,7 @@ LARGE_CHI_SQUARE = 2.0
 SMALL_RATIO = 0.5
 #: A value lies at the end of its range if nearer than this share of the range.
 AT_END = 1e-6
-#: Least impacts of a table whose copies are told.
+#: Least rows of a table from which repeated copies are told.
 FEWEST_ROWS = 3
 
 
@@ -66,7 +66,7 @@ def diagnose(
 ) -> Diagnosis:
     """Return the diagnosis of a measurement at the best values, shape (parameters,).
 
-    If the residuals are ``explained`` already, there are no sentences on what they look like.
+    With ``explained`` residuals there are no sentences on their pattern.
     """
     robust: list[float] | list[None] = [None] * len(values)
     far = outliers.none(problem, values)
@@ -101,7 +101,7 @@ def _others(
 def _judge_errors(
     problem: Problem, table: Measurements, values: Array
 ) -> tuple[Mapping[str, Real], patterns.Pattern]:
-    """Return the error of each quantity, and what scatter makes with the least chance."""
+    """Return the error of each quantity, and the pattern that scatter makes least likely."""
     scales = problem.scales(problem.residuals(values[None]))
     pattern = patterns.pattern(problem, values, scales, table.given)
     common = loosen(fewer(problem)[0], table.given, values)
@@ -115,11 +115,11 @@ def tell_loss(problem: Problem, values: Array) -> list[str]:
 
 
 def cautions(problem: Problem, values: Array, *, of_any_friction: bool = False) -> list[str]:
-    """Return the cautions of the impacts, and the shift of each parameter where one is known.
+    """Return the cautions of the impacts, and the known shift of each parameter.
 
-    The shift is that by coupling, in size: the shifts of psi2 of all impacts, each in the worse
-    direction, times the derivatives of the best values by the measured numbers. Of an unknown
-    friction only cautions are told that hold ``of_any_friction``.
+    The shift is the size of the effect of coupling: the shifts of psi2 of all impacts, each in the
+    worse direction, times the derivatives of the best values by the measured numbers. With unknown
+    friction only cautions ``of_any_friction`` are told.
     """
     result = problem.model.impacts(values)
     said = list(result.cautions)
@@ -203,7 +203,7 @@ def error_notes(problem: Problem, values: Array) -> list[str]:
 
 
 def table_notes(table: Measurements, parameters: Collection[str]) -> list[str]:
-    """Return sentences on columns that are fitted, and on a table that is there several times."""
+    """Return sentences on the fitted columns, and on a table that repeats itself."""
     notes = [
         f"the column {name} is not used, as {name} is fitted"
         for name in table.given

@@ -14,12 +14,12 @@ from contactlab.numeric.types import Array
 from contactlab.numeric.units import convertible, factor
 from contactlab_fit.csv_columns import name_and_unit
 
-#: Standard gravity in m/s²; on the ground it differs from it by up to 0.3 %.
+#: Standard gravity in m/s²; local gravity differs by up to 0.3 %.
 GRAVITY = 9.80665
 #: Headings of drops, and their units.
 DROP, BOUNCE, TAP = "drop_height", "bounce_height", "t_bounce"
 DROPS = {DROP: "m", BOUNCE: "m", TAP: "s"}
-#: What is taken of them.
+#: Assumptions about drops.
 TAKEN = (
     f"gravity = {GRAVITY} m/s², of flights without air",
     "tangential_velocity = 0 m/s: the ball comes straight down",
@@ -27,7 +27,7 @@ TAKEN = (
 
 
 def find_drops(headings: Mapping[str, str]) -> dict[str, tuple[str, float]]:
-    """Return the headings of a drop by name, each with the factor to SI; none in another table.
+    """Return the headings of a drop by name, each with the factor to SI; empty for another table.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def find_drops(headings: Mapping[str, str]) -> dict[str, tuple[str, float]]:
             _, name, unit = name_and_unit(alias)
             unit = unit or name_and_unit(text)[2]
         except ValueError:
-            continue  # told with the other headings of its table
+            continue  # the reader of headings refuses it
         if name not in DROPS:
             continue
         own = DROPS[name]

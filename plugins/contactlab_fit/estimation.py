@@ -113,8 +113,8 @@ def fit(
     intervals by its square root. Without such a column the error of a quantity is estimated
     from its residuals.
 
-    Where the friction coefficient is neither given nor fitted, the numbers that it would move are
-    not met, and a note names them. ``taken`` of the fit lists what enters it and nobody gave.
+    Without a friction coefficient, given or fitted, the numbers that depend on it are left out, and
+    a note names them. ``taken`` of the fit lists numbers that the user left open.
 
     An interruption (Ctrl-C) keeps the finished samples of the bootstrap if there are at least a
     hundred; ``samples`` and a note of the fit state their number.
@@ -203,7 +203,7 @@ def _fit(
 
 
 def default_laws(parameters: Sequence[str], *, restituted: bool = False) -> Simulation | None:
-    """Return the laws of a fit that names none: None, the exact elastic ones, or those with loss.
+    """Return the default laws of a fit: None, the exact elastic ones, or laws with loss.
 
     Raises
     ------
@@ -450,7 +450,7 @@ def parameters_of(
     simulations: Mapping[str, Simulation | None],
     parameters: Sequence[str],
 ) -> dict[str, list[str]]:
-    """Return the parameters to fit under each law; those that no law has stay, to be refused."""
+    """Return the parameters to fit under each law; a parameter of no law stays, to be refused."""
     size = len(measurements)
     having = {
         name: those_of(setup_of(scene, measurements.given, size, simulation), parameters)

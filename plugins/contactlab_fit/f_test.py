@@ -14,7 +14,7 @@ SPARE = 3
 CHANCE = 1e-3
 #: Scatter below this share of the largest number is numerical error.
 NUMERICAL = 1e-4
-#: Share of a term's square across the slopes that sums of rounded products may leave of nothing.
+#: Share of a term's square across the slopes that rounding alone may leave.
 ROUNDING = 1e-10
 
 
@@ -76,7 +76,7 @@ def chances_of_each(
         return np.ones(len(squares))
     plain = _remaining_square(residuals, slopes)
     across = squares - np.sum(along**2, axis=1)
-    new = across > ROUNDING * squares  # no term that the slopes make already
+    new = across > ROUNDING * squares  # the slopes already span the others
     gains = np.where(new, products**2 / np.where(new, across, 1.0), 0.0)
     ratios = gains / ((plain - gains) / freedom + least + np.finfo(float).tiny)
     return np.asarray(fdtrc(1, freedom, np.maximum(ratios, 0.0)))

@@ -20,7 +20,7 @@ from contactlab.study.comparison_figure import POINTS
 from contactlab_fit.measurements import Measurements
 
 MARKERS = "os^Dv<"
-#: Impacts at which the curve of a law is drawn, beside those that were measured.
+#: Impacts at which the curve of a law is drawn, beside the measured impacts.
 SMOOTH = 100
 
 
@@ -33,7 +33,7 @@ class Valued(Protocol):
 
 
 class Fitted(Protocol):
-    """What is drawn of a fit."""
+    """The part of a fit that is drawn."""
 
     @property
     def parameters(self) -> Mapping[str, Valued]:
@@ -41,7 +41,7 @@ class Fitted(Protocol):
 
     @property
     def measurements(self) -> Measurements:
-        """What was measured."""
+        """The measured impacts."""
 
     @property
     def predicted(self) -> Mapping[str, Array]:

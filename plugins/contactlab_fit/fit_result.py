@@ -142,7 +142,7 @@ class Fit(Tabled):
         return {name: float(np.nanmax(np.abs(r))) for name, r in self.residuals.items()}
 
     def _sheet(self) -> Sheet:
-        """Return what was given and measured, and what is predicted, one row for each impact."""
+        """Return given, measured and predicted columns, one row for each impact."""
         content, shape = self.measurements, (len(self.measurements),)
         columns: dict[str, Any] = dict(content.given)
         units = {name: entry_unit(name) for name in content.given}

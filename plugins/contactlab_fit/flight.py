@@ -35,8 +35,7 @@ ALSO = {"time": "t", "angle_deg": "angle", "rotation": "angle", "height": "y"}
 #: Headings of frames and of times, and those of places that programs write.
 FRAME, TIMES = ("frame",), ("t", "time", "t (s)", "time (s)")
 PLACE = re.compile(r"([xyz])\d*")
-#: Shares by which the flights may fall faster or slower before it is told, and before the film is
-#: refused.
+#: Relative differences of the fall from g that are told, and that refuse the film.
 TOLD, REFUSED = 0.03, 0.15
 #: Columns before the impact.
 GIVEN = ("normal_speed", "tangential_velocity", "spin")
@@ -155,7 +154,7 @@ def _table_of(text: str, source: str, columns: object) -> str:
 def _film(
     table: Mapping[str, object], names: Mapping[str, str], rate: Real | None
 ) -> tuple[dict[str, Array], bool]:
-    """Return the columns of a film in SI, or with places in pixels, and whether they are.
+    """Return the columns of a film in SI, or with places in pixels, and True for pixels.
 
     Frames that lack a number are left out.
     """
@@ -299,7 +298,7 @@ def _bounces(film: dict[str, Array], *, in_pixels: bool) -> Measurements:
 
 
 def _tell_assumptions(film: Mapping[str, Array]) -> tuple[str, ...]:
-    """Return sentences on what is taken of the flights of a film."""
+    """Return sentences on assumptions about the flights of a film."""
     level = () if "z" in film else ("z = 0 m: the ball stays in the plane of x and y",)
     return (f"gravity = {GRAVITY} m/s², of flights without air", *level)
 
@@ -320,7 +319,7 @@ def _throws(film: dict[str, Array]) -> Iterator[dict[str, Array]]:
 
 
 def _in_flight(throws: list[dict[str, Array]]) -> tuple[list[dict[str, Array]], list[str]]:
-    """Return throws without the frames in which the ball is held or at rest, and what was left out.
+    """Return throws without frames in which the ball is held or at rest, and words on those frames.
 
     At its ends a throw stands still if its height does not change beyond the scatter for longer
     than a flight could take within it.
@@ -487,7 +486,7 @@ def _row(
 
 
 def _fall(throws: list[dict[str, Array]], step: float) -> list[str]:
-    """Return a note if the flights do not fall with g, and refuse what is far from it."""
+    """Return a note if the flights do not fall with g, and refuse flights far from g."""
     numbers, weights = [], []
     for throw in throws:
         t = throw["t"]

@@ -56,12 +56,12 @@ WHOLE = {
 MISSPELT = 0.72
 #: Columns in the frame of the ground, of no use beside a club's speed.
 OF_THE_GROUND = ("rebound_speed", "rebound_angle_deg")
-#: What the incidence on a club is, where no column has it.
+#: Remedy for a missing angle of incidence on a club.
 LOFT = (
     "the incidence is the loft of the face less the attack angle (spin loft), which no column "
     "tells: write angle_deg under [impact] of the scene"
 )
-#: Velocities before the impact that others tell.
+#: Velocities before the impact that other columns determine.
 RIVALS = (
     ({"normal_speed", "tangential_velocity"}, {"speed", "angle_deg"}),
     ({"speed", "angle_deg"}, {"normal_speed", "tangential_velocity"}),
@@ -73,7 +73,7 @@ RIVALS = (
 def foreign(
     unknown: Mapping[str, object], known: Collection[str], refused: list[str]
 ) -> tuple[str, ...]:
-    """Return a sentence on columns that are left out because nothing is known of them.
+    """Return a sentence on columns that are left out because their headings are unknown.
 
     Parameters
     ----------
@@ -166,12 +166,12 @@ def _guesses(
 
 
 def _attacks(text: str) -> bool:
-    """Return whether a heading is that of the angle at which a club's path meets the ground."""
+    """Return whether a heading names the angle at which a club's path meets the ground."""
     return re.search(r"attack", text.lower()) is not None
 
 
 def _club(headings: Iterable[str]) -> bool:
-    """Return whether headings are those of a launch monitor, which tells of a club."""
+    """Return whether headings are those of a launch monitor that measures the club."""
     return any("club" in text.lower() for text in headings)
 
 

@@ -76,7 +76,7 @@ def spread(problem: Problem, values: Array, first: Array | None = None) -> Sprea
     mean_square = square / freedom if freedom > 0 else math.nan
     stated = all(name in problem.errors for name in problem.measured)
     factor = mean_square
-    if stated:  # errors may be stated too small, but are not believed to be too large
+    if stated:  # stated errors may be too small; they never count as too large
         factor = max(mean_square, 1.0) if freedom else 1.0
     size = np.sqrt(np.sum(jacobian**2, axis=0))
     covariance = np.linalg.inv((jacobian / size).T @ (jacobian / size)) / np.outer(size, size)

@@ -73,9 +73,9 @@ class Measurements:
         return len(next(iter(self.measured.values())))
 
     def rename(self, name: str, alias: str) -> str:
-        """Return HEADING=ALIAS for the column of a quantity, an alias of whose numbers is to hold.
+        """Return HEADING=ALIAS, which reads the column of a quantity under another name.
 
-        A sign turns what the column has now.
+        A minus sign turns the present numbers.
         """
         heading, sign, unit = self.headings.get(name, ("HEADING", "", ""))
         if unit and not alias.endswith(("_deg", ")")):
@@ -194,7 +194,7 @@ def _from_columns(
         try:
             role, name, factor, offset = read_heading(text, names)
         except UnknownHeadingError as error:
-            if text.strip() in names:  # a wrong name is no foreign heading
+            if text.strip() in names:  # named by the user: no foreign heading
                 refused.append(str(error))
             else:
                 unknown[text] = content

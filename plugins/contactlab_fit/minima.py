@@ -35,7 +35,7 @@ def minima(problem: Problem, progress: Callable[[int, int], object] | None = Non
 
 
 def _reach(problem: Problem, few: Problem, start: Array, found: list[Array]) -> None:
-    """Search from a start, and add the minimum to those found if it is another one."""
+    """Search from a start, and add the minimum if it is new."""
     values = solve_problem(few, start)
     if few is not problem:
         values = solve_problem(problem, values)
@@ -44,7 +44,7 @@ def _reach(problem: Problem, few: Problem, start: Array, found: list[Array]) -> 
 
 
 def _further(problem: Problem, about: Array, found: list[Array]) -> list[Array]:
-    """Return the minima over friction of a scan about a minimum, but for those found already."""
+    """Return the new minima over friction of a scan about a minimum."""
     names = [parameter.name for parameter in problem.model.parameters]
     if FRICTION not in names or not problem.model.at_once(list(problem.measured)):
         return []
@@ -71,8 +71,8 @@ def _further(problem: Problem, about: Array, found: list[Array]) -> list[Array]:
 def _allow(problem: Problem, about: Array, points: Array, scales: Mapping[str, Real]) -> Array:
     """Return the points up to the last that the data allow, by lines through the grid of starts.
 
-    Laws that are marched take long. Residuals on the grid are known; between its points they are
-    off by no more than lines and curves through them differ, and by that much they may be less.
+    Marched laws take long. Residuals are computed on the grid only; between its points they may be
+    less by as much as lines and curves through them differ.
     """
     from scipy.interpolate import PchipInterpolator  # only a fit needs scipy
 

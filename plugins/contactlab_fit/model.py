@@ -23,8 +23,8 @@ from contactlab_fit import tabulated
 from contactlab_fit.parameters import RESTITUTION, Parameter, Setup
 
 FRICTION = "friction_coefficient"
-#: What a scene file may leave out to be read at all. Searches have their own starts, and no number
-#: that this friction moves is met or answered: ``unknown_friction``.
+#: Stand-ins for missing entries of a scene file. Searches have their own starts, and numbers that
+#: depend on this friction are left out: ``unknown_friction``.
 DEFAULTS = {FRICTION: 0.1}
 #: Points whose predictions are kept: those of a search and its diagnosis, not of a bootstrap; and
 #: impacts at them, of 8 bytes for each quantity.
@@ -34,9 +34,9 @@ TOGETHER = 500_000
 TABULATED = "exact elastic law (tabulated rebound)"
 #: Digits of an option of a law: within them impacts run once, and normal motions are kept.
 DIGITS = 7
-#: The quantity that takes the course of the normal motion, not its restitution alone.
+#: The quantity that needs the course of the normal motion, not its restitution alone.
 CONTACT_TIME = "contact_time"
-#: What a column may need and no table has: impacts are followed for it.
+#: Needs of a column that no table meets: its impacts are followed.
 FOLLOWED = {"motion", "history"}
 
 

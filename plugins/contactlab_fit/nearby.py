@@ -69,7 +69,7 @@ def faithful(
 ) -> bool:
     """Return whether samples, shape (m, parameters), by polynomials are those of the laws.
 
-    The laws are run at the samples next to the ``ends`` of each interval, shape (2, parameters).
+    The laws run at the samples next to the ``ends`` of each interval, shape (2, parameters).
     The first step of a search from there tells how far the sample is off.
     """
     places = {

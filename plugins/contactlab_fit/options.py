@@ -50,7 +50,7 @@ def read_impacts(
 ) -> Measurements:
     """Return measured impacts, with the names of columns; a refusal has the command to paste.
 
-    Headings that may be read in several ways are told with what ``fit_of`` gives for each.
+    The message lists each reading of ambiguous headings with the result of ``fit_of``.
     """
     from contactlab_fit import measurements  # only for measured impacts
 
@@ -70,7 +70,7 @@ def read_named(
     arguments: argparse.Namespace,
     fit_of: Callable[[Measurements], Fit] | None,
 ) -> Measurements:
-    """Return what ``read`` makes of ``columns=names``; a refusal has the command to paste."""
+    """Return ``read(columns=names)``; a refusal has the command to paste."""
     from contactlab_fit.conventions import ForeignHeadingsError
 
     try:

@@ -159,7 +159,7 @@ def find_parameter(name: str, setup: Setup) -> Parameter:
 
 
 def those_of(setup: Setup, names: Sequence[str]) -> list[str]:
-    """Return those of some names that scene and laws have."""
+    """Return the names that scene and laws have."""
     choices = _choices(setup)
     return [name for name in names if _full(name, choices) is not None]
 
@@ -170,7 +170,7 @@ def asks_for(option: str, names: Sequence[str]) -> bool:
 
 
 def defaults_of(setup: Setup, fitted: Collection[str]) -> dict[str, tuple[float, str]]:
-    """Return the options of laws that nobody fits and that have their default: value and unit."""
+    """Return the options of laws that are not fitted and keep their default: value and unit."""
     found: dict[str, tuple[float, str]] = {}
     for name in _choices(setup):
         kind, _, option = name.partition(".")
@@ -179,7 +179,7 @@ def defaults_of(setup: Setup, fitted: Collection[str]) -> dict[str, tuple[float,
         law = getattr(setup.simulation, kind)
         try:
             default = getattr(type(law)(), option)
-        except TypeError:  # a law whose author wants it to be given
+        except TypeError:  # a required option
             continue
         if getattr(law, option) == default:
             found[name] = float(default), attrs.fields_dict(type(law))[option].metadata["unit"]
@@ -255,7 +255,7 @@ def _choices(setup: Setup) -> dict[str, Callable[[], Parameter]]:
                     field.name == SHEAR_LOSS
                     and "viscous" not in simulation.laws.capability.normal_claims
                 ):
-                    continue  # nothing is lost
+                    continue  # without a loss there is no such option
                 choices[f"{kind}.{field.name}"] = partial(_option, kind, field, value)
     return choices
 

@@ -31,8 +31,8 @@ RADIANS = 1.58
 BOUNDS, SHARE = {"normal_restitution": (-0.1, 1.1), "beta0": (-1.1, 1.1)}, 1 / 3
 #: A mean restitution lies above or below 1 if scatter makes that with less than this chance.
 DOUBT = 0.01
-#: Quantities that tell the normal restitution, least impacts and range of a column whose line is
-#: looked at, and least change of the restitution that is told.
+#: Quantities that tell the normal restitution; for its trend, least impacts, least range of a
+#: column, and least change of the restitution.
 OF_NORMAL = "normal_restitution", "rebound_normal_velocity"
 FEWEST, VARIES, LEAST_TREND = 4, 0.1, 0.005
 #: Ends of a table of the speed that is told, over those measured: a tilt that is looked for makes
@@ -98,9 +98,9 @@ def restitutions(problem: Problem, table: Measurements) -> list[str]:
     if e is None and (out := table.measured.get("rebound_normal_velocity")) is not None:
         name, error = "rebound_normal_velocity", table.errors.get("rebound_normal_velocity")
         first = scene.sphere if scene.encounter is None else scene.encounter.body
-        assert first is not None  # what is measured has bodies
+        assert first is not None  # measured scenes have bodies
         speed = np.asarray(scene.normal_speed)
-        change = speed * (scene.pair.normal_mass / first.mass)  # of a body that moves off, less
+        change = speed * (scene.pair.normal_mass / first.mass)  # less if the struck body moves off
         e, error = (speed - out) / change - 1.0, None if error is None else error / change
     if e is None:
         return []
@@ -120,9 +120,9 @@ def restitutions(problem: Problem, table: Measurements) -> list[str]:
 
 
 def trend_of_restitution(problem: Problem, values: Array) -> list[str]:
-    """Return a sentence if the normal restitution follows the speed or angle, and what takes it.
+    """Return a sentence if the normal restitution follows the speed or angle, with a remedy.
 
-    It is the line through the residuals that chance makes least.
+    The trend is the line through the residuals that chance makes least.
     """
     from scipy.special import stdtr  # only a fit needs scipy
 

@@ -25,9 +25,9 @@ LETTERS = 400
 def tell_readings(
     readings: Sequence[Reading], fit_of: Callable[[Mapping[str, str]], Fit]
 ) -> list[Result]:
-    """Return what a fit gives for each reading of headings, in words; nothing where there is one.
+    """Return the fit by each reading of headings, in words; empty if there is one reading.
 
-    It is the parameters and the rms residual of each quantity, or why there is no fit.
+    The words are parameters and rms residuals, or the reason of a refusal.
     """
     if len(readings) == 1:
         return []

@@ -27,10 +27,10 @@ GRID, SEARCHES = 400, 4
 #: Most rounds that re-estimate the errors of quantities from residuals, and relative change of
 #: the errors that ends the rounds.
 ROUNDS, STEADY = 6, 0.02
-#: Rows by which long tables are searched first and looked at for mistakes: their scatter lets far
-#: smaller ones be seen than any that is told.
+#: Rows of a long table that are searched first, and for mistakes: they suffice to see mistakes far
+#: smaller than any that is told.
 MANY = 20_000
-#: Rows of a long table are taken in blocks of so many, so that most have their neighbours.
+#: Rows in a block of a long table's sample, so that most rows keep their neighbours.
 BLOCK = 100
 #: Least error of a quantity over its size: data made by the model itself have no error.
 LEAST_ERROR = 1e-9

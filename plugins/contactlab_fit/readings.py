@@ -49,7 +49,7 @@ TAKEN_FOR = {
     "rebound_tangential_velocity": "rebound_slip_velocity",
 }
 TAKEN_FOR |= {local: centre for centre, local in TAKEN_FOR.items()}
-#: Restitutions that are easily exchanged, each with what its numbers then are: name, sign, words.
+#: Restitutions that are easily exchanged: the true quantity of the numbers, its sign, and words.
 RESTITUTIONS = {
     "tangential_restitution": (("beta0", 1.0, "beta0"), ("beta0", -1.0, "psi2/psi1, -beta0")),
     "beta0": (("tangential_restitution", 1.0, "tangential_restitution"),),
@@ -62,7 +62,7 @@ class Reading(NamedTuple):
     ``words`` state the supposed mistake. ``problem`` has the impacts and numbers of this reading,
     in the order of the measured quantities. ``factors`` are the factors on the numbers, by
     quantity. ``rest`` are the original numbers without those that the reading drops; None if the
-    reading drops no number. ``names`` are those under which ``--column`` reads columns so.
+    reading drops no number. With ``names`` ``--column`` reads the columns in this way.
     """
 
     words: str
@@ -100,7 +100,7 @@ def readings(problem: Problem, given: Collection[str]) -> Iterator[Reading]:
 
 
 class Met(NamedTuple):
-    """Words on a mistake before the impact, the scene without it, and names for its columns."""
+    """Words on a mistake before the impact, the corrected scene, and names for its columns."""
 
     words: str
     scene: Scene
@@ -108,7 +108,7 @@ class Met(NamedTuple):
 
 
 def _name(name: str, way: str) -> dict[str, str]:
-    """Return the name under which a column is read another way, by its name; none if there is."""
+    """Return names that read a column another way; empty without such names."""
     if way == SIGN:
         return {name: f"-{name}"}
     if way == SURFACE:

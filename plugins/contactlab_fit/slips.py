@@ -34,7 +34,7 @@ from contactlab_fit.problem import Problem, grid, solve_problem
 from contactlab_fit.readings import Reading, readings, turn_scene
 
 #: A mistake is reported if its correction makes the likelihood exp(CERTAIN/2) times greater, which
-#: chance does once in 20,000 times, and residuals this many times smaller. A sign needs no such
+#: chance does once in 20,000 times, and residuals ``SMALLER`` times smaller. A sign needs no such
 #: residuals, and if all impacts then slip throughout exp(SLIDING/2) is enough: turned, numbers look
 #: like those of a greater friction, but grow with the angle where those fall.
 SMALLER, CERTAIN, SLIDING = 2.0, 20.0, 6.0
@@ -78,7 +78,7 @@ def slips(
     number = sum(problem.counts.values())
     if problem.model.setup.scene.sphere is None or number < len(values) + SPARE:
         return [], []
-    if set(problem.measured) - set(MEASURABLE):  # the table knows no column of a plug-in
+    if set(problem.measured) - set(MEASURABLE):  # the table has no columns of plug-ins
         return [], []
     quick = _elastic(problem)
     start = values if quick is problem else solve_problem(quick, _first(quick))
@@ -202,7 +202,7 @@ def _sentence(problem: Problem, values: Array, better: list[Read], *, more: int 
     times = math.exp((own - best.score) / (2.0 * sum(problem.counts.values())))
     listed = "; or ".join(read.reading.words for read in better)
     parameters = best.reading.problem.model.parameters
-    kept = len(parameters) - more  # without what was tried
+    kept = len(parameters) - more  # without the tried parameters
     estimates = in_words(parameters[:kept], best.values[:kept])
     told = f"{listed}: read so, residuals are {times:.2g} times smaller"
     return f"{told}, and {estimates}" if kept else told
@@ -221,8 +221,8 @@ class AngleOffset(Parameter):
 def loosen(problem: Problem, given: Collection[str], values: Array) -> Pattern:
     """Return the chance that scatter looks like an error common to all impacts, and a sentence.
 
-    Errors that are tried are a common excess of all angles, a wrong restitution and a wrong loss
-    in shear.
+    The possible errors are a common excess of all angles, a wrong restitution and a wrong loss in
+    shear.
     """
     if problem.model.setup.scene.sphere is None:
         return NO_PATTERN
@@ -246,12 +246,12 @@ def lossy(problem: Problem, values: Array) -> Pattern:
     return _better_with(quick, best, _free_restitution(quick, best))
 
 
-#: A problem with one more parameter, the last, its start, and words on the best value of that.
+#: A problem with one more parameter, in last place; its start, and words on its best value.
 Wider = tuple[Problem | None, Array, Callable[[float], str]]
 
 
 def _better_with(problem: Problem, values: Array, *tried: Wider) -> Pattern:
-    """Return the chance of the best of some parameters more, and a sentence on those as good.
+    """Return the chance of the best additional parameter, and a sentence on equally good ones.
 
     The chance is that of the F test of one parameter, times the number tried.
     """
@@ -347,7 +347,7 @@ def _of_the_batch(problem: Problem, values: Array) -> tuple[Problem, Array]:
 
 
 def _of_law(law: str) -> str:
-    """Return in words beta0 of a law."""
+    """Return beta0 of a law in words."""
     return f"beta0 of {short_name(law)}"
 
 

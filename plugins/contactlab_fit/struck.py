@@ -21,7 +21,7 @@ def to_the_struck_body(
 ) -> None:
     """Change columns from the frame of the laboratory to that of the struck surface.
 
-    Only relative velocities count in an impact, so that the answer is that of a body at rest. The
+    Only relative velocities count in an impact: the answer is that for a struck body at rest. The
     columns of the struck surface are taken out. Spins, contact times, and the restitutions of the
     normal motion and of slip are the same in both frames.
 

@@ -85,7 +85,7 @@ def impacts(scene: Scene, simulation: Simulation | None) -> ImpactResult:
 
 
 def rebounds(scene: Scene, restitution: Real) -> ImpactResult:
-    """Return impacts with a restitution each: velocities; the rest is NaN, and nothing is told."""
+    """Return impacts with a restitution each: velocities only, the rest NaN, without a plan."""
     rate: Real = -restitution * np.asarray(scene.normal_speed)
     ends = dict.fromkeys(ENDS, np.nan) | {"normal_velocity": rate}
     return _result(scene, restitution, ends, lambda: ((), (), ()))

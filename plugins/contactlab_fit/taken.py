@@ -1,4 +1,4 @@
-"""Numbers that a fit takes and that stand in neither table nor scene."""
+"""Numbers of a fit that stand in neither table nor scene."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from contactlab_fit.measurements import Measurements
 from contactlab_fit.model import Model, open_scene
 from contactlab_fit.parameters import defaults_of
 
-#: Motions that are 0 where nobody gives them, and their units.
+#: Motions that are 0 by default, and their units.
 STILL = {"tangential_velocity": "m/s", "spin": "rad/s", "normal_spin": "rad/s"}
 
 
 def tell_assumptions(
     table: Measurements, scene: Scene | SceneFile | str | Path, model: Model
 ) -> tuple[str, ...]:
-    """Return a sentence for each number that enters a fit and that nobody gave.
+    """Return a sentence for each default number that enters a fit.
 
     Parameters
     ----------
@@ -52,9 +52,9 @@ def _of_laws(model: Model) -> Iterator[str]:
 def _of_motion(
     table: Measurements, scene: Scene | SceneFile, own: Mapping[str, Any]
 ) -> Iterator[str]:
-    """Yield what is still before the impact, where neither columns nor the scene say so.
+    """Yield motions before the impact that are 0 by default, in columns and scene.
 
-    A ``Scene`` does not tell a 0 that was given from one that was not.
+    A ``Scene`` does not tell the user's 0 from a default.
     """
     impact = own.get("impact", {})
     stated = {*table.given, *impact}

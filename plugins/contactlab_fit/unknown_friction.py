@@ -1,4 +1,4 @@
-"""Fits of scenes that have no friction coefficient: from the numbers that no friction moves."""
+"""Fits of scenes without a friction coefficient, from numbers that do not depend on friction."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from contactlab_fit.measurements import Measurements
 from contactlab_fit.model import FRICTION, Model, open_scene
 from contactlab_fit.problem import Problem
 
-#: Friction coefficients from ice to more than rubber: what is the same under all feels none.
+#: Friction coefficients from ice to more than rubber: numbers equal under all do not depend on it.
 FRICTIONS = (0.01, 0.1, 1.0, 10.0)
 #: Relative difference up to which predictions are the same.
 ALIKE = 1e-12
@@ -25,13 +25,13 @@ ALIKE = 1e-12
 def lacks_friction(
     scene: Scene | SceneFile | str | Path, given: Mapping[str, Array], parameters: Sequence[str]
 ) -> bool:
-    """Return whether friction stands in neither table nor scene, and is not fitted."""
+    """Return whether the friction coefficient is missing from table, scene and parameters."""
     file = open_scene(scene, given)
     return isinstance(file, SceneFile) and FRICTION in file.defaulted and FRICTION not in parameters
 
 
 def without_friction(problem: Problem, table: Measurements) -> tuple[Measurements, str]:
-    """Return the measurements that no friction moves, and a sentence on the others.
+    """Return the measurements that do not depend on friction, and a sentence on the others.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def under(model: Model, friction: float) -> Model:
 
 
 def normal_motion_alone(result: ImpactResult) -> ImpactResult:
-    """Return impacts of unknown friction: what friction moves is NaN."""
+    """Return impacts of unknown friction: numbers that depend on friction are NaN."""
     nothing = np.full(result.scene.shape, np.nan)
     motion = attrs.evolve(result.motion, slip_velocity_change=nothing, friction_work=nothing)
     return attrs.evolve(result, motion=motion)

@@ -10,7 +10,7 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
 from contactlab_fit.measurements import Measurements
 
-#: What friction changes together with the spin.
+#: The velocity that friction changes together with the spin.
 ALONG = "rebound_tangential_velocity"
 FIRST = (
     "spin = 0 rad/s before the first bounce of each throw; before later ones it follows from the "

@@ -20,7 +20,7 @@ from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.checks import refuse
 from contactlab.runs.simulation import Simulation
 
-#: Springs and steps of the contact that the page draws; how the ball leaves is from the table.
+#: Springs and steps of the contact that the page draws; velocities after it come from the table.
 SPRINGS, STEPS = 100, 500
 #: Ranges of the sliders: least, most.
 RANGES = {"angle": (0.0, 85.0), "speed": (0.1, 10.0), "spin": (-600.0, 600.0),
@@ -41,7 +41,7 @@ TILTS, ROD_FRICTION, RESTITUTIONS = range(76), 0.3, (1.0, 0.8, 0.6, 0.4)
 
 @cache
 def rod_table() -> list[list[list[list[float]]]]:
-    """Return how a rod that falls at 1 m/s leaves: [e][law][tilt][velocity x, z, spin], in SI."""
+    """Return a rod after a fall at 1 m/s: [e][law][tilt][velocity x, z, spin], in SI."""
     steel, down = Material.named("steel"), np.array([0.0, 0.0, -1.0])
     rods = [
         shapes.rod(
