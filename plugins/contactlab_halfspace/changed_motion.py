@@ -52,7 +52,7 @@ def change_motion(
 
 
 def _part(rows: list[Array], top: int) -> list[Array]:
-    """Return time, approach, rate and force with nothing happening after the bodies parted."""
+    """Return time, approach, rate and force; after parting, force 0 and a constant rate."""
     time, approach, rate, force = (row.copy() for row in rows)
     force[approach <= 0.0] = 0.0
     after = np.flatnonzero(approach[top:] <= 0.0)

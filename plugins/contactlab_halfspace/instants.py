@@ -17,7 +17,7 @@ from contactlab.contracts import ClosedFormMotion, NormalMotion
 from contactlab.numeric.types import Array, Places
 from contactlab_halfspace.basis import edge_at
 
-#: Phases at which the radius is looked at, and halvings in the search of an instant.
+#: Phases at which the radius is sampled, and halvings in the search of an instant.
 SEARCHED, HALVINGS = 257, 50
 
 
@@ -155,7 +155,7 @@ def _scale_radius(normal: ClosedFormMotion, phase: Array) -> Array:
 def _halve(
     radius: Callable[[Array], Array], places: Array, top: int, greatest: Array | float
 ) -> Array:
-    """Return the phases with radii ``places``, where the ``greatest`` is known, by halving."""
+    """Return the phases with radii ``places`` by halving, given that of the ``greatest``."""
     peak = np.atleast_1d(np.asarray(greatest))
     wanted = places[:, None] * np.asarray(radius(peak[None]))
     rising = np.arange(len(places))[:, None] <= top

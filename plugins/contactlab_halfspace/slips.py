@@ -1,4 +1,4 @@
-"""The slips of points over the last steps, and where they come to rest: stick or slip."""
+"""The slips of points over the last steps, and their extrapolation: stick or slip."""
 
 from __future__ import annotations
 

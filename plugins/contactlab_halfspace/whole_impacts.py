@@ -105,7 +105,7 @@ def _solve(options: Options, normal: NormalMotion) -> list[_Solved]:
                     spin = spin + (spin - coarse.spin) * further
                 passed = np.diff(fine.impulse, axis=0) * (share[1:] + share[:-1])
                 change = -matter.chi * passed.sum(axis=0)
-                if group.spins:  # friction that is nearly all against spin speeds no slip up
+                if group.spins:  # friction mostly against spin must not speed up slip
                     opposes = change * matter.psi1 <= 0.0
                     change, share = change * opposes, share * opposes
         if group.spins:  # by symmetry there is no force without slip

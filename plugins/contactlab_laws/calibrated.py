@@ -1,4 +1,4 @@
-"""What laws share that a restitution, or a measurement, calibrates."""
+"""Shared parts of laws that a restitution, or a measurement, calibrates."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from collections.abc import Callable
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.taken import Taken
 
-#: What a law offers that loses energy, and what it offers if a restitution gives the loss.
+#: Words of a law that loses energy, and of a law whose loss follows from a restitution.
 OF_LOSS = frozenset({"viscous", "similar"})
-#: What does not hold of it, by whether there is a loss, and one number e.
+#: Words to take away, by whether there is a loss, and one number e.
 WAIVED = {
     (True, True): frozenset[str](),
     (True, False): frozenset({"similar"}),
@@ -19,7 +19,7 @@ WAIVED = {
 
 
 def waives_of_loss(restitution: object, loses: bool) -> frozenset[str]:
-    """Return the words of ``OF_LOSS`` that do not hold."""
+    """Return the words of ``OF_LOSS`` that do not hold for these parameters."""
     return WAIVED[loses, isinstance(restitution, float)]
 
 
@@ -33,7 +33,7 @@ def root(function: Callable[[float], float], low: float, high: float) -> float:
 def one_of_two(law: object, first: str, second: str, *, default: Taken) -> None:
     """Refuse a law that sets both of two equivalent options; if it sets neither, set ``first``.
 
-    What was taken for ``first`` yields to a ``second`` that is given.
+    A default of ``first`` yields to a ``second`` from the user.
     """
     values = getattr(law, first), getattr(law, second)
     given = [value is not None for value in values]  # no comparison: a value may be an array

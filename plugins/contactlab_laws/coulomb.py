@@ -77,7 +77,7 @@ class Coulomb(WholeImpactTangentialLaw, CoupledTangentialLaw):
         accuracy: float | None,
         observer: Observer | None = None,
     ) -> TangentialMotion:
-        """Return the motion of rigid bodies; without a course, as all happens in no time."""
+        """Return the motion of rigid bodies, without a course, as rigid impacts take no time."""
         from contactlab_laws.rigid_impact import rigid_impacts
 
         return rigid_impacts(scene, normal)

@@ -56,7 +56,7 @@ FAILURES: Mapping[str, Mapping[str, str]] = {
 #: Checks that pass with a stiffness factor of 2/3: the law then does what it does with a factor of
 #: 1 at two thirds of psi1 and chi, where the scenes of the check show no gain.
 SOFTER = frozenset({"impact_bounds"})
-#: Checks that pass with a dashpot of 0.2 and more, which takes up what the spring gives back.
+#: Checks that pass with a dashpot of 0.2 and more, which absorbs the energy that the spring makes.
 TAKEN = frozenset({"closed_cycles", "random_paths", "partial_unloading", "impact_bounds"})
 #: Further checks that a law with a dashpot fails.
 DAMPED = {
@@ -72,7 +72,7 @@ PATH = (
     "a held displacement change the force. springs do neither."
 )
 _MADE = "model: this spring can create energy. {}"
-#: Cautions of the forms that make energy, with its size at any stiffness factor: between elastic
+#: Cautions of the forms that make energy, with the size at any stiffness factor: between elastic
 #: spheres, and under damped normal laws. Measured over 12,000 impacts a form, chi up to 300, and
 #: 60,000 damped ones, chi up to 30, under the five normal laws that take a restitution.
 ELASTIC = {
@@ -84,7 +84,7 @@ ELASTIC = {
         "Bodies may leave with 5.2 % more slip velocity than they arrived with."
     ),
 }
-#: Largest chi of these, elastic and damped, and the least restitution of the damped ones.
+#: Largest chi of these impacts, elastic and damped, and least restitution of the damped ones.
 ELASTIC_CHI, DAMPED_CHI, LEAST_E = 300.0, 30.0, 0.5
 _DAMPED = "Under damped normal laws of e = 0.5 the slip velocity may grow by up to {}."
 DAMPED_GAIN = {

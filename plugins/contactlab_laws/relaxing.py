@@ -1,4 +1,4 @@
-"""What normal laws of a relaxation time share: options, and how a restitution becomes a time."""
+"""Shared parts of normal laws with a relaxation time: options, and the time from a restitution."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Relaxing(NormalLaw):
         return waives_of_loss(self.restitution, self.loses)
 
     def restitution_in(self, scene: Scene) -> Real | None:
-        """Return e of each impact, where no relaxation time is given."""
+        """Return e of each impact, unless the user gave a relaxation time."""
         found: Real | None = number_in(self, "restitution", scene)
         return found
 

@@ -36,7 +36,7 @@ def rigid_impacts(scene: Scene, normal: NormalMotion) -> TangentialMotion:
     work, loss = (np.array([row[k] for row in rows]).reshape(shape) for k in (1, 2))
     change = after[..., 1:] - scene.velocity[..., 1:]
     number: Callable[[Array], Real] = np.asarray if shape else float
-    unknown = spread(math.nan, shape)  # they happen in no time
+    unknown = spread(math.nan, shape)  # rigid impacts take no time
     return TangentialMotion(
         slip_velocity_change=kinetics.tangent(scene, change),
         friction_work=number(work),
@@ -51,7 +51,7 @@ def _planar(inverse: Array, before: Array, mu: float, e: float) -> tuple[Array, 
     n, c, t = float(inverse[0, 0]), float(inverse[0, 1]), float(inverse[1, 1])
     if slip != 0.0:
         sign = math.copysign(1.0, slip)
-    else:  # the way in which pressure drags the bodies, if friction does not hold them
+    else:  # pressure drags the bodies this way unless friction holds them
         sign = 0.0 if abs(c) <= mu * t else -math.copysign(1.0, c)
     books = _Books(rate, e)
     while True:
@@ -98,7 +98,7 @@ class _Books:
 
     @property
     def loss(self) -> float:
-        """Work of the normal impulse that was not returned."""
+        """Loss of the normal impulse: work in compression less work returned."""
         return self.pressed - self.restore
 
 

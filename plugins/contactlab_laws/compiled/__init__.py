@@ -1,4 +1,4 @@
-"""What is compiled with the package where there is a C compiler: ``kernels/*.h`` as one library."""
+"""The library of ``kernels/*.h``, compiled with the package where there is a C compiler."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def digest() -> str:
 
 
 def library() -> ctypes.CDLL | None:
-    """Return the library, or None where there is none or it is left out."""
+    """Return the library, or None if it is missing or left out."""
     return _library(_wants_library())[0]
 
 

@@ -176,13 +176,13 @@ def _phases(motion: ScaledMotion, fractions: bytes) -> Array:
 
 @lru_cache(maxsize=16)
 def _share(*_: object) -> dict[Any, Any]:
-    """Return the dict that motions share of the same scaled motion and the same numbers."""
+    """Return the dict that motions with the same scaled motion and numbers share."""
     return {}
 
 
 @cache
 def _first() -> Scene:
-    """Return the impact of which motions in other units are made."""
+    """Return the impact from which motions in other units are made."""
     return Scene.nondimensional(psi1=0.0, chi=1.0)
 
 
@@ -225,7 +225,7 @@ class DashpotMotion(ClosedFormMotion):
 
     @property
     def shared(self) -> dict[Any, Any] | None:
-        """What the pattern shares with itself in other runs."""
+        """Values that the pattern keeps from run to run."""
         return _share(self.motion) if self.scene is _first() else None
 
     @property

@@ -1,1 +1,1 @@
-"""How far psi2 differs between friction laws, and between normal laws of the same restitution."""
+"""Differences of psi2 between friction laws, and between normal laws of the same restitution."""

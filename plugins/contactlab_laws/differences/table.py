@@ -115,7 +115,7 @@ def _beyond(chi: Real) -> bool:
 
 
 def _by_springs(measured: tuple[Row, ...], e: Real, chi: Real) -> float:
-    """Return the largest error of springs at the measured e and chi around those of the impacts."""
+    """Return the largest error of springs at the measured e and chi next to the impacts' own."""
     sizes = np.array([row.springs for row in measured])
     known = np.array([row.restitution for row in measured])
     largest = 0.0

@@ -1,1 +1,1 @@
-"""Paths from event to event, in scaled units, of laws that know theirs."""
+"""The integrator of laws that know their path from event to event, in scaled units."""

@@ -50,7 +50,7 @@ class Solved(NamedTuple):
 
 
 class _Followed(NamedTuple):
-    """A path as far as it was followed; ``failure`` is empty on success."""
+    """The followed part of a path; ``failure`` is empty on success."""
 
     stretches: Sequence[Stretch]
     reached: float = math.pi
@@ -110,7 +110,7 @@ def _follow(
     inertia: float,
     tolerance: float,
 ) -> _Followed:
-    """Return the path of a law, and whether it may be believed."""
+    """Return the path of a law, with a failure if its energy books do not balance."""
     stretches: list[Stretch] = []
     x = change = work = 0.0
     still, status, failure = 0, Status.UNRESOLVED, ""
@@ -144,7 +144,7 @@ def _follow(
 
 
 def books_miss(velocity: float, inertia: float, change: float, work: float) -> float:
-    """Return by what part of the tangential energy friction work is not the loss of energy."""
+    """Return friction work less loss of energy, as a part of the tangential energy."""
     # Over the velocity, as its square may be too large for a number.
     scale = max(velocity, LEAST_AUDITED)
     lost = change * ((velocity + 0.5 * change) / scale)
@@ -152,7 +152,7 @@ def books_miss(velocity: float, inertia: float, change: float, work: float) -> f
 
 
 def show(batch: tuple[int, ...], solved: Sequence[Solved], observer: Observer) -> None:
-    """Call ``observer`` at phases common to all impacts, as far as every one of them came."""
+    """Call ``observer`` at phases common to all impacts, up to the first end among them."""
     x = np.linspace(0.0, math.pi, INSTANTS)
     if not batch:
         x = np.union1d(x, [stretch.stop for stretch in solved[0].stretches])

@@ -1,4 +1,4 @@
-"""The central impact: the path of one whose normal motion is a sphere's, in stretches."""
+"""The path of an impact with the normal motion of spheres, in stretches."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ MOST_STEPS, OFTEN = 3000, 1e3
 
 @attrs.frozen(eq=False)
 class FrontStretch(Stretch):
-    """A stretch within whose front all sticks, and outside which all slips one way.
+    """A stretch of the path: stick within the front, slip in one direction outside.
 
-    Its ``steps`` end at the phases ``stops``; ``psi1`` is that of the impact. ``fronts`` are those
-    of the phases at which ``states`` was asked.
+    Its ``steps`` end at the phases ``stops``; ``psi1`` is that of the impact. ``fronts`` belong to
+    the phases at which ``states`` was called.
     """
 
     sign: int

@@ -16,7 +16,7 @@ from contactlab_laws.compiled import library
 LEAST_ERROR = 5e-13
 #: Steps of an impact before it is given up; a hard one takes 30, one of kappa = 1e6 some 10,000.
 MOST_STEPS = 20_000
-#: psi2 is proportional to psi1 below it; smaller ones would be lost in rounding.
+#: Below this psi1, psi2 is proportional to psi1; rounding would spoil smaller numbers.
 LINEAR_BELOW = 1e-8
 #: Statuses of impacts without an answer. ``MEMORY`` is that of all without a library, and of one
 #: whose memory finds no room: Python's solver follows them. Scenes hold no numbers of the last, 4.
@@ -46,7 +46,7 @@ def tell() -> str:
 def follow(
     numbers: Array, tolerance: float, most: int = MOST_STEPS
 ) -> tuple[Array, NDArray[np.intc]]:
-    """Return what impacts leave, shape (7, impacts), and their statuses.
+    """Return the ends of impacts, shape (7, impacts), and their statuses.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def follow(
 def follow_one(
     numbers: Sequence[float], tolerance: float, most: int = MOST_STEPS
 ) -> tuple[Array, int, Array]:
-    """Return what one impact leaves, its status, and its steps as rows of ``steps.Steps``."""
+    """Return the end of one impact, its status, and its steps as rows of ``steps.Steps``."""
     law, given = library(), np.array(numbers, dtype=np.float64)
     assert law is not None
     out, status, count = np.empty(7), ctypes.c_int(), ROOM
@@ -100,7 +100,7 @@ def follow_one(
 
 
 def central(psi1: Array, chi: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Return psi2 - psi1 and the work of spheres, shape (impacts,), and where they were found.
+    """Return psi2 - psi1 and the work of spheres, shape (impacts,), and a mask of answers.
 
     Parameters
     ----------

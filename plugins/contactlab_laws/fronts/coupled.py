@@ -1,4 +1,4 @@
-"""Impacts of the slip front in which friction changes the approach: scaling in, motion out."""
+"""Impacts of the slip front in which friction changes the approach, between SI and scaled units."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def motion(
 
 
 def _follow_sides(numbers: Array, smooth: Mask, tolerance: float) -> tuple[Array, NDArray[np.intc]]:
-    """Return what impacts leave and their statuses; ``smooth`` marks those without friction."""
+    """Return ends and statuses of impacts; ``smooth`` marks impacts without friction."""
     if not some(smooth):
         return solve_impacts(numbers, tolerance)
     # nothing slips: psi is infinite, and V and the slip are closed forms
@@ -103,7 +103,7 @@ def _follow_sides(numbers: Array, smooth: Mask, tolerance: float) -> tuple[Array
 
 
 def solve_impacts(numbers: Array, tolerance: float) -> tuple[Array, NDArray[np.intc]]:
-    """Return what impacts leave and their statuses, as ``compiled.follow`` does."""
+    """Return ends and statuses of impacts, as ``compiled.follow`` does."""
     out, status = compiled.follow(numbers, tolerance)
     if not status.any():
         return out, status

@@ -39,9 +39,9 @@ from contactlab_laws.tables.regions import LARGEST_CHI
 #: Impacts of a block: as many as fit into the cache if none is followed; so few that an
 #: interruption loses little if none has an answer from the table.
 WHOLE_IMPACTS, FOLLOWED_AT_A_TIME, FEW = 1 << 14, 1000, 20
-#: Why an impact is not followed.
+#: Reason of impacts that are not followed.
 REASON = "psi2 comes from a table; ask for a history to step"
-#: Error of impacts that are followed where none is asked for.
+#: Default error of impacts that are followed.
 FOLLOWED = 1e-9
 #: Error over max(1, psi1) of whole impacts by the compiled solver, from so large a chi on times chi
 #: over it, as the contact oscillates; and why they are not followed.
@@ -79,7 +79,7 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
 
     @staticmethod
     def rebound_error(*_: object) -> Real:
-        """Return that of the table."""
+        """Return the bound of the table."""
         return ERROR
 
     @staticmethod
@@ -93,7 +93,7 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
     def rebound_of_arrays(
         xp: Library, tables: Mapping[str, Traced], *impact: Traced, **options: Any
     ) -> Traced:
-        """Return psi2 of psi1 and chi; there is nothing to join."""
+        """Return psi2 of psi1 and chi."""
         from contactlab_laws.tables import traced
 
         return traced.rebound(xp, tables, *impact, with_slopes=options["with_slopes"])
@@ -124,7 +124,7 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
         return (*closed, _from_table(scene, psi1, chi, where=tabulated))
 
     def solved(self, psi1: Array, chi: Array) -> Array | None:
-        """Return psi2 - psi1 by the compiled law; None where it does not answer for all."""
+        """Return psi2 - psi1 by the compiled law; None unless it answers for all impacts."""
         if library() is None:
             return None
         slips = slips_throughout(psi1, chi)
@@ -132,7 +132,7 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
         return np.where(slips, -4.0 * chi, change) if known.all() else None
 
     def cost(self, scene: Scene, accuracy: float | None) -> Cost:
-        """Return many impacts if none is followed, few if none has an answer from the table."""
+        """Return a large block if no impact is followed, a small one if the table answers none."""
         by_table, known = bool(np.all(scene.chi <= LARGEST_CHI)), library() is not None
         least = ERROR if by_table else COMPILED
         if self.table and (by_table or known) and (accuracy is None or accuracy >= least):
@@ -144,7 +144,7 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
     def errors(
         self, scene: Scene, normal: NormalMotion, steps: Real, accuracy: float | None = None
     ) -> Errors:
-        """Return 0, there is no discretisation; together the accuracy aimed at, for both."""
+        """Return 0, as nothing is discretised; of both motions together, the accuracy aimed at."""
         if scene.inverse_mass is None:
             return Errors(0.0)
         error = FOLLOWED if accuracy is None else accuracy
@@ -172,7 +172,7 @@ class Fronts(PathTangentialLaw, CoupledTangentialLaw, Tabulated):
 
 
 def _solve_in_c(scene: Scene, where: Mask) -> tuple[WholeImpact, ...]:
-    """Return the answers of the compiled law, where it solves central impacts."""
+    """Return the answers of the compiled law to central impacts."""
     if library() is None:
         return ()
     columns = np.broadcast_arrays(scene.psi1, scene.chi, where)

@@ -113,14 +113,14 @@ class Impact:
         return 0
 
     def ends(self) -> tuple[float, ...]:
-        """Return what the impact leaves, as ``compiled.follow`` does."""
+        """Return the end of the impact, as ``compiled.follow`` does."""
         left = self.rate, self.change, self.work, self.time, self.deepest
         return (*left, self.compressions, self.steps)
 
     # ---------------------------------------------------------------------------- the parts
 
     def _stick(self) -> Part:
-        """All sticks; the edge begins to slip where k, or its like of the other sign, is zero."""
+        """All sticks; the edge begins to slip where k, or k of the other sign, is zero."""
         event, (_, length) = self._along(STICK, (self.radius, 0.0))
         if abs(self.rate) < AT_REST:
             self.rate = 0.0
@@ -187,7 +187,7 @@ class Impact:
     # --------------------------------------------------------------------- what comes after
 
     def _after(self, event: int, front: float) -> Part:
-        """Return what comes after slip has stopped, a piece is spent, or the edge met the front."""
+        """Return the part after slip stops, a piece is spent, or the edge meets the front."""
         if event == 0:
             return self._stop(front)
         if event == 1:
@@ -214,7 +214,7 @@ class Impact:
         return self._draw_back
 
     def _stop(self, front: float = 0.0) -> Part:
-        """Slip has stopped: its zone locks. In unloading the edge slips on with the other sign."""
+        """Lock the zone whose slip stopped. In unloading the edge slips on with the other sign."""
         self.margin = 0.0
         self.memory.append(Locked(self.sign, self.lack, front, self.radius))
         if self.rate > AT_REST:
@@ -224,7 +224,7 @@ class Impact:
         return self._slip()
 
     def _turn(self) -> None:
-        """Look from the other sign of slip."""
+        """Swap the sign of slip."""
         self.sign = -self.sign
         self.laws = Laws.of(self.sign, *self.numbers)
         self.margin = 2.0 * self.rate - self.margin
@@ -244,7 +244,7 @@ class Impact:
     def _along(
         self, phase: int, own: tuple[float, ...] = (), end: float = 0.0
     ) -> tuple[int, list[float]]:
-        """Follow a phase; return the event that ended it, and what the phase has of its own."""
+        """Follow a phase; return the event that ended it, and the series of this phase alone."""
         state = [self.radius, self.rate, self.margin, self.lack, *own, self.time]
         change, psi, event = self.change, self.rate - self.margin, -1
         while event < 0:

@@ -25,7 +25,7 @@ from contactlab_laws.fronts.series import (
 STICK, DRAWN, LOCKED, GROSS = range(4)
 #: A front whose square is below this part of its slope is followed to the centre.
 INMOST = 0.1
-#: An edge that is less beyond the front, or goes less beyond it, does so by rounding.
+#: Distance of the edge beyond the front that counts as rounding.
 APART = 4e-15
 #: A series is followed as far as its last two terms stay below the tolerance, times the first;
 #: beyond the second forces turn more than events are looked for.
@@ -37,7 +37,7 @@ LOOKS, ROOT_WIDTH = 8, 1e-16
 #: Moves of Newton's method to where a dip is lowest.
 MOVES = 8
 
-#: Places and weights of Gauss's rule on [0, 1], which adds up the friction work of a step.
+#: Places and weights of Gauss's rule on [0, 1], for the friction work of a step.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 PLACES, WEIGHTS = (0.5 + 0.5 * _NODES).tolist(), (0.5 * _WEIGHTS).tolist()
 
@@ -61,7 +61,7 @@ def step(
     back = inmost = False
     if phase == STICK:
         rows = along_whole(laws, state, sticks=True)
-        # k, or its like of the other sign, falls below zero
+        # k, or k of the other sign, falls below zero
         other = [rate - (margin - rate) for rate, margin in zip(rows[1], rows[2], strict=True)]
         events = [(rows[2], state[2] == 0.0), (other, False)]
     elif phase == GROSS:
@@ -185,6 +185,6 @@ def _lowest(series: Series, low: float, high: float) -> float:
 
 def _root(series: Series, a: float, b: float, at_a: float) -> float:
     """Return the root between a and b, where the series is negative at b."""
-    from scipy.optimize import brentq  # few who have the package have no compiled solver
+    from scipy.optimize import brentq  # only without the compiled solver
 
     return a if at_a <= 0.0 else float(brentq(partial(value, series), a, b, xtol=ROOT_WIDTH))

@@ -1,4 +1,4 @@
-"""The steps of an impact, of which a history is made, by the compiled law or by Python's."""
+"""The steps of an impact, by the compiled law or in Python, from which a history is made."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ def error_of_step(accuracy: float) -> float:
 
 
 class Steps(NamedTuple):
-    """Columns of what ``contactlab_impact_step`` has, an entry for each step.
+    """The entries of ``contactlab_impact_step`` as columns, a row for each step.
 
-    ``series`` are those of u, V, k, J, c and T, shape (steps, 6, coefficients).
+    ``series`` are the series of u, V, k, J, c and T, shape (steps, 6, coefficients).
     """
 
     part: Array
@@ -56,7 +56,7 @@ class Steps(NamedTuple):
 
 
 def follow_one(numbers: Sequence[float], tolerance: float, most: int) -> tuple[Any, int, Steps]:
-    """Return what one impact leaves, its status and its steps.
+    """Return the end of one impact, its status and its steps.
 
     Parameters
     ----------

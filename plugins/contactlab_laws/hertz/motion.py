@@ -92,7 +92,7 @@ def _cache(function: Callable[[Array], tuple[Array, ...]], at: bytes) -> tuple[A
 
 @lru_cache(maxsize=16)
 def _share(*_: float) -> dict[Any, Any]:
-    """Return the dict that motions share whose batches have as many axes and the same numbers."""
+    """Return the dict that motions with equal numbers and as many axes share."""
     return {}
 
 
@@ -131,7 +131,7 @@ class HertzMotion(ClosedFormMotion):
 
     @property
     def shared(self) -> dict[Any, Any] | None:
-        """What equal motions share; arrays are compared with difficulty, and not shared."""
+        """Values that equal motions share; arrays are slow to compare and share nothing."""
         if not isinstance(self.maximum_force, float):
             return None
         pair, speed = self.scene.pair, self.scene.normal_speed

@@ -10,7 +10,7 @@ import numpy as np
 from contactlab.numeric.types import Array, Real
 from contactlab_laws.jaeger.bundle import Bundle, of_each
 
-#: Most springs times steps of a geometry that is kept for the next impact: 8 of them take 13 MB.
+#: Most springs times steps of a geometry that is kept for the next impact; eight take 13 MB.
 LARGEST_KEPT = 50_000
 
 
@@ -34,7 +34,7 @@ def advance_all(bundle: Bundle, steps: ScaledSteps, velocity: float) -> tuple[Ar
     count, touching = trials.shape
     deflections = np.zeros((count + 1, touching))  # w at the ends of steps
     old, change, forces = deflections[0], 0.0, []
-    add, minimum, maximum = np.add, np.minimum, np.maximum  # looked up once
+    add, minimum, maximum = np.add, np.minimum, np.maximum
     for (whole, most, least, weight), trial, new, drift, kick in zip(
         rows, trials, deflections[1:], steps.drift.tolist(), steps.kick.tolist(), strict=True
     ):

@@ -1,4 +1,4 @@
-"""What laws of partial slip share: scales, claims, gross slip, stiffness, cautions."""
+"""Shared parts of laws of partial slip: scales, claims, gross slip, stiffness, cautions."""
 
 from __future__ import annotations
 

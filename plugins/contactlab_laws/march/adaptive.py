@@ -1,4 +1,4 @@
-"""Error control around even steps: as many as keep psi2 within a tolerance."""
+"""Error control around even steps, doubled until psi2 keeps a tolerance."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ TOLERANCE = Rule(
 )
 #: Steps of the first try; they are doubled until the error is small enough.
 FIRST = 32
-#: Steps by which impacts are given up whose approach without friction has no end.
+#: Steps after which an impact ends without an answer if its approach without friction has no end.
 USUAL = 200
 #: Doubled steps divide the change of psi2 by 4 under a smooth law: from this ratio on the law
 #: counts as smooth, and the error left is the last change over the ratio less 1.
@@ -50,7 +50,7 @@ SMOOTH = 3.0
 #: Under a law that jumps the error is of first order and wanders: it is estimated by the larger of
 #: the last change and half the change before it, times this.
 WANDERS = 2.0
-#: Least error estimate, over the change before: two answers may agree by chance.
+#: Least error estimate over the change before, as two answers may agree by chance.
 BELIEVED = 1.0 / 6.0
 #: psi2 is rounded to this part of max(1, |psi1|) by sums of many steps.
 ROUNDING = 1e-13
@@ -60,10 +60,10 @@ ROUNDING = 1e-13
 class Adaptive(CoupledIntegrator):
     """The steps of ``symplectic``, doubled until psi2 no longer changes by the tolerance.
 
-    The error is that of the whole impact, seen in the answer itself, and not a sum of what
-    single steps may have missed. It is the error in time: that of a law's own discretisation
-    is not in it. The tolerance is an aim and no bound, so no error is declared: of 6,000
-    impacts of a linear spring at 1e-5, 141 were off by more than twice that, the worst by 22 times.
+    The error is measured on the answer of the whole impact, not summed over single steps. It is the
+    error in time; the law's own discretisation adds another. The tolerance is an aim and no bound,
+    so no error is declared: of 6,000 impacts of a linear spring at 1e-5, 141 were off by more than
+    twice that, the worst by 22 times.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ class Adaptive(CoupledIntegrator):
         succeeded = np.asarray(before.status == Status.SUCCESS)
         if not succeeded.any():
             return before
-        count = np.where(succeeded, count, np.inf)  # what has failed is not followed again
+        count = np.where(succeeded, count, np.inf)  # failed impacts are not followed again
         motion, count = self._double_coupled(scene, normal, tangential, count, before)
         if scene.shape:
             failed = before.status != Status.SUCCESS

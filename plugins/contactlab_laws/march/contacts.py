@@ -1,7 +1,7 @@
-"""The contacts of gatherings in a march: what each went through, and when a gathering is over.
+"""The contacts of gatherings in a march: their records, and the end of a gathering.
 
-They open and close as often as they like. Only the kick, the first approach and the end of the
-march know of them (theory §18).
+Contacts may open and close any number of times. Only the kick, the first approach and the end of
+the march know of them (theory §18).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from contactlab.impact.links import Links
 from contactlab.numeric.types import Array, Mask, Real
 from contactlab.numeric.vectors import over
 
-#: Which of the contacts of a batch.
+#: A mask of the contacts of a batch.
 Where: TypeAlias = NDArray[np.bool_]
 #: Rate of approach over the largest at the start below which surfaces do not near each other, and
 #: force over the greatest of a gathering from which a contact goes on. Smaller ones wait for
@@ -105,8 +105,8 @@ class TouchingContacts:
     ) -> tuple[Where, Array]:
         """Return which gatherings are not over, and their flights.
 
-        One is over when nothing closes and no force is left. A loaded contact does not hold up the
-        end.
+        A gathering is over when nothing closes and no force is left; a loaded contact does not
+        count.
         """
         closes = alive & (rate > self._least)
         nears = closes & ~closed
@@ -129,7 +129,7 @@ class TouchingContacts:
         return tell_still_closing(times, held, not self._free.all())
 
     def tell_contacts(self, dissipation: Real) -> Contacts:
-        """Return what the contacts went through."""
+        """Return the record of the contacts."""
         return Contacts(
             impulse=self._impulse,
             moment=self._moment,

@@ -40,8 +40,8 @@ from contactlab_laws.march.contacts import TouchingContacts, join, whole
 from contactlab_laws.march.coupled_steps import DEEPEST, TOO_DEEP, Division, divide, tell_too_long
 
 #: Turns from parting to approach, made by tension, after which a contact is given up: adhesion
-#: holds the bodies together. An approach alone is given up after as many. Of 400 random rods under
-#: JKR and DMT that parted none had been pulled back once.
+#: holds the bodies together. An approach alone is given up after as many. None of 400 random rods
+#: that parted under JKR and DMT had been pulled back once.
 MOST_PULLS = 10
 #: Turns in which a step solves for rates at which its forces act, where forces depend on rates.
 TURNS = 3
@@ -66,7 +66,7 @@ def march_coupled(
         return TangentialMotion.nothing(scene.shape, *refused, axes=kinetics.slip_axes(scene))
     divided = divide(scene, normal, count, usual)
     if observer is None:
-        from contactlab_laws.springs import compiled  # it takes springs alone
+        from contactlab_laws.springs import compiled  # for springs alone
 
         motion = compiled.march(scene, normal, law, divided, refused)
         if motion is not None:
@@ -80,7 +80,7 @@ def march_coupled(
 
 
 def _nearer(tried: list[tuple[Real, Real]], answer: Real) -> Real:
-    """Return the rate of approach to try next, and note it; ``answer`` is what the last one gave.
+    """Return the rate of approach to try next, and note it; ``answer`` belongs to the last one.
 
     The rate that reproduces itself is sought by secants: a dashpot answers a rate by so much less
     of it that the plain iteration may run away.
@@ -89,7 +89,7 @@ def _nearer(tried: list[tuple[Real, Real]], answer: Real) -> Real:
     if len(tried) > 1:
         (before, _), (last, first) = tried[-2:]
         change = last - before
-        # no division by zero where a rate no longer changes: it is found
+        # a rate that no longer changes is the solution: no division by zero
         slope = np.minimum((answer - first) / (change + (change == 0.0)), 0.0)
         rate = last + (answer - last) / (1.0 - slope)
     tried.append((rate, answer))

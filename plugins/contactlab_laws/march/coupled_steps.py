@@ -1,4 +1,4 @@
-"""How many steps an impact takes in which normal and friction law march together, and how long."""
+"""Number and length of steps in which normal and friction law march together."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from contactlab_laws.march import contacts
 from contactlab_laws.march.division import resolving
 
 #: A contact that lasts longer than so many approaches without friction is given up, each as long as
-#: that of a contact that friction holds: 1/sqrt(free share) as long as one that slips freely. Of
-#: 1,500 random bodies with mu from 0.3 to 30 none lasted longer than 2.3; the share counts from
+#: that of a contact that friction holds: 1/sqrt(free share) as long as one that slips freely. None
+#: of 1,500 random bodies with mu from 0.3 to 30 lasted longer than 2.3; the share counts from
 #: ``LEAST_SHARE``.
 LONGEST, LEAST_SHARE = 6.0, 0.01
 #: Share of the steps that grow evenly at first touch, where forces that depend on rates go as the
@@ -80,7 +80,7 @@ def approach_duration(normal: NormalMotion) -> Real:
 
 
 def _count_duration(scene: Scene, normal: NormalMotion) -> Real:
-    """Return the duration in s that is divided in steps: of a gathering that of the shortest."""
+    """Return the duration in s that is divided in steps, the shortest in a gathering."""
     duration = approach_duration(normal)
     return duration if scene.links is None else np.min(duration, axis=-1, keepdims=True)
 

@@ -148,7 +148,7 @@ class FixedSteps(CoupledIntegrator):
         return refine_count(self._steps, needed) if self.refine else float(self._steps)
 
     def errors(self, scene: Scene, normal: NormalMotion, tangential: TangentialLaw) -> Errors:
-        """Return the errors that the tangential law declares for as many steps, and these."""
+        """Return the tangential law's declared errors at the steps taken, and these steps."""
         if scene.inverse_mass is None:
             needed = find_least_steps(normal, tangential, scene)
             taken = steps = self._count_steps(needed)
@@ -159,7 +159,7 @@ class FixedSteps(CoupledIntegrator):
             steps = self._count_steps(np.maximum(needed, LEAST_STEPS))
         declared = tangential.errors(scene, normal, taken)
         if type(declared) is not Errors:
-            return declared  # and refused where it is judged
+            return declared  # the judge refuses it
         psi2, restitution, _ = declared
         if not every(followed := (needed <= taken) & (taken < math.inf)):
             psi2, restitution = (choose(followed, each, math.nan) for each in (psi2, restitution))

@@ -81,7 +81,7 @@ def _all_at_once(
 
 
 def _show(normal: NormalMotion, steps: Steps, force: Array, observer: Observer) -> None:
-    """Show an observer the instants of a march whose forces are known."""
+    """Show an observer the instants of a march from its forces."""
     scene = normal.scene
     slowed = force * (steps.kick / scene.pair.tangential_mass)
     middle = scene.slip_velocity - (np.cumsum(slowed, axis=0) - 0.5 * slowed)

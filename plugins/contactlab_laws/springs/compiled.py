@@ -1,4 +1,4 @@
-"""Springs by ``contactlab_march.h``, what it knows of them: the same numbers as by Python."""
+"""Springs that ``contactlab_march.h`` marches: the same numbers as in Python."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ CONTACT, END, SAMPLE, IMPACT = 17, 22, 7, 7
 #: Gap and pull of one contact alone, and its block of W by rows: starts and columns.
 STILL = (0.0, 0.0, 0.0, 0.0)
 ONE_BLOCK, FIRST_COLUMN = np.array([0, 1], np.intc), np.zeros(1, np.intc)
-#: Names of the classes that are compiled: to compare names loads none that nobody uses.
+#: Names of the compiled classes: comparing names loads no unused module.
 LAW = "contactlab_laws.springs.law.Springs"
 COMPILED = {
     LAW, "contactlab_laws.hertz.Hertz", "contactlab_laws.viscoelastic.law.Viscoelastic",
@@ -49,13 +49,13 @@ COMPILED = {
 LONG, NONE, DEEP, INPUT = 1, 2, 3, 4
 #: Springs that are moved in a call, a third of a second at most: Ctrl-C is heard between two calls.
 AT_A_TIME = 1e6
-#: Rounding errors, over the largest number, up to which steps of impacts count as alike: those of a
-#: contact that comes of a table.
+#: Rounding over the largest number up to which steps of impacts count as alike: that of a contact
+#: from a table.
 ROUNDING = 4e-13
 
 
 class _Springs(Protocol):
-    """What the march asks of springs, whose own module imports this one."""
+    """The entries of springs that the march reads; their own module imports this one."""
 
     @property
     def shear_loss(self) -> float: ...
@@ -66,7 +66,7 @@ class _Springs(Protocol):
 def knows(law: Law, normal: Law | None, integrator: Law | None = None) -> TypeGuard[_Springs]:
     """Return whether a march of these laws is compiled; None stands for any normal law.
 
-    Laws that are derived from them may answer otherwise.
+    Derived laws may answer otherwise.
     """
     asked = [_name(each) for each in (law, normal, integrator) if each is not None]
     return _name(law) == LAW and COMPILED.issuperset(asked)
@@ -124,7 +124,7 @@ def march(
 
 
 def _first(value: Real | str | NDArray[np.object_], scene: Scene) -> NDArray[Any]:
-    """Return numbers of the batch shape; of a gathering its contacts share one."""
+    """Return numbers of the batch shape; the contacts of a gathering share one number."""
     whole = over(np.asarray(value), scene.shape)
     return whole if scene.links is None else whole[..., 0]
 

@@ -1,4 +1,4 @@
-"""Slip along one line, or in the tangent plane: what viscous springs do in the one or the other."""
+"""Slip along one line, or in the tangent plane: operations of viscous springs in both."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Springs on a doubling grid: partial slip that needs nothing of the future (theory §13).
+"""Springs on a doubling grid: partial slip without the largest contact in advance (theory §13).
 
 N springs stand in the middle of equal cells of [0, A], where A is a power of two times the radius
 of the pair. A contact that outgrows A merges neighbours to their mean and doubles A. A contact
@@ -27,7 +27,7 @@ from contactlab_laws.springs.turning import Some, Vectors, energy, turn_springs
 #: Contacts whose radius is below this times that of the pair just touch: no friction. The cells of
 #: a smaller contact could underflow.
 TOUCH = 1e-30
-#: A grid that spans a contact known before spans this much more.
+#: Span of a grid over the largest contact, where that is known in advance.
 SPARE = 1.05
 
 
@@ -165,7 +165,7 @@ def move_springs(
     places = np.multiply.outer(np.arange(len(held)) + 0.5, cell)
     compression = np.maximum(radius * radius - places * places, 0.0)
     move = part_of_step(places, before.radius, radius) * displacement
-    stiffness = modulus * cell  # of one spring, the same for all
+    stiffness = modulus * cell  # stiffness of one spring, the same for all
     total = stiffness * compression.sum(axis=0)
     steepness = limit / (total + (total == 0.0))
     most = compression * steepness
@@ -181,7 +181,7 @@ def move_springs(
         lost = trial.sum(axis=0)
     force = stiffness * deflection.sum(axis=0)
     work = np.maximum(0.5 * stiffness * lost, 0.0) + modulus * merged
-    if (apart := radius <= 0.0).any():  # NaN stays until then
+    if (apart := radius <= 0.0).any():  # NaN spreads
         touching = ~apart
         force = np.where(touching, force, 0.0)
         size = size if spans else np.where(touching, size, 0.0)

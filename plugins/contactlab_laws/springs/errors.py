@@ -26,12 +26,12 @@ BY_STEPS, BY_GRADED_STEPS = 18.0, 24.0
 #: Error by steps below x = 1, over x/m^1.5: springs that enter within a step. A grid that doubles
 #: meets more of them.
 BY_ENTERING, BY_ENTERING_DOUBLED = 2.5, 5.0
-#: Springs of a doubling grid, over those that carry its largest contact at least.
+#: Springs of a doubling grid, over the least number of them that carry its largest contact.
 DOUBLING = 2.0
 #: Slip (psi1, and eta) below which errors fall with it: all of the contact but its edge sticks.
 LITTLE_SLIP = 0.125
-#: What a grid of bodies spans, over the contact of the approach without friction; the grid doubles
-#: where friction presses the contact beyond, and half of the springs remain.
+#: Span of a grid of bodies, over the contact of the approach without friction. Where friction
+#: presses the contact beyond, the grid doubles, and half of the springs remain.
 SPANNED = 1.05
 #: Fewest springs beside a loss of which errors were measured; fewer are noise.
 LEAST_MEASURED = 8
@@ -54,8 +54,9 @@ LARGEST, LEVEL = 1000.0, math.sqrt(2.0)
 def resolve(scene: Scene) -> tuple[Real, Real]:
     """Return springs, an even number, and steps that leave an error of 2.1e-3 in psi2.
 
-    With a loss it is 2.4e-3, as steps are graded. No less will do: near slip throughout 50 springs
-    and 200 steps were off by up to 0.15 from x = 30 on, in 900 random impacts, e 0.3 to 0.98.
+    With a loss it is 2.4e-3, as steps are graded. Fewer do not suffice: near slip throughout 50
+    springs and 200 steps were off by up to 0.15 from x = 30 on, in 900 random impacts, e 0.3 to
+    0.98.
     """
     lam, eta, _ = kinetics.sizes(scene)
     x = kinetics.largest_chi(scene) + eta
@@ -102,7 +103,7 @@ def of_spheres(
 
 
 def _leave(error: Real, chi: Real, restitution: Real) -> Real:
-    """Return what a loss leaves of an error: less of a small one, of long oscillations."""
+    """Return the share of an error that a loss leaves: less of a small error."""
     return np.minimum(1.0 / np.maximum((1.0 - restitution) * chi, 1.0) + error, 1.0)
 
 

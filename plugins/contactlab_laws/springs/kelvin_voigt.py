@@ -30,7 +30,7 @@ ALL: Real = 1.0
 
 
 class Contact(NamedTuple):
-    """What a viscous contact tells the springs, each of shape (K,), K the impacts or 1.
+    """Numbers of a viscous contact for the springs, each of shape (K,), K the impacts or 1.
 
     Attributes
     ----------

@@ -40,7 +40,7 @@ from contactlab_laws.springs import compiled, doubling, errors, viscous
 
 #: The word that springs without a loss in shear do not offer.
 NO_LOSS = frozenset({"shares_loss"})
-#: What is said of too few springs beside a loss.
+#: Caution of too few springs beside a loss.
 NOISE = (
     "springs = {} with a loss in shear are noise where the contact grips: a rounding of the speed "
     "moves psi2 by up to 0.6; take {} or more"
@@ -106,7 +106,7 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
             raise refuse("springs", self.springs, rule, f"take {self.number + 1}")
 
     def waives(self) -> frozenset[str]:
-        """Return the loss that springs share with a viscous normal law, if they are told not to."""
+        """Return the word of a shared loss if these springs lose nothing in shear."""
         return super().waives() if self.shear_loss else NO_LOSS
 
     def resolutions(self, scene: Scene, normal: Law, integrator: Law) -> Resolutions | None:
@@ -158,14 +158,14 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
         wanted = self.table or (self.table is None and not named)
         if e is None or (rate is None and not wanted):
             return ()
-        from contactlab_laws.viscoelastic import whole_impacts  # springs need no table
+        from contactlab_laws.viscoelastic import whole_impacts  # only here is the table needed
 
         return whole_impacts.look_up(scene, e, beyond=rate is not None)
 
     def errors(
         self, scene: Scene, normal: NormalMotion, steps: Real, accuracy: float | None = None
     ) -> Errors:
-        """Return the errors under Hertz, and of springs that wholly share a loss; else NaN."""
+        """Return the errors under Hertz's law, or with a wholly shared loss; else NaN."""
         shared = shares_loss(self, normal.law)
         if shared:
             measured = self.shear_loss == 1.0 and self.number >= errors.LEAST_MEASURED
@@ -184,7 +184,7 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
         )
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return the cautions of springs, or of their loss where they share one."""
+        """Return the cautions of springs, or those of their shared loss."""
         if not shares_loss(self, normal.law):
             return super().cautions(scene, normal)
         from contactlab_laws.viscoelastic import evidence  # springs without loss need none of it
@@ -218,7 +218,7 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
     ) -> doubling.State | viscous.State:
         """Return springs that span the approach without friction, and double if outgrown.
 
-        As ``vectors`` they turn with the slip.
+        With ``vectors`` the displacements turn with the slip.
         """
         spanned = normal.maximum_radius
         if shares_loss(self, normal.law):

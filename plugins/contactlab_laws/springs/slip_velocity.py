@@ -13,7 +13,7 @@ from contactlab_laws.springs.turning import Vectors
 
 #: Turns of Newton's method for the slip velocity where the force acts.
 TURNS = 3
-#: Feedback of the force on the slip velocity in a step, over the force, from which they are taken.
+#: Feedback of the force on the slip velocity in a step, over the force, from which turns are taken.
 STIFF = 0.05
 
 
@@ -38,7 +38,7 @@ class Slip(NamedTuple):
     acting: Array
 
     def of(self, where: NDArray[np.intp]) -> Slip:
-        """Return that of some impacts."""
+        """Return the slip velocity of some impacts."""
         shape = np.shape(self.velocity)
         return Slip(
             np.broadcast_to(self.velocity, shape)[where],

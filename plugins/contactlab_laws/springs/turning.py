@@ -92,7 +92,7 @@ def drag_springs(
 
 
 def beyond(force: Vectors, limit: Array, cross: Array | None = None) -> Vectors:
-    """Return what forces exceed their limit by, complex: where a force slips to is closest."""
+    """Return the excess of forces over their limit, complex; a force slips to the closest point."""
     size = np.abs(force)
     slips = size > limit
     if cross is None:
@@ -116,7 +116,7 @@ def stretch(move: Vectors, cross: Array | None) -> Vectors:
 
 
 def relax(force: Vectors, cross: Array | None) -> Vectors:
-    """Return the displacements that ``stretch`` made forces of."""
+    """Return displacements from forces, the inverse of ``stretch``."""
     return force if cross is None else force.real + 1j * (force.imag / cross)
 
 

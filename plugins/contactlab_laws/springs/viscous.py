@@ -34,7 +34,7 @@ from contactlab_laws.springs.turning import TINY, Some
 
 #: Rates below this times that at first touch say nothing of A: the law is asked at this one.
 SLOWEST = 1e-3
-#: A grid that spans a contact known before spans this much more.
+#: Span of a grid over the largest contact, where that is known in advance.
 SPARE = 1.05
 #: 1.5 in P = b³ + 1.5 j b, the force of springs of limit b² - r² + j (theory §15).
 OF_EXCESS = 1.5
@@ -44,7 +44,7 @@ HALF = 0.5
 
 
 class State(NamedTuple):
-    """The springs of a batch of contacts, and what they need of scene and laws.
+    """The springs of a batch of contacts, with their numbers of scene and laws.
 
     Attributes
     ----------
@@ -92,7 +92,7 @@ def start(
 ) -> State:
     """Return contacts without traction, lengths in units of ``radius`` in m.
 
-    ``spanned`` is what the springs span in this unit; None for a grid that follows the contact.
+    ``spanned`` is the span of the springs in this unit; None for a grid that follows the contact.
     """
     shape = scene.shape
     items = math.prod(shape)
@@ -161,7 +161,7 @@ def read_contact(
     motion: tuple[Real, Real] | None,
     spread: Callable[[Real], Array],
 ) -> Contact:
-    """Return what contacts tell the springs, in the arrangement of ``spread``.
+    """Return the numbers of contacts for the springs, in the arrangement of ``spread``.
 
     ``motion`` is approach in m and its rate in m/s; None of a path that is slow.
     """

@@ -50,7 +50,7 @@ class Rebound(NamedTuple):
 
     @classmethod
     def of(cls, contact: Contact, frequency: Real) -> Rebound:
-        """Return what a contact leaves at separation."""
+        """Return the rebound of a contact at separation."""
         # With e = 0 the load ends at once and the spring, which still holds energy, loses it.
         held: Real = frequency * contact.force
         return cls(contact.change, contact.work + 0.5 * held * held)

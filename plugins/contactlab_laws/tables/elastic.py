@@ -36,7 +36,7 @@ ERROR = 1e-9
 #: Powers of each coordinate in a patch; cells are found in a grid of 2^DEEPEST by 2^DEEPEST.
 NODES, DEEPEST = 12, 6
 SIZE = 1 << DEEPEST
-#: Terms left out along each coordinate change g by less; about half of 12 by 12 terms stay.
+#: Terms below this change of g are left out; about half of 12 by 12 terms stay.
 SMALL = 1e-11
 #: Fewer impacts than this are computed one by one; so many are taken together at most.
 FEW, BLOCK = 40, 1 << 16
@@ -195,7 +195,7 @@ def _single() -> Callable[[float, float], float]:
     return single
 
 
-@np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
+@np.errstate(under="ignore")  # small numbers may vanish
 def values(table: Table, speed: Array, chi: Array) -> Array:
     """Return psi2 for psi1 = speed >= 0 and 0 < chi <= LARGEST_CHI, shape (impacts,)."""
     psi2 = np.empty_like(speed)

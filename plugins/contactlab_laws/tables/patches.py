@@ -1,7 +1,7 @@
 """The evaluator of tables: a polynomial of two or three coordinates on each patch.
 
-A patch is a polynomial by powers of its coordinates less an origin of its own. Which patch a place
-is in, and its coordinates there, the table knows.
+A patch is a polynomial by powers of its coordinates less an origin of its own. The table knows the
+patch of a place, and its coordinates there.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Spheres with a restitution: one loss for pressure and shear, tabulated (theory §15).
 
-psi2, and what of the energy is lost in shear.
+The tables hold psi2 and the energy lost in shear.
 
 Impacts that slip throughout, and those of e = 0, are known in closed form.
 """
@@ -87,7 +87,7 @@ def rebound(psi1: Any, chi: Any, restitution: Any, *, derivatives: bool = False)
     return psi2, by_psi1, by_chi * sign, by_e * sign
 
 
-@np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
+@np.errstate(under="ignore")  # small numbers may vanish
 def _by_blocks(speed: Array, chi: Array, restitution: Real) -> Array:
     """Return psi2 of psi1 = speed >= 0, shape (impacts,)."""
     psi2 = np.empty_like(speed)

@@ -1,6 +1,6 @@
 """Coordinates in which psi2(psi1, chi, e) is smooth: regions of dyadic patches (theory §15).
 
-Which patch an impact is in a fine grid of its region tells.
+A fine grid of each region tells the patch of an impact.
 """
 
 from __future__ import annotations
@@ -151,7 +151,7 @@ class Table:
 
 
 def _whole(terms: Array) -> list[list[int]]:
-    """Return the powers that are left in each patch: all."""
+    """Return the powers of each patch: all of them."""
     return [[terms.shape[1]] * len(terms), [math.prod(terms.shape[2:])] * len(terms)]
 
 

@@ -1,8 +1,8 @@
 """psi2 from both tables by functions of the array API standard, for libraries that trace: JAX.
 
 The formulas are those of ``elastic`` and ``restituted``, without branches: each impact is computed
-in a region, and conditions choose. Where a condition excludes a formula its argument is a harmless
-number, so that derivatives of what is not chosen are finite.
+in a region, and conditions choose. An excluded formula gets a harmless number as its argument, so
+that its derivatives stay finite.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ ELASTIC = "elastic "
 
 
 def without(value: Differentiable, *_: Slopes | int) -> Differentiable:
-    """Return a function whose slopes the library finds itself."""
+    """Return a function that the library differentiates itself."""
     return value
 
 

@@ -1,4 +1,4 @@
-"""Partial slip without places: a force, a load, and the points where the force turned."""
+"""Partial slip without a grid: a force, a load, and the points where the force turned."""
 
 from __future__ import annotations
 

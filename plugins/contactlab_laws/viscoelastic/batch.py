@@ -1,7 +1,6 @@
 """psi2 of planar central impacts by springs that lose as the normal contact does (theory §15).
 
-Each impact has its own relaxation time and its own steps; with one for all, what belongs to the
-normal motion is computed once.
+Each impact has its own relaxation time and steps; impacts that share both share one normal motion.
 """
 
 from __future__ import annotations
@@ -171,7 +170,7 @@ def _once(
 def _settle(
     contact: Contact, w: Array, number: Array, ahead: Array, kick: Array, share: Array, room: Array
 ) -> tuple[Array, Array]:
-    """Return what ``_once`` does, by Newton's method."""
+    """Return the answer of ``_once`` by Newton's method."""
     psi, load = ahead - kick * share, contact.total(contact.limit, contact.edge)
     for _ in range(TURNS):
         reach = number * psi

@@ -1,4 +1,4 @@
-"""How far one loss for pressure and shear is trusted: cautions with sizes (theory §15)."""
+"""Cautions with sizes on one loss for pressure and shear, from measurements (theory §15)."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ ELASTIC = 0.995
 
 
 def cautions(scene: Scene, normal: NormalMotion, *, fitted: bool) -> tuple[str, ...]:
-    """Return how far the tangential rebound is trusted; nothing where all impacts slip through.
+    """Return cautions of the tangential rebound with sizes; none if all impacts slip throughout.
 
-    A loss in shear that is ``fitted`` clears the caution of the theory's.
+    A ``fitted`` loss in shear clears the caution of the theory's loss.
     """
     if not kinetics.rubs(scene):
         return ()
@@ -57,9 +57,9 @@ def _solid(scene: Scene) -> bool:
 
 
 def _trust(chi: Array, e: Array, grips: Mask, *, small: bool) -> tuple[str, ...]:
-    """Return how far beta0 is trusted where it was measured, and where it was not.
+    """Return the caution of beta0, within the measured range and outside it.
 
-    Solid spheres whose contact is ``small`` have the size of such spheres, others that of balls.
+    Solid spheres with a ``small`` contact have the errors of such spheres, others those of balls.
     """
     known = (e >= RESTITUTIONS[0]) & (chi >= CHI[0]) & (chi <= CHI[1])
     said = []

@@ -31,7 +31,7 @@ LOSS = Rule(
 )
 #: Options by which e depends on the speed.
 BY_SPEED = ("speed_loss", "restitutions")
-#: Options by which it does not, or by which it follows from the material.
+#: Options by which e is one for all speeds, or follows from the material.
 ONE_FOR_ALL = ("restitution", "relaxation_time")
 PAIRS = "must be two or more pairs of speed and e"
 
@@ -112,7 +112,7 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
         return super().loses or bool(self.speed_loss) or self.restitutions is not None
 
     def accept(self, scene: Scene) -> None:
-        """Refuse a speed at which e is not known."""
+        """Refuse a speed outside the table of e."""
         if self.restitution is None and self.relaxation_time is None:
             self.restitution_in(scene)
 
@@ -145,7 +145,7 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
         return np.where(hardly, -e * scene.normal_speed, np.nan) if hardly.any() else None
 
     def respond(self, state: Parts, approach: Real, rate: Real) -> tuple[NormalContact, Parts]:
-        """Return force and radius; where the contact was left behind, it is Hertz's (2) anew."""
+        """Return force and radius; surfaces that meet again have Hertz's contact (2)."""
         inside: Any = approach * (approach > 0.0)
         lead: Real = state.time * rate
         edge = inside + lead * (lead < 0.0)
@@ -162,7 +162,7 @@ class Viscoelastic(Relaxing, UnfollowedNormalLaw, Tabulated):
 
     @staticmethod
     def rebound_error(*impact: Real) -> Real:
-        """Return that of the table, and of springs beyond it."""
+        """Return the bound of the table, and that of springs beyond the table."""
         return bound_restitution_error(*impact)
 
     @staticmethod

@@ -49,7 +49,7 @@ def rebound(psi1: Any, chi: Any, restitution: Any, *, derivatives: bool = False)
     return psi2
 
 
-@np.errstate(under="ignore")  # small numbers may vanish, whatever a user has asked for
+@np.errstate(under="ignore")  # small numbers may vanish
 def beyond(speed: Array, chi: Array, e: Array) -> Array:
     """Return psi2 of psi1 = speed >= 0 without the table, shape (impacts,)."""
     psi2 = restituted.full_slip(speed, chi, e)

@@ -17,7 +17,7 @@ from contactlab_laws.viscoelastic.rebound import rebound
 
 
 def look_up(scene: Scene, restitution: Real, *, beyond: bool) -> tuple[WholeImpact, ...]:
-    """Return the answer for the impacts whose chi is in the table, or for all; or nothing."""
+    """Return the answers for the impacts whose chi is in the table, or for all impacts."""
     low, high = (0.0, math.inf) if beyond else RESTITUTED_CHI
     psi1: Any = scene.psi1
     chi: Any = scene.chi
@@ -48,7 +48,7 @@ def look_up(scene: Scene, restitution: Real, *, beyond: bool) -> tuple[WholeImpa
 
 
 def _look_up_many(scene: Scene, restitution: Real, where: Mask) -> tuple[Any, Any, Any]:
-    """Return change of psi, error and loss in shear of the impacts of a batch that are asked."""
+    """Return change of psi, error and loss in shear of some impacts of a batch."""
     chi, psi1 = np.where(where, scene.chi, 1.0), np.where(where, scene.psi1, 0.0)
     e = restitution
     if not isinstance(e, float):

@@ -1,7 +1,7 @@
 """The processor time that an impact takes from the table, its arguments checked.
 
-Beside it: of an impact in a sweep of the law, of a collision in space, and of a product of two
-numbers in arrays as long, which tells how fast and how busy the machine is.
+It also times an impact in a sweep of the law, a collision in space, and a product of two long
+arrays, which tells how fast and how busy the machine is.
 """
 
 from __future__ import annotations

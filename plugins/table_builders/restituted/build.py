@@ -1,6 +1,7 @@
 """Building the tables: cells are split along the longest tail until they hold a quantity.
 
-One is of psi2, the other of the loss in shear over that of slip at psi = 1, m_t (mu v1/kappa)²/2.
+One table is of psi2, the other of the loss in shear over that of slip at psi = 1, the energy
+m_t (mu v1/kappa)²/2.
 """
 
 from __future__ import annotations
