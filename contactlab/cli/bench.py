@@ -1,4 +1,4 @@
-"""Measure error against processor time: every question by every way to its answer.
+"""Measure error against processor time of every law, on ten kinds of impact.
 
 Examples
 --------

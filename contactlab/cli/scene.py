@@ -66,7 +66,7 @@ def add_groups(parser: argparse.ArgumentParser, *, ranges: bool = True) -> None:
     """Add ``--psi1`` and ``--chi``, each one number, or with ``ranges`` a range too."""
     convert, metavar = (numbers, "NUMBER or START:STOP:COUNT") if ranges else (None, "NUMBER")
     for name, words in (
-        ("psi1", "angle of incidence, 0 for no slip, without a file"),
+        ("psi1", "scaled slip velocity before the impact, in place of a file"),
         ("chi", "inertia ratio (38): 1.4412 for a solid sphere, nu = 0.3"),
     ):
         parser.add_argument(f"--{name}", type=convert or shared.finite, metavar=metavar, help=words)

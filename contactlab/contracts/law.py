@@ -79,12 +79,12 @@ class Law(ABC):
     api_version: ClassVar[int]
     #: Words that the law claims.
     offers: ClassVar[frozenset[str]] = frozenset()
-    #: Words of the normal law, and classes of the other laws, that it runs beside.
-    #: ``Any``, as a checker would refuse ``needs: ClassVar = frozenset({"radius"})`` in a law.
+    # ``Any``: a checker would refuse ``needs: ClassVar = frozenset({"radius"})`` in a law.
+    #: Words of the normal law, and classes of the other laws, beside which the law runs.
     needs: ClassVar[Any] = frozenset()
     #: Parameter that makes answers finer.
     resolution: ClassVar[str | None] = None
-    #: Checks that it fails by its nature, with the reasons.
+    #: Checks that the law fails by its nature, with the reasons.
     expected_failures: ClassVar[Any] = MappingProxyType({})
 
     def __init_subclass__(

@@ -239,10 +239,11 @@ def names() -> tuple[str, ...]:
     return tuple(each.name for each in entries())
 
 
-def entry(name: str) -> Entry:
+def entry(name: str, *, remedy: str = OWN) -> Entry:
     """Return the numbers of a material and their sources.
 
-    Capital letters, hyphens and underscores make no difference.
+    Capital letters, hyphens and underscores make no difference. A refusal ends with ``remedy``,
+    how to write other numbers.
 
     Raises
     ------
@@ -267,7 +268,7 @@ def entry(name: str) -> Entry:
     hint = f"did you mean {' or '.join(map(repr, similar))}? " if similar else ""
     hint = hint or nearest(name, listing.values(), alike=0.75)
     known = ", ".join(listing.values())
-    raise refuse("name", name, "no such material", f"{hint}known: {known}; {OWN}")
+    raise refuse("name", name, "no such material", f"{hint}known: {known}; {remedy}")
 
 
 def entries() -> tuple[Entry, ...]:

@@ -223,7 +223,7 @@ def _velocities(result: ImpactResult) -> list[Row]:
     scene, bodies = result.scene, result.scene.sphere is not None
     slip = scene.slip_velocity, result.rebound_slip_velocity
     local = [
-        *_pairs("local tangential velocity", *slip, "m/s"),
+        *_pairs("slip velocity", *slip, "m/s"),
         *_pairs("local angle psi", scene.psi1, result.psi2, "1"),
     ]
     rows: list[Row] = []

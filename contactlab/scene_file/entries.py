@@ -40,6 +40,8 @@ TILT = "tilt_deg"
 #: Further groups of a scene without bodies, which may be left out.
 GROUP_KEYS = ("poisson_ratio", "coupling_number", "friction_coefficient")
 BODY_SECTIONS = ("sphere", "body", "target", "impact")
+#: How a file states the numbers of a material that the collection lacks.
+OWN_MATERIAL = "or give your own: a table [{}] with young_modulus, poisson_ratio and density"
 
 #: Units for the remedies in messages; the classes of bodies and scenes check the values.
 UNITS = SCENE_UNITS | {
@@ -119,7 +121,8 @@ def with_materials(tables: Mapping[str, object]) -> dict[str, object]:
         if isinstance(name, str):
             path = f"{body}.material"
             try:
-                completed = replace_entry(completed, path, materials.entry(name).numbers())
+                numbers = materials.entry(name, remedy=OWN_MATERIAL.format(path)).numbers()
+                completed = replace_entry(completed, path, numbers)
             except ValueError as error:
                 raise ValueError(f"{path}: {error}") from None
     return completed

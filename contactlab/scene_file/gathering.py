@@ -17,7 +17,7 @@ from contactlab.numeric.checks import POSITIVE, of_kind, real, refuse
 from contactlab.numeric.types import Numbers
 from contactlab.scene_file.bodies import rigid_body
 from contactlab.scene_file.build import read_material, read_sphere
-from contactlab.scene_file.entries import SPHERE_KEYS
+from contactlab.scene_file.entries import OWN_MATERIAL, SPHERE_KEYS
 from contactlab.scene_file.table import Table, nearest_of
 
 #: Kinds of body.
@@ -114,7 +114,8 @@ def _with_material(content: object, path: str) -> object:
     if not (isinstance(content, Mapping) and isinstance(name, str)):
         return content
     try:
-        return {**content, "material": materials.entry(name).numbers()}
+        own = OWN_MATERIAL.format(f"{path}.material")
+        return {**content, "material": materials.entry(name, remedy=own).numbers()}
     except ValueError as error:
         raise ValueError(f"{path}.{error}") from error
 

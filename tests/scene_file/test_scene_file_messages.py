@@ -83,6 +83,22 @@ def test_what_is_wrong(tmp_path, key, value, words):
     assert "under [" not in told
 
 
+def test_a_material_that_there_is_not_is_told_as_a_file_writes_it(tmp_path):
+    told = refusal(
+        tmp_path,
+        document(
+            without=[
+                "sphere.material.young_modulus",
+                "sphere.material.poisson_ratio",
+                "sphere.material.density",
+            ],
+            **{"sphere.material": '"stel"'},
+        ),
+    )
+    assert "a table [sphere.material] with young_modulus, poisson_ratio and density" in told
+    assert "Material(" not in told
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
