@@ -1,7 +1,7 @@
-"""For authors of plug-ins: what each hook returns, and the mark of a hook.
+"""For authors of plug-ins: the classes that hooks return, and ``hookimpl``, which marks a hook.
 
 A plug-in is a module that an entry point of the group ``contactlab`` names, ``kind.name``. The
-classes of laws are in ``contactlab`` itself. Of each kind:
+classes of laws are in ``contactlab`` itself. The other kinds:
 
 ================= ============================ ==============================================
 kind              hook                         returns

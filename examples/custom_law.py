@@ -25,7 +25,7 @@ from contactlab.figures import law_style, name_curves, save
 
 
 class Spring(NamedTuple):
-    """The state: two constants of the scene, and the force, which is all the memory."""
+    """The state: two constants of the scene, and the force."""
 
     stiffness_per_radius: Real
     friction_coefficient: Real
@@ -60,7 +60,7 @@ class MindlinCap(SteppedTangentialLaw):
         stiffness = state.stiffness_per_radius * after.radius
         softness = 1.0 / (stiffness + (stiffness == 0.0))
         # As the contact shrinks the force shrinks with it: otherwise a softer spring would
-        # hold the same force, and store energy that nobody gave it.
+        # hold the same force, and store energy from nothing.
         kept = np.minimum(after.radius / (before.radius + (before.radius == 0.0)), 1.0)
         kept = np.where(before.radius > 0.0, kept, 1.0)
         held = kept * state.force
@@ -68,7 +68,7 @@ class MindlinCap(SteppedTangentialLaw):
         limit = state.friction_coefficient * increment.friction_load
         force = np.clip(trial, -limit, limit)
         slip = (trial - force) * softness
-        # The mean of the force before and after: as contact ends a spring lets go of all it holds.
+        # The mean of both forces: as contact ends a spring loses all that it holds.
         work = np.maximum(0.5 * (held + force) * slip, 0.0)
         return TangentialResponse(force, work), state._replace(force=force)
 

@@ -34,7 +34,7 @@ for name, values in curves.items():
 
 
 def draw(axes: Axes) -> None:
-    """Draw the tangential restitution over psi1."""
+    """Draw the slip restitution over psi1."""
     lines = []
     for number, values in enumerate(curves.values()):
         lines += axes.plot(psi1, values, **law_style(number))

@@ -1,4 +1,4 @@
-/* How two bodies of any shape leave each other: velocities and spins in and out.
+/* The rebound of two bodies of any shape: velocities and spins in and out.
  *
  * Hertz's contact with Coulomb friction and partial slip. Elastic it is exact to 1e-11 of the speed, several
  * compressions and jams included, where slip keeps its line: bodies whose slip is in a plane of symmetry of both, and
@@ -28,7 +28,7 @@ enum {
 };
 
 /* A body in SI units and in the frame of all vectors: mass, inverse of the inertia tensor about the centre of mass, row
- * by row, and the vector from there to the contact. With mass 0 it is held: nothing moves or turns it. */
+ * by row, and the vector from there to the contact. A body of mass 0 is held: nothing moves or turns it. */
 typedef struct { double mass, inverse_inertia[9], arm[3]; } contactlab_rigid;
 
 /* Parts of the inverse mass, and of the slip over the speed, that are rounding; and of the determinant that is none. */
@@ -47,7 +47,7 @@ static inline void contactlab_bodies_cross(const double *a, const double *b, dou
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Adds to v and w what an impulse at the contact makes, both masses divided by `unit`. */
+/* Adds to v and w the changes by an impulse at the contact, both masses divided by `unit`. */
 static inline void contactlab_bodies_push(const contactlab_rigid *body, const double *impulse, double unit, double *v,
                                           double *w)
 {
@@ -197,7 +197,7 @@ static inline int contactlab_bodies_march(const double *W, const double *rates, 
  * restitution      e of the contact without friction, from 0.01 to 1, 1 is elastic: that of the bodies follows from it
  * normal           from the first body into the other; any length
  * velocity, spin   of the first body's centre of mass, in m/s and rad/s; other_velocity, other_spin of the other's
- * left             what the impact leaves in the units of theory section 1, or null. It lasts left->time d/v, d the
+ * left             the end of the impact in the units of theory section 1, or null. It lasts left->time d/v, d the
  *                  largest approach of Hertz's impact at the speed v, (15 m v^2/(16 E sqrt(R)))^0.4, m = 1/W_nn
  *
  * Returns a status: 0 is an answer, else nothing is changed. Of bodies whose centres are on the normal spin about it
@@ -357,7 +357,7 @@ static inline void contactlab_bodies_rates(const contactlab_touch *touch, const 
   for (k = 0; k < 3; ++k) rates[k] = contactlab_bodies_dot(touch->axes + 3 * k, v);
 }
 
-/* Adds to velocities and spins of bodies what an impulse at a contact, P and F along t1 and t2, makes. */
+/* Adds to velocities and spins of bodies the changes by an impulse at a contact, P and F along t1 and t2. */
 static inline void contactlab_bodies_part(const contactlab_rigid *bodies, const contactlab_touch *touch,
                                           const double *impulse, double *velocities, double *spins)
 {

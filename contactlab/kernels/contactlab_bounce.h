@@ -1,7 +1,7 @@
-/* How two spheres, or a sphere and a wall, leave each other: velocities and spins in and out.
+/* The rebound of two spheres, or of a sphere from a wall: velocities and spins in and out.
  *
- * Hertz's contact with Coulomb friction and partial slip, from tables of the rebound: exact to 1e-6 where nothing is
- * lost but by friction; with a coefficient of restitution to 1e-4, where pressure and shear lose alike. Friction of
+ * Hertz's contact with Coulomb friction and partial slip, from tables of the rebound: exact to 1e-6 where energy
+ * falls by friction alone; with a coefficient of restitution to 1e-4, where pressure and shear lose alike. Friction of
  * spin about the normal is left out, and moves psi2 by 0.3 at psi1 = 1 where the rim of the contact turns half as
  * fast as it slips: `contactlab guide units-and-signs`.
  * Theory: sections 1, 2, 10 and 15 of `contactlab guide theory`.
@@ -19,7 +19,7 @@
 
 #include <math.h>
 
-/* A body in SI units. With radius 0 it is a wall, with mass 0 nothing moves it. gyration_ratio is sqrt(inertia/(mass
+/* A body in SI units. Radius 0 makes it a wall, mass 0 a body that nothing moves. gyration_ratio is sqrt(inertia/(mass
  * radius^2)), from 0.01 to 1; 0 stands for that of a solid sphere, sqrt(2/5). Of young only the ratio of both bodies
  * counts. */
 typedef struct { double radius, mass, gyration_ratio, young, poisson; } contactlab_body;

@@ -1,8 +1,8 @@
 /**
- * How two spheres, or a sphere and a wall, leave each other: velocities and spins in and out.
+ * The rebound of two spheres, or of a sphere from a wall: velocities and spins in and out.
  *
- * Hertz's contact with Coulomb friction and partial slip, from tables of the rebound: exact to 1e-6 where nothing is
- * lost but by friction; with a coefficient of restitution to 1e-4, where pressure and shear lose alike. Friction of
+ * Hertz's contact with Coulomb friction and partial slip, from tables of the rebound: exact to 1e-6 where energy
+ * falls by friction alone; with a coefficient of restitution to 1e-4, where pressure and shear lose alike. Friction of
  * spin about the normal is left out, and moves psi2 by 0.3 at psi1 = 1 where the rim of the contact turns half as
  * fast as it slips: `contactlab guide units-and-signs`.
  * Theory: sections 1, 2, 10 and 15 of `contactlab guide theory`.

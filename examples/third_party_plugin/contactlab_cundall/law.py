@@ -21,7 +21,7 @@ from contactlab.contracts import (
 
 
 class Spring(NamedTuple):
-    """Stiffness in N/m, friction coefficient, and the force in N: all the memory there is."""
+    """The state: stiffness in N/m, friction coefficient, and the force in N."""
 
     stiffness: Real
     friction_coefficient: Real
@@ -67,6 +67,6 @@ class CundallStrack(SteppedTangentialLaw):
         limit = state.friction_coefficient * increment.friction_load
         force = np.minimum(np.maximum(trial, -limit), limit)
         slip = (trial - force) / state.stiffness
-        # The mean of the force before and after: as contact ends a spring lets go of all it holds.
+        # The mean of both forces: as contact ends a spring loses all that it holds.
         work = np.maximum(0.5 * (state.force + force) * slip, 0.0)
         return TangentialResponse(force, work), state._replace(force=force)
