@@ -194,7 +194,7 @@ def add_coupling(
 ) -> None:
     """Add to rows of W in 1/kg the motion of one contact of a body by forces at another.
 
-    Equal contacts give a block on the diagonal of W.
+    A contact is its body and its axes; with itself it is a block on the diagonal of W.
     """
     (here, axes), (there, across) = one, other
     mass = here.body.mass
@@ -301,7 +301,7 @@ def frame(encounter: _Meeting, bodies: Sequence[Side], normal: Vector) -> Frame:
     # vectors of the tangent plane are complex numbers
     coupling = W[0][1] + 1j * W[0][2]
     slip = dot(velocity, one) + 1j * dot(velocity, other)
-    # coupling if above rounding, as ``ways`` judges, else slip, else any axis
+    # the first of coupling, slip and any axis that is not lost in rounding, as ``ways`` judges it
     least = (
         inverse_mass.ROUNDING * square_root(0.5 * W[0][0] * (W[1][1] + W[2][2])),
         inverse_mass.ROUNDING * square_root(dot(velocity, velocity)),

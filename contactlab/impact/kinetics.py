@@ -162,7 +162,7 @@ class Motions:
         return self._with(tangential_velocity=slip, pair=pair, **alone)
 
     def _with(self, **entries: object) -> Self:
-        """Return this scene with other entries, whose numbers were checked before."""
+        """Return this scene with other entries, of numbers that were checked before."""
         return batch.change_entries(
             self, **{name: batch.lock_arrays(each) for name, each in entries.items()}
         )

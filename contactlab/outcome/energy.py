@@ -264,7 +264,7 @@ def _mark_imbalance(
     after: Real = kinetics.size_of(scene, scene.slip_velocity + motion.slip_velocity_change)
     imbalance = magnitude(books.imbalance)
     start: Real = books.start
-    if kinetics.turns(scene):  # unchanged spin does not count
+    if kinetics.turns(scene):  # a spin that friction left has no part in what is judged
         left = kinetics.energies(scene, motion.normal_velocity, motion.slip_velocity_change)
         start = np.where(motion.normal_spin_change == 0.0, left[0], start)[()]  # a number for one
     made: Real = -np.divide(books.normal_loss, start)
@@ -279,7 +279,7 @@ def _mark_imbalance(
         (alone & (after > LARGEST_SLIP * before),
          "The contact slips {:.4g} times as fast as it met.",
          lambda: (np.divide(after, before),)),
-        # an overflow is no gain
+        # a gain beyond the largest number is none
         (coupled & np.logical_not(books.end <= LARGEST_RESTITUTION**2 * books.start),
          "The bodies gain {:.2g} of their energy.",
          lambda: (np.nan_to_num(books.end / books.start - 1.0, nan=math.inf),)),
@@ -293,7 +293,7 @@ def _mark_imbalance(
 
 
 def gains_of_losses(books: EnergyLedger, start: Real, bound: Real) -> list[Judged]:
-    """Return the judgement of losses below zero by more than the books may be off."""
+    """Return what is judged of losses that are below zero by more than books may be off."""
     work, shear_loss = np.divide(books.friction_work, start), np.divide(books.shear_loss, start)
     most: Real = np.minimum(bound, STEPS_LEAVE) + ROUNDING
     words = "The {} is {{:.2g}} of the energy at the start."

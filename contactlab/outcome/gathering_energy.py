@@ -1,4 +1,4 @@
-"""The energy books of gatherings, of all contacts together (theory §18)."""
+"""The energy books of gatherings: of all contacts together, as one moves another (theory §18)."""
 
 from __future__ import annotations
 
@@ -61,15 +61,15 @@ def gathering_ledger(scene: Scene, motion: Motion) -> EnergyLedger:
 def judge_gathering(motion: Motion, scene: Scene, bound: Real, cancels: float) -> Motion:
     """Return ``motion`` with status ``UNBALANCED`` where the books of a gathering do not balance.
 
-    ``bound`` is that of each contact. Under a constant load springs keep energy at the end, which
-    no law tells: such gatherings are judged by their gain alone.
+    ``bound`` is that of each contact. What lies under a load keeps energy at the end, which no law
+    tells: such gatherings are judged by their gain alone.
     """
     if motion.contacts is None:
         return motion
     books = gathering_ledger(scene, motion)
     most = np.max(bound, axis=-1) if np.ndim(bound) else bound
     most = greater(choose(most == math.inf, LARGEST_UNDECLARED, most), cancels)
-    start = np.where(books.checked, books.start, math.inf)  # loads are judged by gain alone
+    start = np.where(books.checked, books.start, math.inf)  # a load has no part in what is judged
     off = np.abs(books.imbalance) / start
     left = books.end / books.start
     pushed = scene.links is not None and scene.links.pull.any(axis=(-1, -2))

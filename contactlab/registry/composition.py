@@ -167,7 +167,7 @@ def compose(normal: object, tangential: object, integrator: object) -> Laws:
 
 @lru_cache(maxsize=256)
 def _by_names(normal: object, tangential: object, integrator: object, _: object) -> Laws:
-    """Return three laws that fit, by their names; the plug-ins at hand are part of the key."""
+    """Return the laws that fit of three names; the plug-ins at hand are part of the key."""
     return _compose(normal, tangential, integrator)
 
 

@@ -113,7 +113,7 @@ def _loaded(name: str) -> ModuleType:
     return module
 
 
-#: The model of each engine, in words.
+#: What the models of the engines are.
 MODELS = {
     "pymunk": "rigid, one impulse",
     "mujoco": f"soft constraint, {STEPS} steps",
@@ -188,7 +188,7 @@ def _pymunk_space(
     friction: float,
     restitution: float,
 ) -> tuple[Any, Callable[[float], object]]:
-    """Return a body with a round end over a floor, and the function that steps it."""
+    """Return a body with a round end over a floor, and what steps it."""
     pymunk = _loaded("pymunk")
     space = pymunk.Space()
     space.collision_slop = 0.0

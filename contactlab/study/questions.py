@@ -81,7 +81,7 @@ class Posed:
 
 @attrs.frozen
 class Question:
-    """A question: its name, the quantity of its error, and its impacts, ``quick`` or not.
+    """A question: its name, what its error is of, and what poses it, ``quick`` or not.
 
     ``needs`` is the law of the true answers, which may not be installed. ``peers`` tells whether
     other engines are asked.
@@ -275,7 +275,7 @@ def _falls(body: tuple[RigidBody, Array], velocity: tuple[Real, Real]) -> Encoun
 def _bodies(
     body: tuple[RigidBody, Array], restitution: float, quick: bool, *, across: float
 ) -> Posed:
-    """Return falls of one body; slip keeps its line if ``across``, in m/s, is 0."""
+    """Return falls of one body; slip keeps its line where ``across`` is 0, in m/s."""
     alone = (0.1, 0.5) if quick else (-0.6, -0.2, 0.1, 0.3, 0.5, 0.9)
     impacts = [_falls(body, (each, across)) for each in alone]
     plane, lossy = across == 0.0, restitution < 1.0

@@ -298,7 +298,7 @@ def _bounces(film: dict[str, Array], *, in_pixels: bool) -> Measurements:
 
 
 def _tell_assumptions(film: Mapping[str, Array]) -> tuple[str, ...]:
-    """Return sentences on assumptions about the flights of a film."""
+    """Return sentences on what is taken of the flights of a film."""
     level = () if "z" in film else ("z = 0 m: the ball stays in the plane of x and y",)
     return (f"gravity = {GRAVITY} m/s², of flights without air", *level)
 

@@ -347,7 +347,7 @@ def _of_the_batch(problem: Problem, values: Array) -> tuple[Problem, Array]:
 
 
 def _of_law(law: str) -> str:
-    """Return beta0 of a law in words."""
+    """Return in words beta0 of a law."""
     return f"beta0 of {short_name(law)}"
 
 

@@ -39,7 +39,7 @@ CONTACT, END, SAMPLE, IMPACT = 17, 22, 7, 7
 #: Gap and pull of one contact alone, and its block of W by rows: starts and columns.
 STILL = (0.0, 0.0, 0.0, 0.0)
 ONE_BLOCK, FIRST_COLUMN = np.array([0, 1], np.intc), np.zeros(1, np.intc)
-#: Names of the compiled classes: comparing names loads no unused module.
+#: Names of the classes that are compiled: to compare names loads none that nobody uses.
 LAW = "contactlab_laws.springs.law.Springs"
 COMPILED = {
     LAW, "contactlab_laws.hertz.Hertz", "contactlab_laws.viscoelastic.law.Viscoelastic",

@@ -30,8 +30,8 @@ BY_ENTERING, BY_ENTERING_DOUBLED = 2.5, 5.0
 DOUBLING = 2.0
 #: Slip (psi1, and eta) below which errors fall with it: all of the contact but its edge sticks.
 LITTLE_SLIP = 0.125
-#: Span of a grid of bodies, over the contact of the approach without friction. Where friction
-#: presses the contact beyond, the grid doubles, and half of the springs remain.
+#: What a grid of bodies spans, over the contact of the approach without friction; the grid doubles
+#: where friction presses the contact beyond, and half of the springs remain.
 SPANNED = 1.05
 #: Fewest springs beside a loss of which errors were measured; fewer are noise.
 LEAST_MEASURED = 8

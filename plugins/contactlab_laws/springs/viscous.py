@@ -34,7 +34,7 @@ from contactlab_laws.springs.turning import TINY, Some
 
 #: Rates below this times that at first touch say nothing of A: the law is asked at this one.
 SLOWEST = 1e-3
-#: Span of a grid over the largest contact, where that is known in advance.
+#: A grid that spans a contact known before spans this much more.
 SPARE = 1.05
 #: 1.5 in P = b³ + 1.5 j b, the force of springs of limit b² - r² + j (theory §15).
 OF_EXCESS = 1.5
