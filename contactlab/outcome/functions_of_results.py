@@ -46,7 +46,7 @@ def values_of(
     if HISTORY in needs and not result.history:
         return None
     said: list[str] = []
-    values = _each(value if words else partial(_numbers, value), result, said)
+    values = _evaluate(value if words else partial(_numbers, value), result, said)
     if said:
         many = f"{len(said)} of {math.prod(result.scene.shape)} impacts"
         text = f"column {name}: NaN for {many}, its function failed: {said[0]}"
@@ -69,7 +69,7 @@ def _numbers(value: Callable[[WithScene], object], result: WithScene) -> object:
     return given
 
 
-def _each(value: Callable[[WithScene], object], result: WithScene, said: list[str]) -> object:
+def _evaluate(value: Callable[[WithScene], object], result: WithScene, said: list[str]) -> object:
     """Return the values of a function; where it fails for a batch it is asked for each impact."""
     shape = result.scene.shape
     try:
@@ -80,7 +80,7 @@ def _each(value: Callable[[WithScene], object], result: WithScene, said: list[st
             return np.nan
     numbers = np.full(shape, np.nan)
     for place in range(shape[0]):
-        one = _each(value, result[place], said)
+        one = _evaluate(value, result[place], said)
         own = np.asarray(one).shape
         if own and own != shape[1:]:
             said.append(f"it gave the shape {own} for one impact of a batch")

@@ -77,7 +77,7 @@ def by_name(
         offers.setdefault(key(told.item), []).append(told)
     found: dict[str, T] = {}
     for name, several in offers.items():
-        rivals = _once(name, several)
+        rivals = _drop_repeated(name, several)
         one = find_thing(rivals)
         if one is not None:
             found[name] = one.item
@@ -88,7 +88,7 @@ def by_name(
     return found
 
 
-def _once(name: str, several: list[Told]) -> list[Told]:
+def _drop_repeated(name: str, several: list[Told]) -> list[Told]:
     """Return the things of a name; warn of, and drop, those that a distribution brings twice."""
     counts = Counter(told.info.distribution for told in several)
     for told in several:

@@ -69,11 +69,11 @@ def bind_law(law: Law, scene: Scene) -> tuple[Law, dict[str, Any]]:
         value = getattr(law, option.name)
         if isinstance(value, np.ndarray):
             name = f"{law_kind(law)}.{option.name}"
-            numbers[f"{name} ({option.unit})"] = _each(name, option.unit, value, scene)
+            numbers[f"{name} ({option.unit})"] = _per_impact(name, option.unit, value, scene)
     return law, numbers
 
 
-def _each(name: str, unit: str, value: Array, scene: Scene) -> OfImpacts:
+def _per_impact(name: str, unit: str, value: Array, scene: Scene) -> OfImpacts:
     """Return the numbers of the impacts of a scene; part of a batch already holds its own."""
     before: OfImpacts | None = scene._options.get(f"{name} ({unit})")
     if before is not None and before.whole == mark_of(value):
@@ -130,14 +130,14 @@ def _from_materials(law: Law, option: Read, scene: Scene) -> Law:
         elif not option.per_impact:
             rule = "must be one number: this option of a law holds for every impact"
             raise refuse(where, value, rule, "run each material alone")
-    if given is not None and not isinstance(given, Taken) and not _same(given, value):
+    if given is not None and not isinstance(given, Taken) and not _equals_material(given, value):
         rule = f"is given to the law, and {' and '.join(found)} have it as a property too"
         raise refuse(place, given, rule, "leave out the option, or the property")
     bound: Law = attrs.evolve(changed, **{name: value})
     return bound
 
 
-def _same(given: Real, value: Real) -> bool:
+def _equals_material(given: Real, value: Real) -> bool:
     """Return whether an option equals the value that the materials give, as after a run."""
     return np.shape(given) == np.shape(value) and bool(np.all(given == value))
 

@@ -59,7 +59,7 @@ class Rescue:
         workers = pool._max_workers if processes else len(lost)  # type: ignore[attr-defined]  # typeshed
         suspects = workers if broken else len(lost)
         for part, _ in lost[:suspects]:
-            piece = self._alone(part)
+            piece = self._solve_alone(part)
             answered = any(status is not Status.WORKER_DIED for status in piece.motion.status)
             yield piece._replace(solved=answered or self._pool is not None)
         if broken:
@@ -74,7 +74,7 @@ class Rescue:
             part.chunk, kinetics.slip_axes(part.scene), Status.WORKER_DIED, short(error) + remedy
         )
 
-    def _alone(self, part: Part) -> Piece:
+    def _solve_alone(self, part: Part) -> Piece:
         """Return the piece of a part that is solved while nothing else is, or of its halves."""
         answer = self.calls.alone(part)
         if isinstance(answer, Piece):
@@ -85,7 +85,7 @@ class Rescue:
         self._replace(self.calls.executor, 1)
         if part.chunk.size == 1 or self.ends >= MOST_ENDS:
             return self._give_up(part, answer)
-        return Piece.join([self._alone(half) for half in halves(part)])
+        return Piece.join([self._solve_alone(half) for half in halves(part)])
 
     def _replace(self, pool: Executor, workers: int) -> bool:
         """Take another pool with the settings of a pool of processes; False if none starts."""

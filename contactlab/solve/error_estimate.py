@@ -108,10 +108,10 @@ def _distance(
     for times, finer in refined.items():
         if finer is None or refined[factor**2] is None:
             return np.zeros((2, *scene.shape))
-        found = _again(finer, scene)
+        found = _run_finer(finer, scene)
         with_tolerance = _finer(laws, counts, times) if counts else None
         if with_tolerance is not None and np.isnan(found).any():  # it cannot be tightened
-            found = np.where(np.isnan(found), _again(with_tolerance, scene), found)
+            found = np.where(np.isnan(found), _run_finer(with_tolerance, scene), found)
         answers.append(found)
     fine, finest = answers
     last, before, all_of = (
@@ -132,7 +132,7 @@ def _distance(
     return errors
 
 
-def _again(laws: Laws, scene: Scene) -> NDArray[np.complex128]:
+def _run_finer(laws: Laws, scene: Scene) -> NDArray[np.complex128]:
     """Return the answer of finer laws, NaN where the run failed."""
     _, motion = solve.outcome(solve.ways(laws, scene), scene, False, None)
     answer = _answer(scene, motion)

@@ -227,7 +227,7 @@ def to_dict(comparison: Compared, quantities: Sequence[str]) -> dict[str, Json]:
                 "against": agreement.measured.against,
                 "source": agreement.measured.source,
                 "x": _list(agreement.measured.x),
-                **_beside(agreement.measured),
+                **_other_entries(agreement.measured),
                 "values": _list(agreement.measured.values),
                 "error": _list(agreement.measured.error),
                 "laws": {
@@ -244,7 +244,7 @@ def to_dict(comparison: Compared, quantities: Sequence[str]) -> dict[str, Json]:
     }
 
 
-def _beside(measured: Measured) -> dict[str, Json]:
+def _other_entries(measured: Measured) -> dict[str, Json]:
     """Return the other entries of measured impacts, if they have some."""
     entries = {name: _list(values) for name, values in measured.beside.items()}
     return {"beside": entries} if entries else {}

@@ -107,7 +107,7 @@ def cases(method: Method, *, quick: bool = False) -> Iterator[Cell]:
     A method whose normal law is not the default has only the cases of every normal law.
     """
     if method.normal != DEFAULT_NORMAL:
-        yield from _under(method, method.normal, quick=quick)
+        yield from _cases_of_normal_laws(method, method.normal, quick=quick)
         return
     law = REGISTRY.law_class(full_name("tangential", method.tangential))
     integrator = REGISTRY.law_class(full_name("integrator", method.integrator))
@@ -125,7 +125,7 @@ def cases(method: Method, *, quick: bool = False) -> Iterator[Cell]:
             steps = int(ABOVE_LIMIT * LIMIT * float(scene.make().chi) ** 0.5) + 8
             yield _case(method, scene, {"integrator": {"steps": steps}})
     for normal in other_normal_laws(method):
-        yield from _under(method, normal, quick=quick)
+        yield from _cases_of_normal_laws(method, normal, quick=quick)
     if tries_bodies(method):
         for label, make in coupled_scenes(quick=quick):
             yield _case(method, Case("eccentric", label, make), {})
@@ -138,7 +138,7 @@ def cases(method: Method, *, quick: bool = False) -> Iterator[Cell]:
     yield from _map(method, integrator, quick=quick)
 
 
-def _under(method: Method, normal: str, *, quick: bool) -> Iterator[Cell]:
+def _cases_of_normal_laws(method: Method, normal: str, *, quick: bool) -> Iterator[Cell]:
     """Iterate over the cases that are tried under every normal law."""
     for scene in normal_scenes(quick=quick):
         case = _case(method, scene, {})

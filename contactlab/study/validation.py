@@ -127,12 +127,12 @@ def validate(progress: Count | None = None) -> Iterator[Finding]:
     checks = sound("checks", object, lambda item: "" if callable(item) else "which is no function")
     for done, told in enumerate(checks, start=1):
         own = told.info.distribution == PROJECT
-        yield told.item() if own else _of_others(told)
+        yield told.item() if own else _run_check(told)
         if progress is not None:
             progress(done, len(checks))
 
 
-def _of_others(told: Told) -> Finding:
+def _run_check(told: Told) -> Finding:
     """Return the finding of a plug-in's check, a failed one with the reason if it raises."""
     name = getattr(told.item, "__name__", str(told.item))
     try:

@@ -100,7 +100,7 @@ class Way(NamedTuple):
         motion: TangentialMotion
         limits.begin(f"an impact, {_which(impact)} ({self})")
         if self.bodies:
-            motion = _together(self, _couple(impact), recorder)
+            motion = _solve_together(self, _couple(impact), recorder)
         elif self.integrator is None:
             motion = Simulation(normal=self.normal, tangential=self.law).run(impact).motion
         else:
@@ -125,7 +125,7 @@ def _couple(impact: Scene) -> Scene:
     return Scene(None, None, *numbers, pair=pair, inverse_mass=W)
 
 
-def _together(way: Way, impact: Scene, recorder: Observer | None) -> TangentialMotion:
+def _solve_together(way: Way, impact: Scene, recorder: Observer | None) -> TangentialMotion:
     """Return the motion of an impact in which friction changes the approach."""
     normal = normal_motion(way.normal, impact.central)
     if way.integrator is None or isinstance(way.law, CoupledTangentialLaw):

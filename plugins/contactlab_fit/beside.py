@@ -60,7 +60,7 @@ def as_target_sees(table: Measurements, scene: Scene | SceneFile | str | Path) -
     own: Mapping[str, float] = {}
     arm: tuple[Real, Real] | None = None
     if isinstance(scene, SceneFile | str | Path):
-        own, arm = _of_file(scene, table)
+        own, arm = _struck_motion(scene, table)
     elif isinstance(scene, Scene) and scene.sphere is None:
         return table  # for other bodies the columns change the file
     elif isinstance(scene, Scene) and isinstance(scene.target, Sphere):
@@ -107,7 +107,7 @@ def _impact(file: SceneFile) -> Mapping[str, object]:
     return impact
 
 
-def _of_file(
+def _struck_motion(
     scene: SceneFile | str | Path, table: Measurements
 ) -> tuple[Mapping[str, float], tuple[Real, Real] | None]:
     """Return the motion of the struck body of a file, and its arm; None for a half-space."""

@@ -77,11 +77,11 @@ def diagnose(
     certain, possible = slips(few, table, values, kept)
     unlikely = plausible.unlikely_numbers(problem, table)
     slipped = (*certain, *unlikely)
-    others = () if slipped or explained else (*_others(problem, table, values, far), *possible)
+    others = () if slipped or explained else (*_sentences(problem, table, values, far), *possible)
     return Diagnosis(slips=slipped, others=others, robust=robust)
 
 
-def _others(
+def _sentences(
     problem: Problem, table: Measurements, values: Array, far: outliers.Outliers
 ) -> tuple[str, ...]:
     """Return sentences on outliers, patterns and leverage."""

@@ -128,7 +128,7 @@ def _profile(
     def excess(x: float) -> float:
         """Return the least square with the parameter at x, less the square."""
         nonlocal latest
-        latest = _with(problem, latest, place, x, scales)
+        latest = _with_parameter(problem, latest, place, x, scales)
         return float(np.sum(problem.weigh(latest[None], scales) ** 2)) - square
 
     def end(sign: float, bound: float) -> float:
@@ -153,7 +153,7 @@ def _profile(
     return end(-1.0, least), end(1.0, most)
 
 
-def _with(
+def _with_parameter(
     problem: Problem, values: Array, place: int, x: float, scales: Mapping[str, Real]
 ) -> Array:
     """Return the best values with one parameter at x."""

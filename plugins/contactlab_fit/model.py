@@ -65,7 +65,7 @@ class Model:
         Points with equal options of laws run together in one batch. A point seen before
         is not run again.
         """
-        points = self._near(points)
+        points = self._rounded_points(points)
         count = self.setup.scene.shape[0]
         if len(self._known) > min(REMEMBERED, REMEMBERED_IMPACTS / count):
             self._known.clear()
@@ -79,7 +79,7 @@ class Model:
             self._run(points[fresh], [keys[row] for row in fresh], quantities)
         return {name: np.array([self._known[key][name] for key in keys]) for name in quantities}
 
-    def _near(self, points: Array) -> Array:
+    def _rounded_points(self, points: Array) -> Array:
         """Return points, shape (m, parameters), with rounded options of laws."""
         near = points.copy()
         for place, parameter in enumerate(self.parameters):
@@ -97,11 +97,11 @@ class Model:
             rows = np.flatnonzero(group == number)
             most = max(TOGETHER // self.setup.scene.shape[0], 1)
             for some in np.split(rows, range(most, len(rows), most)):
-                for name, values in self._together(points[some], quantities).items():
+                for name, values in self._run_batch(points[some], quantities).items():
                     for row, line in zip(some.tolist(), values, strict=True):
                         self._known[keys[row]][name] = line
 
-    def _together(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
+    def _run_batch(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
         """Return the quantities, shape (m, n), at points with equal laws, from one batch."""
         many, count = len(points), self.setup.scene.shape[0]
         setup, restituted = (
@@ -143,7 +143,7 @@ class Model:
 
     def impacts(self, values: Array) -> ImpactResult:
         """Return the impacts, shape (n,), at values of the parameters, shape (parameters,)."""
-        return self._impacts(self._setup(self._near(values[None])[0].tolist()))
+        return self._impacts(self._setup(self._rounded_points(values[None])[0].tolist()))
 
     def _setup(self, values: Sequence[float]) -> Setup:
         """Return scene and laws at values of the parameters."""

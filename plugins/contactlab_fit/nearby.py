@@ -38,7 +38,7 @@ class Nearby(Model):
 
     def predict(self, points: Array, quantities: Sequence[str]) -> dict[str, Array]:
         """Return quantities of all impacts, shape (m, n), at points of shape (m, parameters)."""
-        terms = _terms(_along(self.axes, points - self.centre))
+        terms = _terms(_offsets(self.axes, points - self.centre))
         return {name: terms @ self.coefficients[name] for name in quantities}
 
 
@@ -49,7 +49,7 @@ def nearby(problem: Problem, values: Array, scales: Mapping[str, Real]) -> Probl
     axes = np.linalg.cholesky(square * np.linalg.inv(slopes.T @ slopes))
     low, high = problem.bounds()
     points = np.clip(values + REACH * _design(len(values)) @ axes.T, low, high)
-    terms, model = _terms(_along(axes, points - values)), problem.model
+    terms, model = _terms(_offsets(axes, points - values)), problem.model
     coefficients = {
         name: np.asarray(np.linalg.lstsq(terms, rows, rcond=None)[0])
         for name, rows in model.predict(points, list(problem.measured)).items()
@@ -93,7 +93,7 @@ def _design(count: int) -> Array:
     return np.concatenate((axes, np.sqrt(0.5) * np.reshape(pairs, (-1, count))))
 
 
-def _along(axes: Array, offsets: Array) -> Array:
+def _offsets(axes: Array, offsets: Array) -> Array:
     """Return offsets of points, shape (m, parameters), in standard errors along the axes."""
     return np.asarray(np.linalg.solve(axes, offsets.T).T)
 

@@ -113,7 +113,7 @@ def outliers(problem: Problem, values: Array, scales: Mapping[str, Real]) -> Out
             break
         cut = np.sort(flat)[-count]
         places = {name: np.flatnonzero(rows >= cut) for name, rows in off.items()}
-        rest = _without(problem, places)
+        rest = _leave_out(problem, places)
         if min(rest.counts.values()) <= parameters:
             break
         again = minimum(rest, values, scales)
@@ -170,7 +170,7 @@ def _square(problem: Problem, values: Array, scales: Mapping[str, Real]) -> floa
     return float(weighted @ weighted)
 
 
-def _without(problem: Problem, places: Mapping[str, NDArray[np.intp]]) -> Problem:
+def _leave_out(problem: Problem, places: Mapping[str, NDArray[np.intp]]) -> Problem:
     """Return the problem without some numbers."""
     measured = {}
     for name, values in problem.measured.items():

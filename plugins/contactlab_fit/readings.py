@@ -92,7 +92,7 @@ def readings(problem: Problem, given: Collection[str]) -> Iterator[Reading]:
                 names = dict(one.names)
                 factor = MISTAKEN["deg"].get(way, 1.0)
                 for name in angles:
-                    both = _with(both, name, _way(name, way))
+                    both = _correct(both, name, _correction(name, way))
                     names |= _name(name, way)
                 head = words.partition(" looks")[0]
                 words = f"{head} and {' and '.join(angles)} look as if {way}"
@@ -174,17 +174,17 @@ def _numbers(problem: Problem) -> Iterator[Reading]:
     for name in measured:
         unit = QUANTITIES[name].unit
         for way, factor in (MISTAKEN.get(unit, {}) | {SIGN: -1.0}).items():
-            read = _with(problem, name, _way(name, way))
+            read = _correct(problem, name, _correction(name, way))
             names = _name(name, way)
             yield Reading(f"{name} looks as if {way}", read, {name: abs(factor)}, names=names)
         if unit in ("deg", "rad"):
-            read = _with(problem, name, _way(name, SURFACE))
+            read = _correct(problem, name, _correction(name, SURFACE))
             names = _name(name, SURFACE)
             yield Reading(f"{name} looks as if {SURFACE}", read, {}, names=names)
         twin = TAKEN_FOR.get(name, "")
         for other, sign, words in RESTITUTIONS.get(name, ((twin, 1.0, twin),)):
             if other and other not in measured:
-                read = _rename(_with(problem, name, partial(np.multiply, sign)), {name: other})
+                read = _rename(_correct(problem, name, partial(np.multiply, sign)), {name: other})
                 words = f"{name} looks as if its numbers were those of {words}"
                 names = {name: f"{'-' if sign < 0.0 else ''}{other}"}
                 yield Reading(words, read, {}, names=names)
@@ -202,12 +202,12 @@ def _numbers(problem: Problem) -> Iterator[Reading]:
     for way, step in (("low", -1), ("high", 1)):
         read = problem
         for name in every:
-            read = _with(read, name, partial(_shift_rows, step=step))
+            read = _correct(read, name, partial(_shift_rows, step=step))
         kept = {name: _shift_rows(_shift_rows(v, step), -step) for name, v in measured.items()}
         yield Reading(f"{listed} {look} as if written a row too {way}", read, {}, kept)
 
 
-def _way(name: str, way: str) -> Callable[[Array], Array]:
+def _correction(name: str, way: str) -> Callable[[Array], Array]:
     """Return the function that corrects numbers of a quantity written in this way."""
     unit = QUANTITIES[name].unit
     if way == SURFACE:
@@ -217,7 +217,7 @@ def _way(name: str, way: str) -> Callable[[Array], Array]:
     return lambda values: factor * values
 
 
-def _with(problem: Problem, name: str, change: Callable[[Array], Array]) -> Problem:
+def _correct(problem: Problem, name: str, change: Callable[[Array], Array]) -> Problem:
     """Return the problem with the numbers of one quantity changed."""
     numbers = change(problem.measured[name])
     return attrs.evolve(problem, measured={**problem.measured, name: numbers})

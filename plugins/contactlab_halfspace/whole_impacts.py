@@ -172,7 +172,7 @@ def _whole_impact(options: Options, every: NormalMotion, left: Mask) -> WholeImp
             if number in own_impulses:
                 # The samples carry another impulse than the steps, for force is linear between.
                 wanted = np.interp(passed[at], own_impulses[number], each.impulse)
-            gained[at], share = _along(wanted, each.impulse, each.share)
+            gained[at], share = _integrate_share(wanted, each.impulse, each.share)
             gained[at] *= -2.0 * chi * velocity
             force[at] = friction * share * acting[at]
         return (gained, force) if outer else (float(gained), float(force))
@@ -202,7 +202,7 @@ def _whole_impact(options: Options, every: NormalMotion, left: Mask) -> WholeImp
     )
 
 
-def _along(impulse: Real, knots: Array, shares: Array) -> tuple[Real, Real]:
+def _integrate_share(impulse: Real, knots: Array, shares: Array) -> tuple[Real, Real]:
     """Return the integral of the share over the impulse, and the share, at ``impulse``."""
     # The share is linear in the impulse between the knots.
     share = np.interp(impulse, knots, shares)

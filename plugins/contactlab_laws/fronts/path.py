@@ -121,7 +121,7 @@ class Impact:
 
     def _stick(self) -> Part:
         """All sticks; the edge begins to slip where k, or k of the other sign, is zero."""
-        event, (_, length) = self._along(STICK, (self.radius, 0.0))
+        event, (_, length) = self._follow_phase(STICK, (self.radius, 0.0))
         if abs(self.rate) < AT_REST:
             self.rate = 0.0
             event = int(self._at_rest())
@@ -137,7 +137,7 @@ class Impact:
         piece = self.memory[-1]
         assert isinstance(piece, Drawn)
         *then, self.lack = piece.outer
-        event, (front, rate, margin, left) = self._along(DRAWN, (*then, piece.length))
+        event, (front, rate, margin, left) = self._follow_phase(DRAWN, (*then, piece.length))
         self.memory[-1] = Drawn(piece.sign, (front, rate, margin, self.lack), left)
         return self._after(event, front)
 
@@ -146,7 +146,7 @@ class Impact:
         piece = self.memory[-1]
         assert isinstance(piece, Locked)
         self.lack = (4.0 / 3.0) * piece.outer**3 - piece.lack
-        event, (front,) = self._along(LOCKED, (piece.outer,), piece.inner)
+        event, (front,) = self._follow_phase(LOCKED, (piece.outer,), piece.inner)
         self.memory[-1] = piece._replace(outer=front)
         return self._after(event, front)
 
@@ -178,7 +178,7 @@ class Impact:
             if rate > 0.0 >= last:
                 self.deepest = max(self.deepest, (left / press) ** 0.2)
         elif depth > 0.0 or rate > 0.0:
-            self._along(GROSS, (0.0, 0.0), stops)
+            self._follow_phase(GROSS, (0.0, 0.0), stops)
         self.radius, self.rate, self.margin = radius, last, margin + rise
         self.change, self.work = change, self.work + work
         self.deepest = max(self.deepest, radius)
@@ -241,7 +241,7 @@ class Impact:
 
     # ------------------------------------------------------------------------------ phases
 
-    def _along(
+    def _follow_phase(
         self, phase: int, own: tuple[float, ...] = (), end: float = 0.0
     ) -> tuple[int, list[float]]:
         """Follow a phase; return the event that ended it, and the series of this phase alone."""

@@ -59,16 +59,16 @@ def midpoints(normal: NormalMotion, count: int, *, graded: bool = False) -> Step
     viscous contact goes as the root of time: they are even in the integral of dt/b.
     """
     key = "midpoints", count, graded
-    return _once(normal, count, key, lambda motion: _midpoints(motion, count, graded))
+    return _make_once(normal, count, key, lambda motion: _midpoints(motion, count, graded))
 
 
 def endpoints(normal: NormalMotion, count: int) -> Steps:
     """Return ``count`` steps of the contact's duration, each sampled at its end."""
     key = "endpoints", count
-    return _once(normal, count, key, lambda motion: _endpoints(motion, count))
+    return _make_once(normal, count, key, lambda motion: _endpoints(motion, count))
 
 
-def _once(
+def _make_once(
     normal: NormalMotion, count: int, key: Hashable, make: Callable[[NormalMotion], Steps]
 ) -> Steps:
     """Return steps that equal motions share, and those that are equal in other units."""

@@ -93,11 +93,11 @@ def _by_blocks(speed: Array, chi: Array, restitution: Real) -> Array:
     psi2 = np.empty_like(speed)
     for first in range(0, speed.size, BLOCK):
         part = slice(first, first + BLOCK)
-        psi2[part] = _together(speed[part], chi[part], part_of(restitution, part))
+        psi2[part] = _solve_block(speed[part], chi[part], part_of(restitution, part))
     return psi2
 
 
-def _together(speed: Array, chi: Array, e: Real) -> Array:
+def _solve_block(speed: Array, chi: Array, e: Real) -> Array:
     """Return psi2 of a block of impacts."""
     psi2 = full_slip(speed, chi, e)
     who = np.flatnonzero(sticks(speed, chi, e))

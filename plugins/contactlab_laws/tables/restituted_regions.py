@@ -141,11 +141,11 @@ class Table:
         region = (chi.real >= REGIONS[0].high).view(np.int8) + slips
         for bound in SLIPPING:
             region += slips & (chi.real >= bound)
-        where = _along(u, self.sizes[0].take(region))
+        where = _places(u, self.sizes[0].take(region))
         share = (chi.real - LOW.take(region)) * PER_WIDTH.take(region)
-        where = where * self.sizes[1].take(region) + _along(share, self.sizes[1].take(region))
+        where = where * self.sizes[1].take(region) + _places(share, self.sizes[1].take(region))
         for each, size in zip(others[1:], self.sizes[2:], strict=True):
-            where = where * size.take(region) + _along(each, size.take(region))
+            where = where * size.take(region) + _places(each, size.take(region))
         where += self.starts.take(region)
         return self.patches.values(self.grid.take(where), u, *others)
 
@@ -160,6 +160,6 @@ def index(share: float, size: int) -> int:
     return min(int(share * size), size - 1)
 
 
-def _along(share: Array, size: NDArray[np.int32]) -> NDArray[np.int32]:
+def _places(share: Array, size: NDArray[np.int32]) -> NDArray[np.int32]:
     """Return the places of coordinates in [0, 1] in grids."""
     return np.minimum((share.real * size).astype(np.int32), size - 1)

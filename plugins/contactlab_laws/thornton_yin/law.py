@@ -113,20 +113,22 @@ class ThorntonYin(CausalTangentialLaw):
             increment.displacement,
         )
         if not shape:
-            contact, work = _one(state.contacts[0], *map(float, columns))
+            contact, work = _step_one(state.contacts[0], *map(float, columns))
             return TangentialResponse(contact.force, work), state._replace(contacts=(contact,))
         # Branches differ from impact to impact: one by one is as fast as together.
         rows = zip(
             *(np.broadcast_to(each, shape).ravel().tolist() for each in columns), strict=True
         )
-        answers = [_one(contact, *row) for contact, row in zip(state.contacts, rows, strict=True)]
+        answers = [
+            _step_one(contact, *row) for contact, row in zip(state.contacts, rows, strict=True)
+        ]
         contacts, works = zip(*answers, strict=True)
         force = np.array([contact.force for contact in contacts]).reshape(shape)
         response = TangentialResponse(force, np.array(works).reshape(shape))
         return response, state._replace(contacts=contacts)
 
 
-def _one(
+def _step_one(
     contact: ContactState, softer: float, stiffer: float, limit: float, displacement: float
 ) -> tuple[ContactState, float]:
     """Return one contact after a step, and the friction work in J."""

@@ -117,7 +117,7 @@ def _follow_once(psi1: Array, chi: Array, number: Array, path: Course, springs: 
         edge = np.maximum(number * path.rate[step], 0.0)
         contact = Contact(limit, edge, outer, spacing, 0.5 * (b - outer * spacing))
         known = contact, now, number, ahead, kick, share, bound
-        psi, share = _once(*known)
+        psi, share = _one_pass(*known)
         if stiff[step - 1]:
             settled = chi * stiffness[step - 1] > STIFF
             for each, other in zip((psi, share), _settle(*known), strict=True):
@@ -155,7 +155,7 @@ def _friction(contact: Contact, w: Array, reach: Array, room: Array) -> Array:
     return np.minimum(room, contact.limit, out=room)
 
 
-def _once(
+def _one_pass(
     contact: Contact, w: Array, number: Array, ahead: Array, kick: Array, share: Array, room: Array
 ) -> tuple[Array, Array]:
     """Return psi and the share of Coulomb's limit at the end of a step, by one pass."""
@@ -170,7 +170,7 @@ def _once(
 def _settle(
     contact: Contact, w: Array, number: Array, ahead: Array, kick: Array, share: Array, room: Array
 ) -> tuple[Array, Array]:
-    """Return the answer of ``_once`` by Newton's method."""
+    """Return the answer of ``_one_pass`` by Newton's method."""
     psi, load = ahead - kick * share, contact.total(contact.limit, contact.edge)
     for _ in range(TURNS):
         reach = number * psi
