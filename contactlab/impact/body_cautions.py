@@ -53,7 +53,7 @@ def shells(scene: Scene, bodies: Mapping[str, Sphere | HalfSpace | RigidBody]) -
         if isinstance(body, RigidBody):
             if (least := float(np.fmin.reduce(share, initial=math.inf))) < SHELL:
                 said.append(
-                    f"model: {name}.mass is {least:.2g} of that of a solid body, so that the body "
+                    f"model: {name}.mass is {least:.2g} of a solid body's mass, so that the body "
                     "may be a shell. A thin wall bends, but Hertz's contact is that of a solid."
                 )
             continue
@@ -64,7 +64,7 @@ def shells(scene: Scene, bodies: Mapping[str, Sphere | HalfSpace | RigidBody]) -
             )
         if (least := float(np.fmin.reduce(share, initial=math.inf))) < SHELL:
             said.append(
-                f"model: {name}.mass is {least:.2g} of that of a solid sphere, so that the {name} "
+                f"model: {name}.mass is {least:.2g} of a solid sphere's mass, so that the {name} "
                 f"is a shell. {_spring(scene, body)}"
             )
         elif _most(body.gyration_ratio) > HOLLOW:
@@ -170,14 +170,14 @@ def tell_radii(encounter: Encounter, *, several: bool = False) -> list[str]:
             when = "as contacts act together" if several else "under laws of a rate or of yield"
             said.append(
                 f"{name}: no curvature_radius given, {radius}, that of a solid ball of this mass. "
-                f"It moves the duration, the force, and velocities {when}. "
+                f"This radius moves duration and force, and velocities {when}. "
                 "Set your own: curvature_radius=..."
             )
         else:
             said.append(
                 f"{name}: no crown_radius given, {radius} along the edge, ten times the longest "
-                "side. Between 1 and 100 times it moves velocities by less than 0.01 of that of "
-                "approach. Set your own: crown_radius=..."
+                "side. Between 1 and 100 times it moves velocities by less than 0.01 of the "
+                "approach speed. Set your own: crown_radius=..."
             )
     return said
 

@@ -191,7 +191,7 @@ class RigidBody:
             rule = "give one of the two"
             remedy = "inertia=(..., 3, 3), or principal=(..., 3) with axes=(..., 3, 3)"
             if self.principal is not None:
-                remedy += "; attrs.evolve keeps what it is not told: give None for the other"
+                remedy += "; attrs.evolve keeps the other one unless you give None for it"
             raise refuse("inertia, principal", (self._inertia, self.principal), rule, remedy)
         inertia = self._inertia
         if self.principal is not None:

@@ -65,7 +65,7 @@ def with_spins(table: Measurements, scene: Scene, spin: Real | None) -> Measurem
         measured[ALONG] = np.where(seen, measured[ALONG], np.nan)
         notes = (
             *notes,
-            f"{ALONG}: left out after bounces whose spin nobody saw: the throw has too few frames "
+            f"{ALONG}: left out after bounces of unknown spin: the throw has too few frames "
             "before its first bounce",
         )
         if not seen.any():

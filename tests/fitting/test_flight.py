@@ -196,7 +196,7 @@ def test_of_a_ball_that_nobody_saw_before_its_first_bounce_the_spin_is_not_taken
     }
     found = as_target_sees(read_flight(both), BODIES)
     assert list(np.isnan(found.measured["rebound_tangential_velocity"])) == [True] * 4 + [False] * 5
-    assert any("whose spin nobody saw" in note for note in found.notes)
+    assert any("bounces of unknown spin" in note for note in found.notes)
     assert list(as_target_sees(read_flight(one), BODIES).measured) == ["rebound_normal_velocity"]
 
 
