@@ -169,7 +169,7 @@ def add_figure(parser: argparse.ArgumentParser, words: str) -> None:
 def add_look(parser: argparse.ArgumentParser) -> None:
     """Add ``--style`` and ``--width``."""
     parser.add_argument(
-        "--style", choices=("print", "slides"), default="print", help="of the figure"
+        "--style", choices=("print", "slides"), default="print", help="look of the figure"
     )
     parser.add_argument(
         "--width",

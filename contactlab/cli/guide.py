@@ -95,7 +95,7 @@ SECTION = re.compile(r"^## (\d+)\. ", re.MULTILINE)
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the topic and the section."""
     parser.add_argument(
-        "topic", nargs="?", metavar="TOPIC", help="or a part of one; leave it out for the list"
+        "topic", nargs="?", metavar="TOPIC", help="a topic, or a part of one; without it, the list"
     )
     parser.add_argument(
         "section", nargs="?", metavar="SECTION",

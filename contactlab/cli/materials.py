@@ -22,7 +22,7 @@ from contactlab.registration.hooks import Execute, hookimpl
 @hookimpl
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add the name and the output."""
-    parser.add_argument("name", nargs="?", metavar="NAME", help="leave it out for the list")
+    parser.add_argument("name", nargs="?", metavar="NAME", help="a material; without it, the list")
     shared.add_json(parser)
     return execute
 

@@ -43,9 +43,11 @@ from contactlab.registry.registry import REGISTRY, PluginInfo
 def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     """Add ``list``, ``show NAME`` and ``check NAME``."""
     actions = parser.add_subparsers(dest="action", metavar="list|show|check", required=True)
-    listing = actions.add_parser("list", help="name, kind, distribution and version of all")
+    listing = actions.add_parser("list", help="list name, kind, distribution and version of all")
     show = actions.add_parser("show", help="describe a law and its options, or another plug-in")
-    check = actions.add_parser("check", help="check one against its contract; exit 1 if it fails")
+    check = actions.add_parser(
+        "check", help="check a plug-in against its contract; exit 1 if it fails"
+    )
     listing.add_argument(
         "--kind", choices=tuple(RANK), metavar="KIND", help=f"one of {', '.join(RANK)}"
     )

@@ -67,7 +67,7 @@ def add_groups(parser: argparse.ArgumentParser, *, ranges: bool = True) -> None:
     convert, metavar = (numbers, "NUMBER or START:STOP:COUNT") if ranges else (None, "NUMBER")
     for name, words in (
         ("psi1", "scaled slip velocity before the impact, in place of a file"),
-        ("chi", "inertia ratio (38): 1.4412 for a solid sphere, nu = 0.3"),
+        ("chi", "inertia ratio, eq. (38): 1.4412 for a solid sphere, nu = 0.3"),
     ):
         parser.add_argument(f"--{name}", type=convert or shared.finite, metavar=metavar, help=words)
     add_ball(parser, "in place of --chi, with --gyration-ratio")

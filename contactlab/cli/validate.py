@@ -47,7 +47,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
     parser.add_argument(
         "--measured",
         action="store_true",
-        help="set every law beside every row of the measured sets instead, in some minutes",
+        help="compare every law with every row of the measured sets instead; takes minutes",
     )
     shared.add_json(parser, "the tables")
     shared.add_progress(parser)

@@ -40,9 +40,11 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
             help=f"{words} (default: {first:g})",
         )
     parser.add_argument(
-        "--material", default="pmma", metavar="NAME", help="of the ball (default: pmma)"
+        "--material", default="pmma", metavar="NAME", help="material of the ball (default: pmma)"
     )
-    parser.add_argument("--block", metavar="NAME", help="of the block (default: the ball's)")
+    parser.add_argument(
+        "--block", metavar="NAME", help="material of the block (default: the ball's)"
+    )
     parser.add_argument("--predict", action="store_true", help="ask for a prediction first")
     parser.add_argument(
         "--out", type=shared.file_of(".html"), default=Path("explore.html"), metavar="FILE.html",
