@@ -101,8 +101,8 @@ def collide(
     Raises
     ------
     ValueError
-        If the input is bad, or if bodies separate and ``separating`` is "refuse". Of an array the
-        index of the first bad number is named.
+        If the input is bad, or if bodies separate and ``separating`` is "refuse". For an array the
+        message names the index of the first bad number.
 
     Notes
     -----

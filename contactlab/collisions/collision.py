@@ -83,7 +83,7 @@ class Collision(Answer, Generic[Each]):
         Change of the slip velocity in m/s: in the direction of the slip before; between bodies that
         are no spheres as ``result.motion`` has it.
     friction_work : float or array
-        In J. Of spheres with a restitution the loss in shear is part of it; a ``Simulation`` tells
+        In J. For spheres with a restitution it includes the loss in shear; a ``Simulation`` tells
         the two apart.
     collided : bool or array of bool
         False if the bodies were separating and passed through untouched.

@@ -72,7 +72,7 @@ class GatheringResult(Answer):
     ----------
     gathering : Gathering
     simulation : Simulation or None
-        The laws; None where the restitutions of the contacts stand for them.
+        The laws; None if the restitutions of the contacts take the place of laws.
     laws : mapping of str to str
         Names of the three laws with their versions.
     run_time : float
@@ -95,7 +95,7 @@ class GatheringResult(Answer):
 
     @cached_property
     def plan(self) -> GatheringPlan:
-        """What is computed, what is left out, and cautions; reading ``per_micron`` computes it."""
+        """What is computed and left out, and cautions; reading ``per_micron`` computes it."""
         laws = None if self.simulation is None else self.simulation.laws
         told = bool(self.history)
         return plan_of_gathering(self.gathering, laws, self._way, self._motion, history=told)

@@ -230,7 +230,7 @@ def rebound(
         and the remedy; also if labels differ.
     ValueError, PluginError
         If ``tangential.fronts``, or ``normal.viscoelastic`` below a restitution of 1, is blocked or
-        cannot be imported. What is blocked is read at the first answer of a process.
+        cannot be imported. The variable that blocks laws is read at the first answer of a process.
     ImpactError
         If an impact cannot be solved; no such impact has been found.
 

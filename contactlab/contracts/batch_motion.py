@@ -1,4 +1,4 @@
-"""What the motions of batches have in common: numbers, statuses, and how parts are joined."""
+"""Shared parts of the motions of batches: numbers, statuses, and the joining of parts."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ def _material() -> Any:
 
 
 class _SphereArguments:
-    """What a sphere takes: ``__init__`` as ``attrs.evolve`` is checked by, without overloads."""
+    """Arguments of a sphere: ``__init__`` as ``attrs.evolve`` is checked by, without overloads."""
 
     __slots__ = ()
 

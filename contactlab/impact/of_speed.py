@@ -97,7 +97,7 @@ class OfSlip:
     Attributes
     ----------
     law : callable or array, shape (2, n)
-        The function, or speeds and coefficients of the table. None where only the numbers are left.
+        The function, or speeds and coefficients of the table. None once only the numbers are kept.
     numbers : float or array
         The coefficients, by which it is known whether others were put in their place.
     slip : float or array

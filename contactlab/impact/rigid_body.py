@@ -130,9 +130,9 @@ class RigidBody:
     curvature_radius : float or array, optional
         Radius of curvature of the surface at the contact, in m: ``math.inf`` for a flat surface,
         negative for a hollow one. With ``cross_radius`` the principal radius along
-        ``curvature_axis``. Of a round contact it moves duration and force alone, and no velocity
-        under elastic laws or a restitution: by default it is that of a solid ball of this mass,
-        and the plan says so.
+        ``curvature_axis``. A round contact's radius moves duration and force alone, and no velocity
+        under elastic laws or a restitution: the default is that of a solid ball of this mass, and
+        the plan says so.
     principal : array, shape (..., 3), optional
         Principal moments of inertia, in kg m².
     axes : array, shape (..., 3, 3), optional

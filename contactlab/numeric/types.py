@@ -7,8 +7,7 @@ float for a float and an array for an array is annotated with ``Kind`` on both s
 gives back whatever it is given with ``Tree``. Numbers of a result and of its motion are ``Each``,
 those of rigid bodies ``Either``. At a door, where a user's numbers are checked, an argument is
 ``Numbers``: whatever NumPy makes real numbers of. An array of any type of NumPy is ``AnyArray``.
-What may be anything is an ``object``; ``Any`` stays where nothing is known and something is done
-with it.
+A value of any type is an ``object``; ``Any`` stays where the code uses a value of unknown type.
 """
 
 from __future__ import annotations

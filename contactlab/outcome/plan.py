@@ -180,7 +180,7 @@ KINDS = ("computed", "left_out", "cautions")
 
 @attrs.frozen(eq=False, slots=False)  # frozen slots are slow to fill
 class Plan:
-    """What is computed, what is left out and why, and cautions.
+    """The plan of an impact or a batch: what is computed, what is left out and why, and cautions.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What plug-ins bring, by name: each name means one thing of one distribution.
+"""Things that plug-ins bring, by name: each name means one thing of one distribution.
 
 The names of things follow the rule of laws: ``distribution:name`` is unique, ``name`` alone means
 contactlab's own, else that of the only distribution that offers it; if several do, it is refused.

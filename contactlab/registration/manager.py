@@ -299,7 +299,7 @@ class Manager(pluggy.PluginManager):
     def _find_hooks(self, hook: str, blocked: str) -> list[tuple[PluginInfo, Callable[..., Any]]]:
         """Return the plug-ins with a hook, in order, and the callers that ask each of them alone.
 
-        Those that are ``blocked`` are left out.
+        Plug-ins that are ``blocked`` are left out.
         """
         since, callers = self._callers.get(hook, (-1, []))
         if since != self.changes:

@@ -1,4 +1,4 @@
-"""What three laws can do: worked out once when they are composed, as every run asks."""
+"""The abilities of three laws, worked out once when they are composed, as every run asks."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ from contactlab.runs.target import ANOTHER
 
 
 class Finished(NamedTuple):
-    """What a folder holds of a block: its numbers and statuses by name, and what computed them."""
+    """A finished block of a folder: numbers and statuses by name, and the computer that made them."""
 
     numbers: Mapping[str, AnyArray]
     computer: str

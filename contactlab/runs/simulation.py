@@ -330,8 +330,8 @@ class Simulation:
         ImportError
             If ``into`` is a folder of Parquet, and pyarrow is not installed.
         OSError
-            If a chunk cannot be written into ``keep`` or ``into``. Those before stay there, and the
-            same sweep resumes from them.
+            If a chunk cannot be written into ``keep`` or ``into``. Chunks before the failure stay
+            there, and the same sweep resumes from them.
         KeyboardInterrupt
             Of Ctrl-C, when finished chunks are in ``keep`` or ``into``.
         """

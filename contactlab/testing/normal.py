@@ -34,7 +34,7 @@ def strokes(
 ) -> tuple[Scene, Array, Array]:
     """Return a scene, and approach (m) and rate (m/s) of a press and release, shape (K, ...).
 
-    As in an impact, the course leads from first touch to out of contact.
+    The course leads from first touch to out of contact, as in an impact.
     """
     given = given or scene(0.0, 1.0, units=units, bodies=bodies)
     x = np.linspace(0.0, 1.05 * math.pi, 2 * STEPS + 1)

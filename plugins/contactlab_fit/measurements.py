@@ -124,7 +124,7 @@ def read_measurements(
         unit ``(1)`` may be left out. ``<quantity>_error`` holds standard errors. A column whose
         heading begins with ``#`` is not read. A column of unknown meaning is left out with a
         note; one whose heading looks like other words for a quantity is refused with its name
-        here, to be confirmed by ``columns``. Of a ball that is dropped either ``drop_height`` and
+        here, to be confirmed by ``columns``. For a dropped ball either ``drop_height`` and
         ``bounce_height``, or the times ``t_bounce`` of its taps on the floor, give the normal
         restitution and the speed of each bounce.
     columns : mapping of str to str, or sequence of str, optional

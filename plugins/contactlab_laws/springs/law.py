@@ -81,7 +81,7 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
     table : bool, optional
         Take psi2 and the loss in shear from the table of restitutions where it is there: under
         ``normal.viscoelastic`` with a restitution, chi 0.3 to 3. By default it does unless springs
-        are named, or another grid or loss in shear. What asks for a history is marched. Below a
+        are named, or another grid or loss in shear. Impacts with a history are marched. Below a
         restitution of 0.01 psi2 is always that of ``contactlab.rebound``.
 
     References
