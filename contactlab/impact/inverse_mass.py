@@ -68,7 +68,7 @@ def ways(tensor: Rows, speed: Real, slip: Vector, cross_stiffness_ratio: Real = 
     turned = magnitude((W[1][1] * x + W[1][2] * y) * y - (W[2][1] * x + W[2][2] * y) * x)
     leaves = magnitude(y) > ROUNDING * (magnitude(x) + magnitude(speed))
     moved = x * x + y * y
-    # the change across the line scales with the slip: a slip of rounding size does not turn
+    # across its line slip changes by a share of itself: a slip that is rounding turns by nothing
     turns = turned > ROUNDING * W[1][1] * (moved + square_root(moved) * magnitude(speed))
     turns = turns | (leaves & (cross_stiffness_ratio != 1.0))
     leaves = (

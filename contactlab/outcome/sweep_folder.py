@@ -62,7 +62,7 @@ def about_of(
     sums: Mapping[str, int],
     computer: str,
 ) -> About:
-    """Return the notes of the chunk of a result.
+    """Return what the chunk of a result tells.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ from contactlab.runs.target import ANOTHER
 
 
 class Finished(NamedTuple):
-    """A finished block of a folder: numbers and statuses by name, and the computer that made them."""
+    """A finished block of a folder: numbers and statuses by name, and their computer."""
 
     numbers: Mapping[str, AnyArray]
     computer: str

@@ -56,7 +56,7 @@ class Prescribed:
         self._impulse = np.diff(course.impulse[:, 0])
 
     def impulse(self, k: int) -> float:
-        """Return the predicted impulse of the friction load in step ``k``."""
+        """Return the impulse of the friction load in step ``k``, foreseen before it is taken."""
         return float(self._impulse[k - 1])
 
     def contact(self, k: int) -> Contact | None:
