@@ -32,7 +32,7 @@ Maker = TypeVar("Maker", bound=Callable[..., tuple[RigidBody, Array]])
 
 #: Arguments of a pose, and how many dimensions each has for one.
 POSE = {"normal": 1, "axis": 1, "axes": 2}
-#: What to write for a direction.
+#: Remedies for a missing direction.
 UNIT = {
     "normal": "such as [0, 0, -1], down",
     "axis": "such as [0, 0, 1], up; an angle is tilt_deg of a scene file",

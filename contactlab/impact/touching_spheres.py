@@ -1,4 +1,4 @@
-"""Which spheres touch, by their positions, and how far apart their surfaces are."""
+"""Contacts between spheres, by their positions, and the gaps of their surfaces."""
 
 from __future__ import annotations
 

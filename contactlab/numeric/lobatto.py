@@ -10,7 +10,7 @@ from numpy.polynomial import legendre
 
 from contactlab.numeric.types import Array
 
-#: Added to distances from nodes so that none is zero; no other distance changes.
+#: Offset of distances from nodes, so that none is zero; no other distance changes.
 ON_NODE = 1e-290
 
 

@@ -107,7 +107,7 @@ SYMBOLS = {
     "m", "s", "kg", "K", "A", "mol", "cd", "N", "Pa", "J", "W", "Hz", "V", "C", "F", "T", "H", "Wb",
     "S", "lm", "lx", "sr", "rad", "deg",
 }  # fmt: skip
-#: What a column may need: ``Column.needs``.
+#: Words of ``Column.needs``.
 NEEDS = ("sizes", "motion", "history")
 
 #: The columns of every file, in order: name, unit, attribute of the result. A vector or a matrix

@@ -140,7 +140,7 @@ def _write_arrays(stream: IO[bytes], arrays: Mapping[str, AnyArray]) -> None:
     """Write arrays as npz, compressed only where numbers repeat and so shrink."""
     with zipfile.ZipFile(stream, "w", compresslevel=1) as archive:
         for name, values in arrays.items():
-            archive.compression = _kind_of(np.ascontiguousarray(values))  # of what is opened next
+            archive.compression = _kind_of(np.ascontiguousarray(values))  # of the next file
             with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
                 np.lib.format.write_array(file, np.asanyarray(values), allow_pickle=False)
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
-#: What a system answers if another holds the lock.
+#: Errors of the system if another process holds the lock.
 HELD = (errno.EACCES, errno.EAGAIN, errno.EDEADLK)
 #: The byte that Windows locks, which keeps others from reading it: beyond the end of any file.
 BYTE = 1 << 30

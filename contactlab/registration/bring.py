@@ -105,7 +105,7 @@ def _drop_repeated(name: str, several: list[Told]) -> list[Told]:
 
 def find_thing(rivals: list[Told]) -> Told | None:
     """Return what a name means among things of that name, or None if it is refused."""
-    for origin in (HERE, PROJECT):  # what a program registers is meant
+    for origin in (HERE, PROJECT):  # a registration of the program wins
         own = [told for told in rivals if told.info.distribution == origin]
         if own:
             return own[0]

@@ -334,7 +334,7 @@ class Manager(pluggy.PluginManager):
             warnings.warn(str(error), PluginWarning, stacklevel=4)
 
     def _place(self, name: str) -> tuple[int, int, str]:
-        """Return when a plug-in is asked: those of run time, contactlab's own, others by name."""
+        """Return the order of a plug-in: run-time ones first, contactlab's own, others by name."""
         info = self._infos.get(name)
         if info is None:
             return 0, -self._since.get(name, 0), name

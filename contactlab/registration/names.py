@@ -26,7 +26,7 @@ PAGE = "page"
 COLLECTIONS = (
     "materials", "columns", "shapes", "cases", "checks", "measurements", "cautions", "options",
 )  # fmt: skip
-#: What a name may begin with.
+#: First words of names.
 ALL_KINDS = (*KINDS, COMMAND, PAGE, *COLLECTIONS)
 #: The distribution of what is registered at run time.
 HERE = "this program"

@@ -1,4 +1,4 @@
-"""Which scenes a law runs: it may refuse some, and options with units need scenes with units."""
+"""Refusals of scenes: by a law itself, and of scenes without units for options with units."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which laws fit together, and how a name becomes a law."""
+"""Composition of laws that fit together, and of a law from its name."""
 
 from __future__ import annotations
 

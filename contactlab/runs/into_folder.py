@@ -35,7 +35,7 @@ CODES = {status: code for code, status in enumerate(Status)}
 NAMES = [status.name for status in Status]
 
 
-#: What to do where a plug-in that brought a column is gone, new, or gives it in another unit.
+#: Remedy where a plug-in that brought a column is gone, new, or gives another unit.
 OTHER_COLUMNS = "sweep them into another folder, or with the plug-ins that the folder was made with"
 
 

@@ -51,7 +51,7 @@ if TYPE_CHECKING:
         return_partial: bool
 
 
-#: What to do with a file, and with bodies in space, that users give in place of a scene.
+#: Remedies for a file, and for bodies in space, in place of a scene.
 FOR_FILES = "of a file: case = read_scene(path); case.laws.simulation().run(case.scene)"
 FOR_BODIES = "for bodies in space use collide(encounter, simulation), or encounter.scene"
 

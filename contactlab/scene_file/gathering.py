@@ -26,7 +26,7 @@ KINDS = ("sphere", "body", "half-space")
 MOTION = ("velocity", "spin", "force", "position")
 NUMBERS = ("friction_coefficient", "gap", "restitution")
 OTHERS = ("first", "second", "normal", "contact", "target_contact", "target_velocity", "loaded")
-#: What a sweep may vary of a body: its speed along its velocity.
+#: The number of a body that a sweep may vary: its speed along its velocity.
 SPEED = "speed"
 
 

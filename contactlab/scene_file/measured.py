@@ -55,7 +55,7 @@ class Measured:
 
     @property
     def varied(self) -> dict[str, Array]:
-        """Those of ``entries`` that differ from impact to impact, the abscissa first."""
+        """Entries that differ from impact to impact, the abscissa first."""
         beside = {name: values for name, values in self.beside.items() if np.ptp(values)}
         return {self.against: self.x, **beside}
 

@@ -109,7 +109,7 @@ def _unit_impact() -> Scene:
 
 
 def _of_restitutions(law: NormalLaw, scene: Scene) -> MotionTable | None:
-    """Return the table of impacts that are similar to those of a few restitutions, or None."""
+    """Return the joined tables of a few restitutions, each of similar impacts, or None."""
     from contactlab.solve.solved_motion import MotionTable
 
     e = restitution_of(law)

@@ -50,7 +50,7 @@ FIGURE_4_CHI = np.unique(
 )
 
 
-#: What each figure shows, for a page or a lecture.
+#: Captions of the figures, for a page or a lecture.
 CAPTIONS = {
     1: "Tangential force over the contact of a sphere (chi = {0:.5g}) for six local angles of "
     "incidence psi1, and the limits of friction. The force changes its sign before the end, as the "

@@ -173,7 +173,7 @@ def least_time(call: Call, longest: float) -> float:
 
 
 def _with_nearer(rows: list[Row]) -> list[Row]:
-    """Return the rows, those of methods that come nearer to the continuum marked as such."""
+    """Return the rows, with marks on methods that come nearer to the continuum."""
     errors: dict[tuple[str, str], list[float]] = {}
     for row in rows:
         if row.ok:

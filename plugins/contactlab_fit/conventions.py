@@ -112,7 +112,7 @@ def ways(text: str, guess: str, numbers: Array, *, club: bool) -> dict[str, str]
 
 
 def readings(found: Mapping[str, Mapping[str, str]]) -> list[Reading]:
-    """Return the readings of all headings, those nearest to the first way of each before others.
+    """Return the readings of all headings, the likeliest first.
 
     Angles of one table are all from the normal, or all from the surface.
     """

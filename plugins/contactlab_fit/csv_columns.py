@@ -43,7 +43,7 @@ ERROR = "_error"
 DEVIATION = re.compile(r"_(e?rror|err|std|sd|se|sem|sigma|uncertainty)$")
 #: Names of angles from the surface, with the name of the angle from the normal.
 FROM_SURFACE = {"angle_from_surface": "angle", "rebound_angle_from_surface": "rebound_angle"}
-#: What to write for a table without headings.
+#: Remedy for a table without headings.
 IN_ORDER = (
     "name all columns in their order by --columns angle_deg,psi2 (columns=[...] in Python), "
     "each with its unit, as in 'speed (m/s)'"

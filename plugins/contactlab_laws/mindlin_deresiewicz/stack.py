@@ -103,7 +103,7 @@ def follow_step(
     force, work = _integrate(at, moved, 0.5 * (before + moved), trial - moved)
     inside = at <= square
     at, moved, limit = at[inside], moved[inside], limit[inside]
-    # Of a run of knots on one side of the limit only the two ends are kept.
+    # Only the two ends of a run of knots on one side of the limit are kept.
     side = np.where(moved == limit, 1, 0) - np.where(moved == -limit, 1, 0)
     run = (side[1:-1] != 0) & (side[:-2] == side[1:-1]) & (side[2:] == side[1:-1])
     ends = np.concatenate([[True], ~run, [True]])[: len(at)]

@@ -64,7 +64,7 @@ def beyond(speed: Array, chi: Array, e: Array) -> Array:
 
 
 def _follow_springs(speed: Array, chi: Array, e: Array) -> Array:
-    """Return psi2 by springs, those together whose chi lie within a factor of two."""
+    """Return psi2 by springs; impacts with chi within a factor of two run together."""
     from contactlab_laws.viscoelastic import batch  # a table needs none of this
     from contactlab_laws.viscoelastic.relaxation import number_of
 

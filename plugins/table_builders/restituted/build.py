@@ -29,7 +29,7 @@ TOLERANCES = (4e-5, 4e-5, 3e-5, 3e-5, 1.35e-4)
 CLOSE = 6.0
 #: Largest error of the loss in shear, in its unit.
 SHEAR_TOLERANCE = 2e-3
-#: Where it is looked for, as shares of a cell along each coordinate: far from nodes.
+#: Places where the error is measured, as shares of a cell along each coordinate: far from nodes.
 BETWEEN = (
     np.array([0.045, 0.31, 0.69, 1.0]),
     np.array([0.0, 0.26, 0.74, 1.0]),
@@ -106,7 +106,7 @@ def solve_shear(psi1: Array, chi: Array, e: float) -> Array:
 
 
 class Quantity(NamedTuple):
-    """What is tabulated: by a function of psi1, chi and e, to errors by region.
+    """A tabulated quantity: a function of psi1, chi and e, and its tolerance by region.
 
     In regions that stick it is over a power of psi1. ``ends`` where psi2 = -e at the border.
     """
