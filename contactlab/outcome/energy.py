@@ -20,8 +20,8 @@ from contactlab.numeric.types import Each, Json, Mask, Real
 from contactlab.outcome.motion import Motion, all_finite
 from contactlab.outcome.plan import PlanColumns
 
-#: Without a declared error, a normal restitution above this is energy from nothing: an explicit
-#: scheme with the fewest steps leaves e - 1 = 3e-3.
+#: A normal restitution above this is energy from nothing where no error of it is declared: an
+#: explicit scheme with the fewest steps leaves e - 1 = 3e-3.
 LARGEST_RESTITUTION = 1.02
 #: Losses below zero, over the energy at the start: rounding, and what steps of both motions leave
 #: where no error is declared. The jump of DMT's force as contact ends left 0.003 in 200 steps, 0.01
@@ -138,7 +138,7 @@ def passes(
 ) -> bool:
     """Return whether ``sound`` and the judges leave one impact as it is: all in a few floats.
 
-    ``bare`` is ``coupled`` of ``sound``. The judges alone judge a change of spin about the normal.
+    ``bare`` is ``coupled`` of ``sound``. A change of the spin about the normal is left to them.
     """
     if motion.status is not Status.SUCCESS or not all_finite(motion, bare):
         return False
@@ -253,7 +253,7 @@ def _spoils(motion: Motion, scene: Scene, bound: Real) -> bool:
 def _mark_imbalance(
     motion: Motion, scene: Scene, bound: Real, alone: Mask, gain: Real
 ) -> tuple[Motion, Real]:
-    """Return ``motion`` with the status of impacts whose books do not balance, and by how much.
+    """Return ``motion`` with the status of each impact whose books do not balance, and how far.
 
     ``alone`` marks impacts whose slip alone friction changed; ``gain`` is what the normal force may
     make of the energy at the start, NaN if no error of it is declared.
