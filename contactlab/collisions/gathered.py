@@ -23,8 +23,7 @@ from contactlab.numeric.names import tell_attributes
 from contactlab.numeric.types import Array, Json, Real
 from contactlab.outcome.answer import Answer, tell_statuses
 from contactlab.outcome.columns import components, json_value
-from contactlab.outcome.energy import EnergyLedger
-from contactlab.outcome.gathering_energy import gathering_ledger
+from contactlab.outcome.energy import EnergyLedger, ledger
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory, Recorder
 from contactlab.outcome.motion import Motion, without_failures
 from contactlab.outcome.sheet import (
@@ -241,10 +240,9 @@ class GatheringResult(Answer):
         The start is the energy of the relative motion at the contacts, the end what their forces
         leave; constant forces do work beside it.
         """
-        ledger = gathering_ledger(self._scene, self._motion)
-        shape = self.gathering.shape
+        books, shape = ledger(self._scene, self._motion), self.gathering.shape
         entries = {
-            field.name: shape_as(np.asarray(getattr(ledger, field.name)), shape)
+            field.name: shape_as(np.asarray(getattr(books, field.name)), shape)
             for field in attrs.fields(EnergyLedger)
         }
         return EnergyLedger(**entries)

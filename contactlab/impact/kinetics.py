@@ -285,6 +285,13 @@ def batch_of(scene: Motions) -> tuple[int, ...]:
     return scene.shape if scene.links is None else scene.shape[:-1]
 
 
+def over_contacts(scene: Motions, each: Any) -> Any:
+    """Return what each gathering has, for each of its contacts; what one contact has as it is."""
+    if scene.links is None:
+        return each
+    return np.broadcast_to(np.asarray(each)[..., None], scene.shape)
+
+
 def slip_axes(scene: Motions) -> tuple[int, ...]:
     """Return the axes of a slip velocity beside the batch's: (2,) in space, else ()."""
     return () if scene.planar else (2,)

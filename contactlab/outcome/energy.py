@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
+from contactlab.impact.links import Links
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import are_zeros, magnitude, of_each, plain, some
+from contactlab.numeric.arrays import are_zeros, choose, magnitude, of_each, plain, some
 from contactlab.numeric.names import tell_attributes
 from contactlab.numeric.types import Each, Json, Mask, Real
 from contactlab.outcome.motion import Motion, all_finite
@@ -92,8 +93,14 @@ class EnergyLedger(Generic[Each]):
 
 
 def ledger(scene: Scene, motion: Motion, checked: Mask = True) -> EnergyLedger:
-    """Return the energy books of ``motion``, in J, from its velocities and its friction work."""
+    """Return the energy books of ``motion``, in J, from its velocities and its friction work.
+
+    Those of a gathering are of all its contacts together, arrays of shape (gatherings,): one moves
+    another (theory §18). Constant forces do work beside them, and a load has energy of its own.
+    """
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
+        if scene.links is not None:
+            return _of_contacts(scene.links, motion)
         start, lost, slip = kinetics.energies(
             scene, motion.normal_velocity, motion.slip_velocity_change
         )
@@ -103,6 +110,22 @@ def ledger(scene: Scene, motion: Motion, checked: Mask = True) -> EnergyLedger:
         losses = motion.friction_work, motion.shear_loss
         start = of_each(start, scene.shape)
         return books((start, lost, slip), losses, motion.exchange, checked)
+
+
+def _of_contacts(links: Links, motion: Motion) -> EnergyLedger:
+    """Return the books of gatherings by the impulses of their contacts."""
+    start, told = links.energy[..., 0], motion.contacts
+    taken = lost = np.full(start.shape, math.nan)
+    if told is not None:
+        mean = links.velocity.copy()
+        mean[..., 0] = 0.5 * (mean[..., 0] + motion.normal_velocity)
+        mean[..., 1:] += 0.5 * np.asarray(motion.slip_velocity_change)
+        # the sum of f q over the instants, from q = q0 - W p + a t
+        late = told.moment - 0.5 * told.pushed[..., None] * told.impulse
+        taken = (told.impulse * mean + links.pull * late).sum(axis=(-1, -2))
+        lost = told.dissipation.sum(axis=-1)
+    losses = np.sum(motion.friction_work, axis=-1), np.sum(motion.shear_loss, axis=-1)
+    return books((start, lost, taken - lost), losses, 0.0, ~links.loaded.any(axis=-1))
 
 
 def books(
@@ -201,14 +224,19 @@ def judge_books(
     touch. If friction changed the normal motion, as in motions of both ``coupled``, or the spin
     about the normal, one of the two may gain what the other loses, and the sum of both energies is
     judged.
-    ``restitution_error`` is declared, NaN if it is not.
+    ``restitution_error`` is declared, NaN if it is not. The contacts of a gathering share what is
+    judged of all of them: ``bound`` is the largest of theirs.
     """
     changed = not are_zeros(motion.exchange) or not are_zeros(motion.normal_spin_change)
     if not (coupled or changed or _spoils(motion, scene, bound)):
         return motion, 0.0
-    alone = (motion.exchange == 0.0) & (motion.normal_spin_change == 0.0) & (not coupled)
-    gain = OF_THE_RATE * restitution_error + ROUNDING
-    return _mark_imbalance(motion, scene, np.maximum(bound, cancels), alone, gain)
+    alone: Mask = False
+    if not coupled:
+        alone = (motion.exchange == 0.0) & (motion.normal_spin_change == 0.0)
+    gain, most = OF_THE_RATE * restitution_error + ROUNDING, np.maximum(bound, cancels)
+    if scene.links is not None:
+        gain, most = (np.max(each, axis=-1) if np.ndim(each) else each for each in (gain, most))
+    return _mark_imbalance(motion, scene, most, alone, gain)
 
 
 def raise_errors(
@@ -260,39 +288,47 @@ def _mark_imbalance(
     """
     coupled = np.logical_not(alone)
     books = ledger(scene, motion)
-    before: Real = kinetics.slip_speed(scene)
-    after: Real = kinetics.size_of(scene, scene.slip_velocity + motion.slip_velocity_change)
     imbalance = magnitude(books.imbalance)
-    start: Real = books.start
+    start = choose(books.checked, books.start, math.inf)  # no judge knows what a load keeps
     if kinetics.turns(scene):  # a spin that friction left has no part in what is judged
         left = kinetics.energies(scene, motion.normal_velocity, motion.slip_velocity_change)
         start = np.where(motion.normal_spin_change == 0.0, left[0], start)[()]  # a number for one
     made: Real = -np.divide(books.normal_loss, start)
     undeclared = np.isnan(gain)
+    # a gain beyond the largest number is none, and one by constant forces no fault
+    gains = coupled & np.logical_not(books.end <= LARGEST_RESTITUTION**2 * books.start)
+    if scene.links is not None:
+        gains &= ~scene.links.pull.any(axis=(-1, -2))
+    slips: list[Judged] = []
+    if some(alone):
+        before: Real = kinetics.slip_speed(scene)
+        after = kinetics.size_of(scene, scene.slip_velocity + motion.slip_velocity_change)
+        slips = [
+            (alone & (after > LARGEST_SLIP * before),
+             "The contact slips {:.4g} times as fast as it met.",
+             lambda: (np.divide(after, before),))
+        ]  # fmt: skip
     rows: list[Judged] = [
         (imbalance > bound * start,
          "Off by {:.2g} of the energy at the start; declared: {:.2g}.",
          lambda: (imbalance / start, bound)),
         (coupled & (made > np.where(undeclared, STEPS_LEAVE, gain)),
          "The normal force makes {:.2g} of the energy at the start.", lambda: (made,)),
-        *gains_of_losses(books, start, bound),
-        (alone & (after > LARGEST_SLIP * before),
-         "The contact slips {:.4g} times as fast as it met.",
-         lambda: (np.divide(after, before),)),
-        # a gain beyond the largest number is none
-        (coupled & np.logical_not(books.end <= LARGEST_RESTITUTION**2 * books.start),
-         "The bodies gain {:.2g} of their energy.",
+        *_gains_of_losses(books, start, bound),
+        *slips,
+        (gains, "The bodies gain {:.2g} of their energy.",
          lambda: (np.nan_to_num(books.end / books.start - 1.0, nan=math.inf),)),
         ((bound == math.inf) & (imbalance > LARGEST_UNDECLARED * start),
          "Off by {:.3g} times the energy at the start.", lambda: (imbalance / start,)),
     ]  # fmt: skip
     for where, sentence, numbers in rows:
         if some(where):
-            motion = motion.failing(where, Status.UNBALANCED, tell_each(sentence, *numbers()))
-    return motion, imbalance / start
+            told = kinetics.over_contacts(scene, tell_each(sentence, *numbers()))
+            motion = motion.failing(kinetics.over_contacts(scene, where), Status.UNBALANCED, told)
+    return motion, kinetics.over_contacts(scene, imbalance / start)
 
 
-def gains_of_losses(books: EnergyLedger, start: Real, bound: Real) -> list[Judged]:
+def _gains_of_losses(books: EnergyLedger, start: Real, bound: Real) -> list[Judged]:
     """Return what is judged of losses that are below zero by more than books may be off."""
     work, shear_loss = np.divide(books.friction_work, start), np.divide(books.shear_loss, start)
     most: Real = np.minimum(bound, STEPS_LEAVE) + ROUNDING

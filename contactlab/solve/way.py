@@ -169,10 +169,6 @@ class Way(Entries, ABC):
         ):
             return columns, motion
         motion = judge_energy(sound(motion, coupled=bare), normal)
-        if scene.links is not None:
-            from contactlab.outcome.gathering_energy import judge_gathering  # few scenes need it
-
-            return columns, judge_gathering(motion, scene, bound, self.cancels)
         motion, off = judge_books(
             motion, scene, bound, self.cancels, coupled=self.both, restitution_error=error
         )
