@@ -162,6 +162,38 @@ def test_friction_that_makes_energy_is_told_of_a_gathering_as_of_an_encounter():
         assert "The friction work is -" in str(told.failures)
 
 
+@attrs.frozen(kw_only=True)
+class Eager(Foam):
+    """Foam without loss; from its second touch on it pushes harder as it parts."""
+
+    damping: float = 0.0
+
+    def start(self, scene):
+        return super().start(scene), np.zeros(scene.shape), np.zeros(scene.shape)
+
+    def respond(self, state, approach, rate):
+        numbers, pressed, parted = state
+        contact, _ = super().respond(numbers, approach, rate)
+        parted = np.maximum(parted, (pressed > 0.0) & (approach <= 0.0))
+        pressed = np.maximum(pressed, approach > 0.0)
+        force = contact.force * (1.0 + 0.3 * parted * (rate < 0.0))
+        force = force if np.ndim(force) else float(force)
+        return contact._replace(force=force, friction_load=force), (numbers, pressed, parted)
+
+
+def test_pressure_that_makes_less_energy_than_friction_takes_is_told_of_a_gathering():
+    """Alone the law is sound; between two heavier balls one touches twice, and some is made."""
+    heavy, light = Sphere(0.02, STEEL), Sphere(0.016, STEEL)
+    bodies = [Body(heavy, velocity=[1, 0, 0], spin=[0, 0, 40.0]), Body(light), Body(heavy)]
+    touches = [Touch(k, k + 1, 0.3, normal=[1, 0, 0], gap=1e-3 * k) for k in (0, 1)]
+    given, simulation = Gathering(bodies, touches), _simulation(Eager())
+    assert collide(given.alone(0), simulation).status is Status.SUCCESS
+    hit = collide(given, simulation)
+    assert hit.status is Status.UNBALANCED
+    assert "The normal force makes 0.085 of the energy at the start." in hit.failures[0]
+    assert collide(given, _simulation(Foam(damping=0.0))).status is Status.SUCCESS
+
+
 @pytest.mark.parametrize("name", STRANGERS)
 def test_one_contact_of_a_strangers_law_is_its_encounter(name):
     simulation, ball = _simulation(STRANGERS[name]), Sphere(0.01, STEEL)
