@@ -11,7 +11,7 @@ import attrs
 import numpy as np
 
 from contactlab.impact.material import A_MATERIAL, Material
-from contactlab.numeric.arrays import change_entries, common_shape
+from contactlab.numeric.arrays import change_entries, common_shape, lock_arrays
 from contactlab.numeric.checks import (
     GYRATION,
     NON_NEGATIVE,
@@ -200,16 +200,22 @@ class Pair:
 
     @classmethod
     def of_numbers(cls, numbers: dict[str, Real]) -> Pair:
-        """Return the pair of numbers by name; round contacts in plain numbers are checked at once.
+        """Return the pair of new numbers by name; those of round contacts are checked at once.
 
         Parameters
         ----------
         numbers : dict of str to float or array
             Arguments of the class.
         """
-        alone = numbers.keys() == ROUND and {*map(type, numbers.values())} == {float}
-        if alone and min(_positive(numbers)) > 0.0 and math.isfinite(sum(numbers.values())):
-            return change_entries(_unit_pair(), **numbers)
+        kinds = {*map(type, numbers.values())} if numbers.keys() == ROUND else None
+        if kinds == {float}:
+            if min(_positive(numbers)) > 0.0 and math.isfinite(sum(numbers.values())):
+                return change_entries(_unit_pair(), **numbers)
+        elif kinds == {np.ndarray} and len({np.shape(each) for each in numbers.values()}) == 1:
+            table = np.array([*_positive(numbers), numbers["dundurs_beta"]])
+            if table.size and table[:-1].min() > 0.0 and np.isfinite(table).all():
+                locked = {name: lock_arrays(each) for name, each in numbers.items()}
+                return change_entries(_unit_pair(), **locked)
         return cls(**numbers)
 
     @property

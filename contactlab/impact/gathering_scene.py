@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from itertools import combinations
 from typing import Any, Protocol
 
 import numpy as np
 
-from contactlab.impact.bodies import Pair
+from contactlab.impact import inverse_mass
+from contactlab.impact.bodies import ROUND, Pair
 from contactlab.impact.body_contact import (
     Frame,
     Side,
@@ -140,22 +142,22 @@ class Assembly:
             loaded=loaded,
             energy=energy_of(W, velocity),
         )
-        numbers = self._numbers()
-        pair = Pair(
-            normal_mass=1.0 / own[..., 0, 0], tangential_mass=1.0 / own[..., 1, 1], **numbers
-        )
-        contacts = (self.count, len(gathering.touches))
-        return Scene(
-            None,
-            None,
-            self.of_contacts("friction_coefficient"),
-            np.broadcast_to(fast, contacts),
-            velocity[..., 1:],
-            pair=pair,
-            inverse_mass=own,
-            planar=False,
-            links=links,
-        )
+        for alone in own[0] if self.count == 1 else (own,):  # plain numbers are faster
+            inverse_mass.check(alone)
+        tangential = 0.5 * (own[..., 1, 1] + own[..., 2, 2])
+        masses = {"normal_mass": 1.0 / own[..., 0, 0], "tangential_mass": 1.0 / tangential}
+        shape = self.count, len(gathering.touches)
+        arrays = {
+            "friction_coefficient": self.of_contacts("friction_coefficient"),
+            "normal_speed": np.array(np.broadcast_to(fast, shape)),
+            "tangential_velocity": velocity[..., 1:],
+            "inverse_mass": own,
+            "_index": np.arange(math.prod(shape)).reshape(shape),
+        }
+        pair = Pair.of_numbers(masses | self._numbers())
+        scene = _unit_scene()._with(**arrays, pair=pair, planar=False, links=links, shape=shape)
+        scene._check_scales()
+        return scene
 
     def _fastest(self, velocity: Array) -> Array:
         """Return v1, the largest rate of approach, shape (count, 1)."""
@@ -257,6 +259,12 @@ class Assembly:
                 for entry, change in changes.items():
                     after[entry][:, moved] += join_components(change, (self.count,))
         return after["velocity"], after["spin"]
+
+
+@cache
+def _unit_scene() -> Scene:
+    """Return an impact whose numbers are 1, without bodies."""
+    return Scene(None, None, 1.0, 1.0, pair=Pair.of_numbers(dict.fromkeys(ROUND, 1.0)))
 
 
 def _sparse(blocks: dict[tuple[int, int], Array], contacts: int) -> Any:
