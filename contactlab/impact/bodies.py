@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from functools import cache
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Generic, overload
@@ -199,12 +200,12 @@ class Pair:
     inverse_spin_mass: Real = quantity("1/kg", rule=NON_NEGATIVE, default=0.0, empty=True)
 
     @classmethod
-    def of_numbers(cls, numbers: dict[str, Real]) -> Pair:
+    def of_numbers(cls, numbers: Mapping[str, Real]) -> Pair:
         """Return the pair of new numbers by name; those of round contacts are checked at once.
 
         Parameters
         ----------
-        numbers : dict of str to float or array
+        numbers : mapping of str to float or array
             Arguments of the class.
         """
         kinds = {*map(type, numbers.values())} if numbers.keys() == ROUND else None

@@ -152,12 +152,15 @@ class Motions:
         """
         if self.inverse_mass is None:
             return self
-        pair = self.pair
+        pair, slip = self.pair, self.slip_velocity
         if not self.planar:
-            along = components(inverse_mass.unit_slip(np.asarray(self.slip_velocity)))
-            mass = 1.0 / inverse_mass.along(rows(self.inverse_mass), *along)
+            x, y = components(np.asarray(slip))
+            slip = hypotenuse(x, y)
+            still = slip == 0.0  # the tangential mass is that along t1 then
+            unit = slip + still
+            mass = 1.0 / inverse_mass.along(rows(self.inverse_mass), (x + still) / unit, y / unit)
             pair = batch.change_entries(pair, tangential_mass=batch.lock_arrays(mass))
-        slip = batch.spread(slip_speed(self) if not self.planar else self.slip_velocity, self.shape)
+        slip = batch.spread(slip, self.shape)
         alone = {"inverse_mass": None, "planar": True, "links": None}
         return self._with(tangential_velocity=slip, pair=pair, **alone)
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import reduce
+from operator import or_
 from typing import Any, Generic, TypeAlias
 
 import attrs
@@ -15,7 +17,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
 from contactlab.impact.links import Links
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import are_zeros, choose, magnitude, of_each, plain, some
+from contactlab.numeric.arrays import are_zeros, choose, greater, magnitude, of_each, plain, some
 from contactlab.numeric.names import tell_attributes
 from contactlab.numeric.types import Each, Json, Mask, Real
 from contactlab.outcome.motion import Motion, all_finite
@@ -227,16 +229,17 @@ def judge_books(
     ``restitution_error`` is declared, NaN if it is not. The contacts of a gathering share what is
     judged of all of them: ``bound`` is the largest of theirs.
     """
-    changed = not are_zeros(motion.exchange) or not are_zeros(motion.normal_spin_change)
-    if not (coupled or changed or _spoils(motion, scene, bound)):
-        return motion, 0.0
     alone: Mask = False
     if not coupled:
+        changed = not are_zeros(motion.exchange) or not are_zeros(motion.normal_spin_change)
+        if not changed and not _spoils(motion, scene, bound):
+            return motion, 0.0
         alone = (motion.exchange == 0.0) & (motion.normal_spin_change == 0.0)
-    gain, most = OF_THE_RATE * restitution_error + ROUNDING, np.maximum(bound, cancels)
-    if scene.links is not None:
-        gain, most = (np.max(each, axis=-1) if np.ndim(each) else each for each in (gain, most))
-    return _mark_imbalance(motion, scene, most, alone, gain)
+    if scene.links is not None:  # what errors laws declare is of one contact
+        bound, restitution_error = np.max(bound, axis=-1) if np.ndim(bound) else bound, math.nan
+    gain = OF_THE_RATE * restitution_error + ROUNDING
+    gain = choose(gain == gain, gain, STEPS_LEAVE)
+    return _mark_imbalance(motion, scene, greater(bound, cancels), alone, gain)
 
 
 def raise_errors(
@@ -284,7 +287,7 @@ def _mark_imbalance(
     """Return ``motion`` with the status of each impact whose books do not balance, and how far.
 
     ``alone`` marks impacts whose slip alone friction changed; ``gain`` is what the normal force may
-    make of the energy at the start, NaN if no error of it is declared.
+    make of the energy at the start.
     """
     coupled = np.logical_not(alone)
     books = ledger(scene, motion)
@@ -293,8 +296,7 @@ def _mark_imbalance(
     if kinetics.turns(scene):  # a spin that friction left has no part in what is judged
         left = kinetics.energies(scene, motion.normal_velocity, motion.slip_velocity_change)
         start = np.where(motion.normal_spin_change == 0.0, left[0], start)[()]  # a number for one
-    made: Real = -np.divide(books.normal_loss, start)
-    undeclared = np.isnan(gain)
+    least: Real = -(np.minimum(bound, STEPS_LEAVE) + ROUNDING) * start
     # a gain beyond the largest number is none, and one by constant forces no fault
     gains = coupled & np.logical_not(books.end <= LARGEST_RESTITUTION**2 * books.start)
     if scene.links is not None:
@@ -312,31 +314,27 @@ def _mark_imbalance(
         (imbalance > bound * start,
          "Off by {:.2g} of the energy at the start; declared: {:.2g}.",
          lambda: (imbalance / start, bound)),
-        (coupled & (made > np.where(undeclared, STEPS_LEAVE, gain)),
-         "The normal force makes {:.2g} of the energy at the start.", lambda: (made,)),
-        *_gains_of_losses(books, start, bound),
+        (coupled & (-books.normal_loss > gain * start),
+         "The normal force makes {:.2g} of the energy at the start.",
+         lambda: (-np.divide(books.normal_loss, start),)),
+        (books.friction_work < least,
+         "The friction work is {:.2g} of the energy at the start.",
+         lambda: (np.divide(books.friction_work, start),)),
+        (books.shear_loss < least,
+         "The loss in shear is {:.2g} of the energy at the start.",
+         lambda: (np.divide(books.shear_loss, start),)),
         *slips,
         (gains, "The bodies gain {:.2g} of their energy.",
          lambda: (np.nan_to_num(books.end / books.start - 1.0, nan=math.inf),)),
         ((bound == math.inf) & (imbalance > LARGEST_UNDECLARED * start),
          "Off by {:.3g} times the energy at the start.", lambda: (imbalance / start,)),
     ]  # fmt: skip
-    for where, sentence, numbers in rows:
+    faulty = reduce(or_, [where for where, *_ in rows])
+    for where, sentence, numbers in rows if some(faulty) else ():
         if some(where):
             told = kinetics.over_contacts(scene, tell_each(sentence, *numbers()))
             motion = motion.failing(kinetics.over_contacts(scene, where), Status.UNBALANCED, told)
     return motion, kinetics.over_contacts(scene, imbalance / start)
-
-
-def _gains_of_losses(books: EnergyLedger, start: Real, bound: Real) -> list[Judged]:
-    """Return what is judged of losses that are below zero by more than books may be off."""
-    work, shear_loss = np.divide(books.friction_work, start), np.divide(books.shear_loss, start)
-    most: Real = np.minimum(bound, STEPS_LEAVE) + ROUNDING
-    words = "The {} is {{:.2g}} of the energy at the start."
-    return [
-        (-work > most, words.format("friction work"), lambda: (work,)),
-        (-shear_loss > most, words.format("loss in shear"), lambda: (shear_loss,)),
-    ]
 
 
 def tell_each(sentence: str, *numbers: Real) -> str | NDArray[np.object_]:

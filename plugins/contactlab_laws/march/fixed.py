@@ -29,7 +29,7 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import choose, every, for_share, greater
+from contactlab.numeric.arrays import choose, every, finite, for_share, greater
 from contactlab.numeric.checks import count, flag
 from contactlab.numeric.types import Real
 from contactlab_laws.march import coupled, coupled_steps
@@ -225,7 +225,8 @@ class FixedSteps(CoupledIntegrator):
         assert isinstance(tangential, CausalTangentialLaw)
         needed = coupled_steps.find_least_steps(scene, normal, tangential)
         taken = self._take_coupled(needed)
-        refused = Status.TOO_FEW_STEPS, refusals(self._steps, needed)
+        words = "" if finite(taken) else refusals(self._steps, needed)
+        refused = Status.TOO_FEW_STEPS, words
         return coupled.march_coupled(
             scene, normal, tangential, taken, observer, refused, usual=self._steps
         )

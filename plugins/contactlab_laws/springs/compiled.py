@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import Any, NamedTuple, Protocol, TypeGuard, TypeVar, overload
 
 import numpy as np
@@ -23,7 +24,7 @@ from contactlab.contracts.law import Law
 from contactlab.contracts.status import Details, Status, Statuses
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import flat, spread, spread_object
+from contactlab.numeric.arrays import flat, lock_arrays, spread, spread_object
 from contactlab.numeric.types import AnyArray, Array, Real
 from contactlab.numeric.vectors import over
 from contactlab_laws.compiled import library
@@ -39,6 +40,8 @@ CONTACT, END, SAMPLE, IMPACT = 17, 22, 7, 7
 #: Gap and pull of one contact alone, and its block of W by rows: starts and columns.
 STILL = (0.0, 0.0, 0.0, 0.0)
 ONE_BLOCK, FIRST_COLUMN = np.array([0, 1], np.intc), np.zeros(1, np.intc)
+#: Contacts of gatherings all of whose blocks are marched: to look for zeros takes longer.
+FEW = 3
 #: Names of the classes that are compiled: to compare names loads none that nobody uses.
 LAW = "contactlab_laws.springs.law.Springs"
 COMPILED = {
@@ -95,7 +98,7 @@ def march(
     contacts = 1 if links is None else scene.shape[-1]
     c = _contacts(scene, normal, bundle.shear_loss if loss else None)
     row, column, block = _blocks(scene, contacts)
-    deepest = np.array(spread(DEEPEST**0.4 * normal.maximum_approach, scene.shape))
+    deepest = np.asarray(spread(DEEPEST**0.4 * normal.maximum_approach, scene.shape))
     numbers = np.empty((3, items))
     for place, each in enumerate((divided.step, divided.leading, divided.most)):
         numbers[place] = _first(each, scene).ravel() if scene.shape else each
@@ -150,29 +153,26 @@ def _motion(
     counters: dict[str, int],
 ) -> TangentialMotion:
     """Return the motion by the ends of contacts, rows as of ``contactlab_march_end``."""
-
-    def column_of(place: int) -> Real:
-        return np.array(end[..., place])
-
-    slip = column_of(1) if scene.planar else np.array(end[..., 1:3])
-    after = rate + column_of(0)
+    columns = np.ascontiguousarray(end.transpose(end.ndim - 1, *range(end.ndim - 1)))
+    slip = columns[1] if scene.planar else np.array(end[..., 1:3])
+    after = rate + columns[0]
     contacts = None
     if scene.links is not None:
         contacts = Contacts(
             impulse=np.array(end[..., 3:6]),
             moment=np.array(end[..., 19:22]),
-            pushed=np.array(end[..., 18]),
-            touches=np.array(end[..., 14]),
-            first=np.array(end[..., 15]),
-            last=np.array(end[..., 16]),
-            dissipation=np.array(end[..., 8]),
+            pushed=columns[18],
+            touches=columns[14],
+            first=columns[15],
+            last=columns[16],
+            dissipation=columns[8],
         )
     statuses, details = told
     return TangentialMotion(
         slip_velocity_change=slip,
-        friction_work=column_of(6),
-        shear_loss=column_of(7),
-        normal=Ends(column_of(9), after, *map(column_of, (10, 11, 12, 8, 13))),
+        friction_work=columns[6],
+        shear_loss=columns[7],
+        normal=Ends(columns[9], after, *columns[10:13], columns[8], columns[13]),
         status=statuses,
         detail=details,
         counters=counters,
@@ -249,11 +249,20 @@ def _blocks(scene: Scene, contacts: int) -> tuple[NDArray[np.intc], NDArray[np.i
         starts, columns = (each.astype(np.intc) for each in (W.indptr, W.indices))
         return starts, columns, np.ascontiguousarray(W.data, dtype=float)
     full = W.reshape(-1, contacts, 3, contacts, 3).swapaxes(2, 3)
+    if contacts <= FEW:
+        return *_all_blocks(contacts), np.ascontiguousarray(full, dtype=float)
     kept = np.asarray(full.any(axis=(0, 3, 4)))
     np.fill_diagonal(kept, True)
     starts = np.concatenate(([0], np.cumsum(kept.sum(axis=1)))).astype(np.intc)
     rows, columns = np.nonzero(kept)
     return starts, columns.astype(np.intc), np.ascontiguousarray(full[:, rows, columns])
+
+
+@cache
+def _all_blocks(contacts: int) -> tuple[NDArray[np.intc], NDArray[np.intc]]:
+    """Return starts and columns of all blocks of a few contacts."""
+    starts = np.arange(0, contacts * (contacts + 1), contacts, dtype=np.intc)
+    return lock_arrays(starts), lock_arrays(np.tile(np.arange(contacts, dtype=np.intc), contacts))
 
 
 def _tell(
