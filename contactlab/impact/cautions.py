@@ -221,8 +221,11 @@ def name_bodies(scene: Scene) -> dict[str, Any]:
     return {name: getattr(scene.encounter, name) for name in ("body", "target")}
 
 
-def unit_slips(scene: Scene) -> list[str]:
-    """Return one sentence for each number of ``scene`` that is probably in another unit."""
+def unit_slips(scene: Scene, *, several: bool = False) -> list[str]:
+    """Return one sentence for each number of ``scene`` that is probably in another unit.
+
+    ``several`` is True of one of the contacts of a gathering.
+    """
     slips = []
     for name, body in name_bodies(scene).items():
         density, modulus = body.material.density, _least(body.material.shear_modulus)
@@ -243,7 +246,8 @@ def unit_slips(scene: Scene) -> list[str]:
             return slips
         from contactlab.impact import body_cautions  # spheres need none of this
 
-        return [*slips, *body_cautions.units_of_bodies(met), *body_cautions.tell_radii(met)]
+        told = body_cautions.tell_radii(met, several=several)
+        return [*slips, *body_cautions.units_of_bodies(met), *told]
     speed = math.hypot(_most(scene.normal_speed), _most(abs(scene.tangential_velocity)))
     spin = _most(abs(scene.spin))
     rim = _most(scene.sphere.radius) * spin

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from functools import reduce
 from operator import or_
-from typing import Any, Generic, TypeAlias
+from typing import TYPE_CHECKING, Any, Generic, TypeAlias
 
 import attrs
 import numpy as np
@@ -15,13 +15,15 @@ from numpy.typing import NDArray
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.status import Status
 from contactlab.impact import kinetics
-from contactlab.impact.links import Links
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import are_zeros, choose, greater, magnitude, of_each, plain, some
 from contactlab.numeric.names import tell_attributes
 from contactlab.numeric.types import Each, Json, Mask, Real
 from contactlab.outcome.motion import Motion, all_finite
 from contactlab.outcome.plan import PlanColumns
+
+if TYPE_CHECKING:  # no single contact needs it
+    from contactlab.impact.links import Links
 
 #: A normal restitution above this is energy from nothing where no error of it is declared: an
 #: explicit scheme with the fewest steps leaves e - 1 = 3e-3.

@@ -13,7 +13,7 @@ from contactlab.contracts.integrator import resolution_for
 from contactlab.contracts.motion import NormalMotion
 from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.restitution import restitution_of
-from contactlab.impact.body_cautions import tell_radii
+from contactlab.impact.body_cautions import contact_vectors
 from contactlab.impact.body_contact import spin_about
 from contactlab.impact.gathering import Gathering
 from contactlab.numeric.types import Array, Mask, Real
@@ -21,6 +21,7 @@ from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import Clause, Clauses, Plan, Words
 from contactlab.registry.law_words import in_words, name_of, tell_assumptions
 from contactlab.solve.coupled import Coupled
+from contactlab.solve.planning import of_books, of_numbers, of_plugins
 from contactlab.solve.way import ask
 
 #: gap/deep from which contacts act one after another (theory §18).
@@ -211,7 +212,11 @@ class _Words:
         yield from self._path()
         yield from self._weights()
         yield from self._turning()
-        yield from self._of_laws()
+        yield from self._of_contacts()
+        if self.motion is not None:
+            for clause in of_books(self.laws, self.scene, self.motion):
+                values = tuple(self._shape_numbers(each[:, 0]) for each in clause.values or ())
+                yield clause._replace(where=self._where(clause.where[:, 0]), values=values)
         for text in tell_assumptions(self.laws.normal, self.laws.tangential):
             yield self._everywhere(text)
 
@@ -306,17 +311,18 @@ class _Words:
                 )
                 yield Clause(text, self._where(turns), (self._shape_numbers(about / self.speed),))
 
-    def _of_laws(self) -> Iterator[Clause]:
-        """Yield the doubts of the laws about each contact; the same of several are one."""
+    def _of_contacts(self) -> Iterator[Clause]:
+        """Yield the doubts about each contact as of an encounter; the same of several are one."""
         said: dict[str, list[int]] = {}
         central = self.scene.central
         for k, encounter in enumerate(self.gathering.assembly.met):
             alone = central.take((slice(None), k))._with(encounter=encounter)
             normal = self.normal.take((slice(None), k))
             laws = self.laws.normal, self.laws.tangential
-            told = [text for law in laws for text in ask(law, law.cautions, alone, normal)]
+            told = of_numbers(self.laws, alone, several=True)
+            told += [text for law in laws for text in ask(law, law.cautions, alone, normal)]
             told += NormalLaw.cautions(self.laws.normal, alone, normal)
-            told += tell_radii(encounter, several=True)
+            told += [*contact_vectors(encounter), *of_plugins(self.laws, alone)]
             for text in dict.fromkeys(told):
                 said.setdefault(text, []).append(k)
         for text, numbers in said.items():

@@ -213,7 +213,7 @@ def _cautions(
     """Return the cautions about numbers of the scene, of the laws, and of the energy books."""
     laws, part, central, known = way.laws, way.scene, way.scene_of_cautions, masks.known
     whole = central if every(known) else central.take(known)
-    said = [*unit_slips(whole), *unlikely(whole), *rigid_bodies(whole)]
+    said = of_numbers(laws, whole)
     of_laws: list[str] = []
     moved = way.motion_of_cautions(motion)
     normal = normal if every(known) else None
@@ -230,28 +230,37 @@ def _cautions(
         stepped = laws.capability.stepped
         if history == "fields" and _has_fields(stepped):
             of_laws += ask(stepped, stepped.path_cautions)
-    able = laws.capability
-    for law, words in (
-        (laws.normal, able.normal_claims),
-        (laws.tangential, able.tangential_claims),
-    ):
-        if "elliptic" not in words:
-            said += of_ellipse(whole, name_of(law))
     own = [text for text in dict.fromkeys(of_laws) if text not in said]
     said += [
         *own,
         *way.own_cautions(bool(own)),
         *tell_assumptions(way.laws.normal, way.laws.tangential),
     ]
-    said += [
-        f"{told.item} ({told.info.distribution})"
-        for told in sound("cautions", str, silent=False, scene=whole, laws=laws)
-    ]
+    said += of_plugins(laws, whole)
     clauses = [Clause(text, known) for text in said]
     if motion is not None:
-        clauses += _books(laws, scene, motion)
+        clauses += of_books(laws, scene, motion)
     vectors = three_numbers(scene)
     return (*clauses, *(Clause(text, np.ones(scene.shape, dtype=bool)) for text in vectors))
+
+
+def of_numbers(laws: Laws, scene: Scene, *, several: bool = False) -> list[str]:
+    """Return what numbers of impacts raise doubts, whatever the laws say of them.
+
+    ``several`` is that of ``unit_slips``.
+    """
+    said = [*unit_slips(scene, several=several), *unlikely(scene), *rigid_bodies(scene)]
+    claimed = laws.capability.normal_claims, laws.capability.tangential_claims
+    for law, words in zip((laws.normal, laws.tangential), claimed, strict=True):
+        if "elliptic" not in words:
+            said += of_ellipse(scene, name_of(law))
+    return said
+
+
+def of_plugins(laws: Laws, scene: Scene) -> list[str]:
+    """Return what plug-ins caution of, each with who says it."""
+    told = sound("cautions", str, silent=False, scene=scene, laws=laws)
+    return [f"{each.item} ({each.info.distribution})" for each in told]
 
 
 def _motion_of(laws: Laws, scene: Scene, motion: Motion | None, where: Mask) -> Any:
@@ -264,12 +273,14 @@ def _motion_of(laws: Laws, scene: Scene, motion: Motion | None, where: Mask) -> 
     )
 
 
-def _books(laws: Laws, scene: Scene, motion: Motion) -> list[Clause]:
+def of_books(laws: Laws, scene: Scene, motion: Motion) -> list[Clause]:
     """Return the caution of an imbalance of the energy books for which no bound is declared."""
     undeclared = laws.tangential.books_bound(scene.central) == math.inf
     if not some(undeclared):
         return []
-    share = np.abs(ledger(scene, motion).relative_imbalance)
+    books = ledger(scene, motion)
+    off = np.where(books.checked, np.abs(books.relative_imbalance), 0.0)
+    share = kinetics.over_contacts(scene, off)
     where = np.asarray(undeclared & (share > BOOKS_OFF) & (motion.status == Status.SUCCESS))
     if not where.any():
         return []

@@ -364,6 +364,29 @@ def test_contacts_that_are_near_are_told():
     assert any("feel one another through the body" in text for text in hit.cautions)
 
 
+LIGHT = attrs.evolve(STEEL, density=7.8)
+FLAT = RigidBody(mass=1.0, inertia=np.eye(3) * 1e-3, material=STEEL, curvature_radius=0.01)
+
+
+@pytest.mark.parametrize(
+    ("body", "friction", "contact", "words"),
+    [
+        (Sphere(0.01, LIGHT), 0.2, (0, 0, 0), "is the density in g/cm³?"),
+        (Sphere(12.0, STEEL), 0.2, (0, 0, 0), "is the length in mm?"),
+        (Sphere(0.01, STEEL), 30.0, (0, 0, 0), "is the number in per cent"),
+        (FLAT, 0.2, (-0.01, 0, 0), "lies behind the centre of mass"),
+    ],
+)
+def test_numbers_of_a_contact_raise_the_doubts_of_its_encounter(body, friction, contact, words):
+    bodies = [Body(body, velocity=[1, 0, 0]), Body(Sphere(0.01, STEEL)), Body(Sphere(0.01, STEEL))]
+    first = Touch(0, 1, friction, normal=[1, 0, 0], contact=contact)
+    given = Gathering(bodies, [first, Touch(1, 2, 0.2, normal=[1, 0, 0])])
+    simulation = laws(12, 50)
+    assert any(words in text for text in collide(given.alone(0), simulation).cautions)
+    (told,) = [str(each) for each in simulation.plan(given).cautions if words in str(each)]
+    assert told.startswith("touches[0]: ")
+
+
 def test_bodies_of_any_shape_between_walls():
     body = RigidBody(mass=1.0, inertia=np.eye(3) * 1e-3, material=STEEL, curvature_radius=0.01)
     wall = HalfSpace(STEEL)

@@ -155,7 +155,7 @@ def _motion(
     """Return the motion by the ends of contacts, rows as of ``contactlab_march_end``."""
     columns = np.ascontiguousarray(end.transpose(end.ndim - 1, *range(end.ndim - 1)))
     slip = columns[1] if scene.planar else np.array(end[..., 1:3])
-    after = rate + columns[0]
+    duration, radius, approach, force, turns = columns[9:14]
     contacts = None
     if scene.links is not None:
         contacts = Contacts(
@@ -172,7 +172,7 @@ def _motion(
         slip_velocity_change=slip,
         friction_work=columns[6],
         shear_loss=columns[7],
-        normal=Ends(columns[9], after, *columns[10:13], columns[8], columns[13]),
+        normal=Ends(duration, rate + columns[0], radius, approach, force, columns[8], turns),
         status=statuses,
         detail=details,
         counters=counters,
