@@ -104,7 +104,7 @@ class Fields:
         values = np.zeros((5, len(motion.impulse), angles, len(radii)))
         theta = _angles(angles)
         if group.spins:
-            theta = (theta + 0.5 * np.pi) * signs(*group.matter.psi1, *group.matter.rim)[1]
+            theta = (theta + 0.5 * np.pi) * signs(group.matter.psi1, group.matter.rim)[1]
         cosine, sine = np.cos(theta)[:, None], np.sin(theta)[:, None]
         for k, (traction, slip, pressure) in enumerate(motion.fields, start=1):
             values[4, k] = pressure

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from contactlab.contracts import NormalMotion
 from contactlab.impact import kinetics
 from contactlab.impact.coupling import coupling_number
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Array, Places, Real
 from contactlab_halfspace.axisymmetric import STEPS, follow_all
 from contactlab_halfspace.instants import Instants, instants, units
 from contactlab_halfspace.march import Followed, follow, join_impacts
-from contactlab_halfspace.modes import modes
+from contactlab_halfspace.modes import Modes, modes
 from contactlab_halfspace.pressure import Answering, Prescribed
 
 #: Steps from one ring to the next of vectors, and of pressure that answers to traction. With more
@@ -25,6 +25,8 @@ VECTORS, ANSWERING = 1, 2
 #: Least steps of an impact over the root of chi, or of chi_w, over half the rings too: with fewer
 #: the swing of the stuck contact is not followed, and the error does not fall as 1/rings².
 SWING = 22.0
+#: Impacts followed together as vectors: as many as fit into the cache.
+TOGETHER = 32
 #: Effective Poisson's ratio below which tractions along one direction stay so.
 ROUNDING = 1e-12
 
@@ -121,7 +123,7 @@ class Group(NamedTuple):
         return instants(self.normal, rings, self.parts)
 
     def follow(self, rings: int, angles: int, *, fields: bool = False) -> Followed:
-        """Return these impacts over ``rings`` rings: together, or as vectors one after the other.
+        """Return these impacts over ``rings`` rings, those together whose modes are the same.
 
         Parameters
         ----------
@@ -133,29 +135,42 @@ class Group(NamedTuple):
         if self.plain:
             numbers = matter.psi1, matter.chi, matter.stiffness
             return follow_all(rings, path, *numbers, fields=fields)
-        each, both = [], self.coupling == "two_way"
-        for item, numbers in enumerate(np.transpose(matter).tolist()):
-            psi1, chi, poisson, drag, lift, stiffness, rim, turning = numbers
-            drag = 0.0 if self.coupling == "none" else drag
+        both, drags = self.coupling == "two_way", self.coupling != "none"
+        alike = np.stack((matter.poisson, matter.drag * drags, matter.lift * both))
+        tables, which = np.unique(alike, axis=1, return_inverse=True)
+        parts, places = [], []
+        for number, (poisson, drag, lift) in enumerate(tables.T.tolist()):
             table = modes(rings, angles, poisson, drag, lift if both else None, self.spins)
-            kind = Answering if both else Prescribed
-            pressure = kind(table, path.take([item]), stiffness)
-            slip, hand = signs(psi1, rim) if self.spins else (1.0, 1.0)
-            motion = follow(pressure, slip * psi1, chi, abs(rim), turning, fields=fields)
-            each.append(_mirror(motion, slip, hand) if self.spins else motion)
-        return join_impacts(each)
+            ours = np.flatnonzero(which.ravel() == number)
+            for first in range(0, ours.size, TOGETHER):
+                some = ours[first : first + TOGETHER]
+                parts.append(self._follow(table, path.take(some), some, fields=fields))
+                places.append(some)
+        order = np.argsort(np.concatenate(places))
+        return join_impacts(parts, order)
+
+    def _follow(self, table: Modes, path: Instants, some: Places, *, fields: bool) -> Followed:
+        """Return some of the impacts, whose modes are the same, followed together as vectors."""
+        psi1, chi, _, _, _, stiffness, rim, turning = (column[some] for column in self.matter)
+        kind = Answering if table.parts == 3 else Prescribed
+        pressure = kind(table, path, stiffness)
+        if not self.spins:
+            return follow(pressure, psi1, chi, rim, turning, fields=fields)
+        slip, hand = signs(psi1, rim)
+        motion = follow(pressure, slip * psi1, chi, np.abs(rim), turning, fields=fields)
+        return _mirror(motion, slip, hand)
 
 
-def signs(psi1: float, rim: float) -> tuple[float, float]:
-    """Return the sign of the slip, and that of the spin seen along it."""
-    slip = -1.0 if psi1 < 0.0 else 1.0
-    return slip, slip * math.copysign(1.0, rim)
+def signs(psi1: Array, rim: Array) -> tuple[Array, Array]:
+    """Return the signs of slips, and those of the spins seen along them."""
+    slip = np.where(psi1 < 0.0, -1.0, 1.0)
+    return slip, slip * np.copysign(1.0, rim)
 
 
-def _mirror(motion: Followed, slip: float, hand: float) -> Followed:
-    """Return an impact followed with positive slip and spin, with those of ``signs``."""
+def _mirror(motion: Followed, slip: Array, hand: Array) -> Followed:
+    """Return impacts followed with positive slip and spin, with those of ``signs``."""
     # Friction is odd, and a mirror along the slip turns the spin: answers are odd to the last bit.
-    parts = np.array((slip, slip * hand))[:, None, None]
+    parts = np.stack((slip, slip * hand))[:, :1, None]
     spin = None if motion.spin is None else slip * hand * motion.spin
     fields = [(traction * parts, slips * parts, p) for traction, slips, p in motion.fields]
     share = slip * motion.share

@@ -1,4 +1,4 @@
-"""One impact on rings and angles: tractions as vectors, with coupling of unlike bodies.
+"""Impacts on rings and angles: tractions as vectors, with coupling of unlike bodies.
 
 Scaled as in ``instants``: lengths by the largest contact radius a, slip by mu a²/(kappa R), forces
 by (4/3) E* a³/R, tangential ones by mu times this, velocities of slip by mu v1/kappa.
@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Array, Places, Real
 from contactlab_halfspace.pressure import Answering, Prescribed
 from contactlab_halfspace.slips import begin_slips, move_slips, rest
 from contactlab_halfspace.splitting import settle
@@ -49,93 +49,99 @@ class Followed(NamedTuple):
     spin: Array | None = None
 
 
-def join_impacts(parts: Sequence[Followed]) -> Followed:
-    """Return impacts one behind the other; fields are those of the first."""
-    columns: list[Any] = [
-        None if column[0] is None else np.concatenate(column, axis=-1)
-        for column in zip(*(part._replace(fields=[]) for part in parts), strict=True)
-    ]
-    return Followed(*columns)._replace(fields=parts[0].fields)
+def join_impacts(parts: Sequence[Followed], order: Places) -> Followed:
+    """Return the impacts of all parts in an order; fields are those of the first."""
+    columns: dict[str, Any] = {}
+    for name, column in zip(Followed._fields, zip(*parts, strict=True), strict=True):
+        if name != "fields" and column[0] is not None:
+            columns[name] = np.concatenate(column, axis=-1)[..., order]
+    return parts[0]._replace(**columns)
 
 
 def follow(
-    pressure: Prescribed, psi1: float, chi: float, w1: float, chi_w: float, *, fields: bool = False
+    pressure: Prescribed, psi1: Array, chi: Array, w1: Array, chi_w: Array, *, fields: bool = False
 ) -> Followed:
-    """Return one impact with slip velocity ``psi1`` at first touch.
+    """Return impacts with slip velocities ``psi1`` at first touch.
 
     Parameters
     ----------
     pressure : Prescribed
-        Pressure of the impact, prescribed or answering.
-    psi1, chi : float
-        Dimensionless angle of incidence, and inertia ratio.
-    w1, chi_w : float
-        Spin about the normal as the speed of the rim, and its inertia ratio; the bodies' rotation
-        in a step takes the moment of the step before.
+        Pressure of the impacts, prescribed or answering.
+    psi1, chi : array, shape (impacts,)
+        Dimensionless angles of incidence, and inertia ratios.
+    w1, chi_w : array, shape (impacts,)
+        Spins about the normal as the speeds of the rim, and their inertia ratios; the bodies'
+        rotation in a step takes the moment of the step before.
     fields : bool
-        Whether to keep tractions, slips and pressures.
+        Whether to keep tractions, slips and pressures; of one impact only.
     """
     # In every step the share of Coulomb's limit that acts is linear in the impulse of the friction
     # load, so that gross slip is exact. The first step has one share throughout. ``early`` and
     # ``late`` are the weights of the shares at its two ends in the displacement of a step.
     table, along = pressure.table, pressure.table.along
-    change, shares, impulse = columns = np.zeros((3, len(pressure.course.inside)))
-    zero = np.zeros((table.parts, table.angles, table.count))
-    slips, traction, memory = begin_slips(zero[:2]), zero, zero
-    displaced, work, residual = 0.0, 0.0, 0.0
-    rotation, slowed, moment = 0.0, 0.0, 0.0
-    touched, kept = False, []
+    change, shares, impulse = np.zeros((3, len(pressure.course.inside), len(psi1)))
+    zero = np.zeros((len(psi1), table.parts, table.angles, table.count))
+    slips, traction, memory = begin_slips(zero[:, :2]), zero, zero
+    displaced, work, residual, rotation, slowed, moment = np.zeros((6, len(psi1)))
+    touched, kept = np.zeros(len(psi1), dtype=bool), []
     for k in range(1, len(change)):
-        duration, gain = float(pressure.duration[k - 1]), 2.0 * chi * pressure.impulse(k)
-        early, late = (1.0 / 3.0, 1.0 / 6.0) if touched else (0.0, 0.5)
+        duration, foreseen = pressure.duration[k - 1], pressure.impulse(k)
+        gain = 2.0 * chi * foreseen
+        early, late = np.where(touched, 1.0 / 3.0, 0.0), np.where(touched, 1.0 / 6.0, 0.5)
         contact, new = pressure.contact(k), np.zeros(zero.shape)
         fixed = displaced + duration * (psi1 + change[k - 1] - gain * shares[k - 1] * early)
-        slowing, share, force, surface = duration * gain * late, shares[k - 1], 0.0, zero[:2]
+        slowing, share, force = duration * gain * late, shares[k - 1].copy(), np.zeros(len(psi1))
         turning: Real = 0.0
-        acted = moment
+        surface, acted = zero[:, :2], moment
         if table.spins:
-            rotation += duration * (w1 + slowed - chi_w * pressure.impulse(k) * moment)
-            turning, moment = table.turn * rotation, 0.0
+            rotation = rotation + duration * (w1 + slowed - chi_w * foreseen * moment)
+            turning, moment = _of_each(rotation) * table.turn, np.zeros(len(psi1))
+        touching = np.zeros((1, 1, 1, table.count), dtype=bool)
         if contact is not None:
-            number = contact.rings
-            resting = rest(slips, duration, vectors=True)
-            target = np.empty((*zero.shape[:2], number))
-            bodies = along * fixed + turning
-            target[:2] = (bodies - contact.dragged - resting)[:, :, :number]
-            target[2:] = contact.depth
-            start = np.zeros(target.shape)
-            known = min(number, memory.shape[2])
-            start[:, :, :known] = memory[:, :, :known]
-            solution = settle(table, contact, target, slowing, start)
-            new[:, :, :number], memory = solution.traction, solution.memory
-            share, force = solution.share, solution.force
-            residual = max(residual, solution.residual)
-            surface = table.displace(solution.traction)[:2] + contact.dragged
+            number, live = contact.rings, contact.touching
+            bodies = _of_each(fixed) * along + turning
+            target = np.empty((*zero.shape[:3], number))[live]
+            resting = rest(slips, _of_each(duration), vectors=True)
+            target[:, :2] = (bodies - contact.dragged - resting)[live, :, :, :number]
+            target[:, 2:] = contact.depth
+            start = np.zeros((*zero.shape[:3], number))
+            known = min(number, memory.shape[3])
+            start[..., :known] = memory[..., :known]
+            memory = start
+            solution = settle(table, contact, target, slowing[live], start[live])
+            new[live, :, :, :number], memory[live] = solution.traction, solution.memory
+            share[live], force[live] = solution.share, solution.force
+            residual[live] = np.maximum(residual[live], solution.residual)
+            surface = table.displace(new[..., :number])[:, :2] + contact.dragged
             if table.spins:
-                moment = table.moment(solution.traction) / force
-            if not touched:
-                shares[k - 1], touched = share, True
+                moment[live] = table.moment(solution.traction) / solution.force
+            begins = live & ~touched
+            shares[k - 1, begins], touched = share[begins], touched | live
+            touching = (np.arange(table.count) < number) & live[:, None, None, None]
         displaced = fixed - slowing * share
-        slip = along * displaced + turning - surface
-        work += table.work(0.5 * (traction + new)[:2], slip - slips.last)
-        touching = np.arange(table.count) < (0 if contact is None else contact.rings)
+        slip = _of_each(displaced) * along + turning - surface
+        work += table.work(0.5 * (traction + new)[:, :2], slip - slips.last)
         if table.parts == 3:
-            touching &= (new[2] > 0.0).any(axis=0)
-        slips = move_slips(slips, slip, duration, touching)
+            touching = touching & (new[:, 2:] > 0.0).any(axis=2, keepdims=True)
+        slips = move_slips(slips, slip, _of_each(duration), touching)
         passed = pressure.advance(k, force)
         impulse[k] = impulse[k - 1] + passed
         change[k] = change[k - 1] - chi * passed * (shares[k - 1] + share)
-        slowed -= chi_w * passed * (acted + moment)
+        slowed = slowed - chi_w * passed * (acted + moment)
         shares[k], traction = share, new
         if fields:
-            pressed = new[2] if table.parts == 3 else np.zeros(table.count)
+            pressed = new[0, 2] if table.parts == 3 else np.zeros(table.count)
             if contact is not None and contact.limit is not None:
-                pressed[: contact.rings] = contact.limit
-            kept.append((new, slip, pressed))
+                pressed[: contact.rings] = contact.limit[0]
+            kept.append((new[0], slip[0], pressed))
     departures: Array | None = None
     if isinstance(pressure, Answering):
-        departures = np.stack((pressure.approach, pressure.rate, pressure.excess))[..., None]
-    works = np.array([6.0 * chi * pressure.stiffness * work])
-    change, shares, impulse = (column[:, None] for column in columns)
-    spin = np.array([slowed]) if table.spins else None
-    return Followed(change, shares, impulse, works, np.array([residual]), kept, departures, spin)
+        departures = np.stack((pressure.approach, pressure.rate, pressure.excess))
+    works = 6.0 * chi * pressure.stiffness * work
+    spin = slowed if table.spins else None
+    return Followed(change, shares, impulse, works, residual, kept, departures, spin)
+
+
+def _of_each(numbers: Array) -> Array:
+    """Return a number of each impact in the shape of its vectors."""
+    return numbers[:, None, None, None]

@@ -28,8 +28,8 @@ SPARE = 0.03
 class Modes:
     """Compliance of rings and angles, and the inverses that a step needs; made once and kept.
 
-    Fields are arrays of shape (parts, angles, rings). The parts are radial and tangential, and
-    the normal part if there are three.
+    Fields are arrays of shape (impacts, parts, angles, rings). The parts are radial and tangential,
+    and the normal part if there are three.
 
     Parameters
     ----------
@@ -91,33 +91,44 @@ class Modes:
         """Return the weights of F, the mean over the angles, shape (2, angles, number)."""
         return self.along * self.basis.force[:number] / self.angles
 
-    def moment(self, traction: Array) -> float:
-        """Return the moment about the normal, over mu a times the force of the largest contact."""
-        edges = self.basis.edges[1 : traction.shape[2] + 1]
-        torsion = (self.to @ traction)[1, 0]
+    def moment(self, traction: Array) -> Array:
+        """Return the moments about the normal, over mu a times the force of the largest contact."""
+        edges = self.basis.edges[1 : traction.shape[3] + 1]
         inner = self.basis.coefficients[1][: len(edges), : len(edges)]
-        return float(0.4 * edges**4 @ inner @ torsion)
+        return np.asarray(self.to[1, 0] @ traction[:, 1] @ (0.4 * edges**4 @ inner))
 
     def displace(self, traction: Array) -> Array:
-        """Return the displacements at all rings, shape (parts, angles, rings)."""
-        number = traction.shape[2]
-        modes = (self.to @ traction).transpose(1, 0, 2).reshape(self.angles + 1, -1, 1)
+        """Return the displacements at all rings, shape (impacts, parts, angles, rings)."""
+        number = traction.shape[3]
         full = self.compliance[:, :, :, :, :number]
         blocks = full.reshape(self.angles + 1, self.parts * self.count, self.parts * number)
-        blocks_out = (blocks @ modes).reshape(self.angles + 1, self.parts, self.count)
-        return np.asarray(self.back @ blocks_out.transpose(1, 0, 2))
+        return self.through(blocks, traction)
 
-    def work(self, traction: Array, slip: Array) -> float:
-        """Return the integral of traction times slip over the contact, over 2 pi."""
+    def through(self, blocks: Array, fields: Array) -> Array:
+        """Return the fields that a matrix for every mode makes of ``fields``.
+
+        Parameters
+        ----------
+        blocks : array, shape (modes, parts * rings of the result, parts * rings)
+        fields : array, shape (impacts, parts, angles, rings)
+        """
+        # A product for each impact: one for all would round an impact by its place in the batch.
+        shape = len(fields), self.angles + 1
+        columns = (self.to @ fields).swapaxes(1, 2).reshape(*shape, -1, 1)
+        made = (blocks @ columns).reshape(*shape, self.parts, -1)
+        return np.asarray(self.back @ made.swapaxes(1, 2))
+
+    def work(self, traction: Array, slip: Array) -> Array:
+        """Return the integrals of traction times slip over the contact, over 2 pi."""
         ours, moved = self.to[:2] @ traction, self.to[:2] @ slip
-        even = int(self.spins)
-        total = moved[even, 0] @ self.basis.work[1] @ ours[even, 0]
-        outer, outer_slip = 0.5 * (ours[0] + ours[1]), 0.5 * (moved[0] + moved[1])
-        inner, inner_slip = 0.5 * (ours[0] - ours[1]), 0.5 * (moved[0] - moved[1])
+        even, works = int(self.spins), self.basis.work
+        pairs = [(moved[:, even, 0] @ works[1], ours[:, even, 0])]
+        outer, outer_slip = 0.5 * (ours[:, 0] + ours[:, 1]), 0.5 * (moved[:, 0] + moved[:, 1])
+        inner, inner_slip = 0.5 * (ours[:, 0] - ours[:, 1]), 0.5 * (moved[:, 0] - moved[:, 1])
         for m in range(1, self.angles + 1):
-            total += outer_slip[m] @ self.basis.work[m + 1] @ outer[m]
-            total += inner_slip[m] @ self.basis.work[m - 1] @ inner[m]
-        return float(total)
+            pairs.append((outer_slip[:, m] @ works[m + 1], outer[:, m]))
+            pairs.append((inner_slip[:, m] @ works[m - 1], inner[:, m]))
+        return np.asarray(sum(np.einsum("nr,nr->n", *pair) for pair in pairs))
 
 
 modes = lru_cache(maxsize=6)(Modes)

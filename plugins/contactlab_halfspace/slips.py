@@ -11,7 +11,9 @@ from contactlab.numeric.types import Array, Real
 
 
 class Slips(NamedTuple):
-    """Slips at the last three instants; the last axis is that of the rings.
+    """Slips at the last three instants: numbers of shape (impacts, rings), or vectors.
+
+    Vectors have the shape (impacts, 2, angles, rings).
 
     Attributes
     ----------
@@ -19,7 +21,7 @@ class Slips(NamedTuple):
         Slips, the latest first.
     steps : tuple of array or float
         Durations of the last two steps, the latest first; 0 if there was none.
-    inside : array of int, shape (rings,)
+    inside : array of int that broadcasts to the slips, or 0
         Instants since which each ring has been in contact.
     """
 
@@ -27,12 +29,12 @@ class Slips(NamedTuple):
     before: Array
     first: Array
     steps: tuple[Real, Real]
-    inside: Array
+    inside: Real
 
 
 def begin_slips(slip: Array) -> Slips:
     """Return the slips at first touch."""
-    return Slips(slip, slip, slip, (0.0, 0.0), np.zeros(slip.shape[-1]))
+    return Slips(slip, slip, slip, (0.0, 0.0), 0.0)
 
 
 def move_slips(slips: Slips, slip: Array, duration: Real, touching: NDArray[np.bool_]) -> Slips:
@@ -57,8 +59,8 @@ def rest(slips: Slips, duration: Real, *, vectors: bool) -> Array:
     Parameters
     ----------
     slips : Slips
-        Past slips; vectors along the first axis if ``vectors`` is True, else numbers.
-    duration : float or array
+        Past slips; vectors along the second axis if ``vectors`` is True, else numbers.
+    duration : array that broadcasts to the slips
         Duration of the next step.
     vectors : bool
         Whether slips are vectors.
@@ -67,8 +69,8 @@ def rest(slips: Slips, duration: Real, *, vectors: bool) -> Array:
     latest, earlier = slips.steps
     with np.errstate(all="ignore"):
         if vectors:
-            size = np.sqrt((increment * increment).sum(axis=0))
-            along = (increment * prior).sum(axis=0) / size
+            size = np.sqrt((increment * increment).sum(axis=1, keepdims=True))
+            along = (increment * prior).sum(axis=1, keepdims=True) / size
         else:
             size, along = np.abs(increment), np.sign(increment) * prior
         ratio = np.divide(duration, latest)
@@ -78,5 +80,5 @@ def rest(slips: Slips, duration: Real, *, vectors: bool) -> Array:
         final = np.maximum(speed - 0.5 * slowing * latest, 0.0)
         until_rest = np.where(slowing > 0.0, 0.5 * (final / size) * (final / slowing), np.inf)
         weight = np.minimum(weight, until_rest)
-        known = (slips.inside > 1) & (np.asarray(earlier) > 0.0) & (size > 0.0)
+        known = (np.asarray(slips.inside) > 1) & (np.asarray(earlier) > 0.0) & (size > 0.0)
     return np.asarray(slips.last + np.where(known, weight, 0.0) * increment)

@@ -58,7 +58,7 @@ def test_cosine_of_twice_the_angle():
     """A hemisphere of traction makes nu/(2 - nu) r²/4 cos 2 theta: .0441176 at nu = .3."""
     table = modes(24, 8, 0.3, 0.0, None)
     traction = table.along * np.sqrt(1.0 - table.points**2)
-    found = table.to[:2] @ table.displace(traction)
+    found = table.to[:2] @ table.displace(traction[None])[0]
     second = 0.5 * (found[0, 1] + found[1, 1])  # of order 1 + 1
     assert second == pytest.approx(0.3 / 1.7 * 0.25 * table.points**2, abs=1e-10)
     uniform = 0.5 * (found[0, 1] - found[1, 1])
@@ -69,7 +69,7 @@ def test_both_mirror_classes_have_the_displacements_of_a_hemisphere():
     """Along x, at the angles of spin about the normal, which are a right angle further."""
     table = modes(24, 8, 0.3, 0.0, None, True)
     angle = (np.arange(8)[:, None] + 0.5) * np.pi / 8 + 0.5 * np.pi
-    radial, around = table.displace(table.along * np.sqrt(1.0 - table.points**2))
+    radial, around = table.displace(table.along[None] * np.sqrt(1.0 - table.points**2))[0]
     ux = radial * np.cos(angle) - around * np.sin(angle)
     uy = radial * np.sin(angle) + around * np.cos(angle)
     second = 0.3 / 1.7 * 0.25 * table.points**2
@@ -80,8 +80,8 @@ def test_both_mirror_classes_have_the_displacements_of_a_hemisphere():
 def test_the_moment_of_torsion_is_its_integral():
     """3 times the integral of q r²: of a pressure all of which rubs in circles 3 pi/16."""
     table = modes(96, 4, 0.3, 0.0, None, True)
-    rubbing = np.zeros((2, 4, table.count))
-    rubbing[1] = np.sqrt(1.0 - table.points**2)
+    rubbing = np.zeros((1, 2, 4, table.count))
+    rubbing[:, 1] = np.sqrt(1.0 - table.points**2)
     assert table.moment(table.points * rubbing) == pytest.approx(0.4, rel=1e-12)
     assert table.moment(rubbing) == pytest.approx(3.0 * np.pi / 16.0, rel=2e-3)
 
@@ -96,8 +96,8 @@ def test_traction_does_as_much_work_on_pressure_as_pressure_on_traction():
     pressed, pulled = np.zeros((2, 3, 4, table.count))
     pressed[2] = smooth * np.einsum("m,maj->aj", draw.normal(size=3), cosines * shapes)
     pulled[:2] = table.along * smooth * draw.normal()
-    by_pressure = table.work(pulled[:2], table.displace(pressed)[:2])
-    lifted = table.displace(pulled)[2]
+    by_pressure = table.work(pulled[None, :2], table.displace(pressed[None])[:, :2])
+    lifted = table.displace(pulled[None])[0, 2]
     zero = table.to[2] @ lifted, table.to[2] @ pressed[2]
     weights = [1.0, *[0.5] * 3]
     by_traction = sum(weights[m] * zero[0][m] @ table.basis.work[m] @ zero[1][m] for m in range(4))
@@ -120,9 +120,9 @@ def test_force_and_work_are_exact():
 def test_cattaneo_and_mindlin(front):
     """F/(mu P) = 1 - c³ at the displacement 1 - c², wherever the front is."""
     table = modes(32, 8, 0.0, 0.0, None)
-    aim = (1.0 - front**2) * np.broadcast_to(table.along, (2, 8, 32))
-    contact = Contact(32, np.sqrt(1.0 - table.points**2), 1.0)
-    found = settle(table, contact, aim, 0.0, np.zeros(aim.shape))
+    aim = (1.0 - front**2) * np.broadcast_to(table.along, (1, 2, 8, 32))
+    contact = Contact(np.array([True]), 32, np.sqrt(1.0 - table.points[None] ** 2), 1.0)
+    found = settle(table, contact, aim, np.zeros(1), np.zeros(aim.shape))
     assert found.share == pytest.approx(1.0 - front**3, abs=1e-3)
     assert found.residual < TOLERANCE
 
@@ -138,8 +138,10 @@ def test_spence(strength, lift):
     front, kappa, rings = brentq(unbalanced, 1e-6, 1.0 - 1e-12), 1.4 / 1.7, 32
     table = modes(rings, 4, 0.3, kappa * strength, None if lift is None else lift * strength)
     path = instants(MOTION, rings, 1)
-    pressure = (Prescribed if lift is None else Answering)(table, path, 1.25)
-    traction, _, pressed = follow(pressure, 0.0, 1.0, 0.0, 0.0, fields=True).fields[rings - 1]
+    pressure = (Prescribed if lift is None else Answering)(table, path, np.array([1.25]))
+    zero = np.zeros(1)
+    motion = follow(pressure, zero, zero + 1.0, zero, zero, fields=True)
+    traction, _, pressed = motion.fields[rings - 1]
     pressed = np.atleast_2d(pressed)[0]
     stuck = (np.hypot(*traction[:2, 0]) < (1.0 - 1e-6) * pressed) & (pressed > 0.0)
     edge = int(np.flatnonzero(stuck)[-1]) + 1
