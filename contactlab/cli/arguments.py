@@ -297,13 +297,39 @@ def items_csv(kind: type, items: Iterable[object], stream: TextIO) -> None:
     csv.writer(stream, lineterminator="\n").writerows([names, *rows])
 
 
-def write_report(path: Path, kind: type, items: Iterable[object], content: object) -> None:
-    """Write the items as CSV, or the content as JSON if the path ends so."""
-    with replace_file(path) as stream:
-        if path.suffix.lower() == ".json":
-            print_json(content, stream)
-        else:
-            items_csv(kind, items, stream)
+def report(
+    arguments: argparse.Namespace,
+    *drawings: tuple[Path | None, Callable[[Path], object]],
+    content: Callable[[], object],
+    to_csv: Callable[[TextIO], object],
+    text: Callable[[], str],
+    interrupted: bool,
+) -> int:
+    """Write ``--out`` and the drawings, print in the form chosen, and return the exit status.
+
+    ``content`` is for JSON; ``to_csv`` writes CSV into a stream.
+    """
+
+    def write(path: Path) -> None:
+        with replace_file(path) as stream:
+            if path.suffix.lower() == ".json":
+                print_json(content(), stream)
+            else:
+                to_csv(stream)
+
+    saved = save(
+        (arguments.out, write),
+        *drawings,
+        progress_wanted=arguments.progress,
+        interrupted=interrupted,
+    )
+    if arguments.json:
+        print_json(content())
+    elif arguments.csv:
+        to_csv(sys.stdout)
+    else:
+        print(text())
+    return saved
 
 
 def add_laws(

@@ -56,21 +56,14 @@ def execute(arguments: argparse.Namespace) -> int:
             time_limit=arguments.time_limit,
             progress=progress,
         )
-    saved = shared.save(
-        (
-            arguments.out,
-            lambda path: shared.write_report(path, Row, benchmark.rows, _content(benchmark)),
-        ),
+    saved = shared.report(
+        arguments,
         (arguments.figure, lambda path: _draw(path, benchmark, **shared.look(arguments))),
-        progress_wanted=arguments.progress,
+        content=lambda: _content(benchmark),
+        to_csv=lambda stream: shared.items_csv(Row, benchmark.rows, stream),
+        text=lambda: markdown(benchmark) if arguments.markdown else _report(benchmark),
         interrupted=benchmark.interrupted,
     )
-    if arguments.json:
-        shared.print_json(_content(benchmark))
-    elif arguments.csv:
-        shared.items_csv(Row, benchmark.rows, sys.stdout)
-    else:
-        print(markdown(benchmark) if arguments.markdown else _report(benchmark))
     return shared.INTERRUPTED if benchmark.interrupted else saved
 
 

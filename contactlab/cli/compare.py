@@ -40,7 +40,6 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.names import nearest
 from contactlab.numeric.types import Json
 from contactlab.outcome.columns import find_quantity, json_value
-from contactlab.outcome.files import replace_file
 from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.registration.names import KINDS, full_name, kind_of
 from contactlab.registry.composition import ON_A_PATH
@@ -123,23 +122,22 @@ def execute(arguments: argparse.Namespace) -> int:
             whole["scores"] = json_value(scores(comparison, compared))
         return whole
 
-    saved = shared.save(
-        (arguments.out, lambda path: _write(path, quantities, comparison, content())),
-        (arguments.figure, lambda path: _draw(path, arguments, comparison)),
+    def text() -> str:
+        if scored:
+            return describe_scores(scores(comparison, compared), comparison, file)
+        return side_by_side.describe(comparison, quantities, file)
+
+    saved = shared.report(
+        arguments,
+        (arguments.figure, lambda path: _draw(path, arguments, comparison, quantities)),
         (arguments.loops, lambda path: _draw_loops(path, arguments, file.scene, compared)),
-        progress_wanted=arguments.progress,
+        content=content,
+        to_csv=lambda stream: write_csv(comparison, quantities, stream),
+        text=text,
         interrupted=comparison.interrupted,
     )
     if arguments.json or arguments.csv or arguments.all:  # these show no plan
         shared.tell_normal_spin(file.scene, *compared.values())
-    if arguments.json:
-        shared.print_json(content())
-    elif arguments.csv:
-        write_csv(comparison, quantities, sys.stdout)
-    elif scored:
-        print(describe_scores(scores(comparison, compared), comparison, file))
-    else:
-        print(side_by_side.describe(comparison, quantities, file))
     failures = comparison.failures()
     for sentence in failures:
         print(f"contactlab compare: failed: {sentence}", file=sys.stderr)
@@ -190,20 +188,15 @@ def _file(arguments: argparse.Namespace, defaults: Mapping[str, float] | None) -
     return SceneFile(path=Path("--psi1, --chi"), scene=scene, varied=varied)
 
 
-def _write(path: Path, quantities: Sequence[str], comparison: Comparison, content: object) -> None:
-    """Write a comparison as CSV, or its content as JSON if the path ends so."""
-    with replace_file(path) as stream:
-        if path.suffix.lower() == ".json":
-            shared.print_json(content, stream)
-        else:
-            write_csv(comparison, quantities, stream)
-
-
-def _draw(path: Path, arguments: argparse.Namespace, comparison: Comparison) -> None:
+def _draw(
+    path: Path,
+    arguments: argparse.Namespace,
+    comparison: Comparison,
+    quantities: Sequence[str],
+) -> None:
     """Draw the comparison, or all laws."""
     from contactlab.cli.drawing import draw_all, draw_comparison  # matplotlib only when drawing
 
-    quantities = arguments.quantity or side_by_side.default_quantities(comparison)
     if arguments.all and comparison.scene.shape:
         draw_all(path, comparison, quantities[0], **shared.look(arguments))
     else:

@@ -57,21 +57,14 @@ def execute(arguments: argparse.Namespace) -> int:
         result = stability(
             chosen, quick=arguments.quick, time_limit=arguments.time_limit, progress=progress
         )
-    saved = shared.save(
-        (
-            arguments.out,
-            lambda path: shared.write_report(path, Outcome, result.outcomes, _content(result)),
-        ),
+    saved = shared.report(
+        arguments,
         (arguments.figure, lambda path: _draw(path, arguments, chosen, result)),
-        progress_wanted=arguments.progress,
+        content=lambda: _content(result),
+        to_csv=lambda stream: shared.items_csv(Outcome, result.outcomes, stream),
+        text=lambda: report(result),
         interrupted=result.interrupted,
     )
-    if arguments.json:
-        shared.print_json(_content(result))
-    elif arguments.csv:
-        shared.items_csv(Outcome, result.outcomes, sys.stdout)
-    else:
-        print(report(result))
     if result.interrupted:
         return shared.INTERRUPTED
     return shared.FAILED if result.failures() else saved
