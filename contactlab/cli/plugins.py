@@ -15,6 +15,7 @@ import inspect
 import sys
 import textwrap
 from collections import Counter
+from collections.abc import Mapping
 from typing import Any
 
 from contactlab.cli.arguments import FAILED, OK, add_progress, add_time_limit, print_json, progress
@@ -123,14 +124,12 @@ def _show_other(info: PluginInfo, *, as_json: bool) -> int:
     """Print the origin and the content of a plug-in that is no law."""
     from contactlab.cli.brought import items, title
 
-    entry: dict[str, Any] = _entry(info)
+    entry = _entry(info)
     names = [] if info.kind == COMMAND else [title(told.item) for told in items(info)]
     if as_json:
         print_json(entry | {"brings": names})
         return OK
-    width = max(map(len, entry))
-    for key, value in entry.items():
-        print(f"{key.ljust(width)}  {value}")
+    _print_entry(entry)
     if names:
         print("\nbrings")
         print(_indent(", ".join(names), "  "), end="")
@@ -141,22 +140,25 @@ def _check_other(info: PluginInfo, *, as_json: bool) -> int:
     """Check the content of a plug-in that is no law."""
     from contactlab.cli.brought import check
 
-    checked = list(check(info))
-    failures = [each for each in checked if each.complaint]
+    rows = [
+        (each.name, "failed" if each.complaint else "passed", each.complaint)
+        for each in check(info)
+    ]
+    good = not any(complaint for *_, complaint in rows)
+    _print_checks(info.name, rows, good, heading=info.kind, as_json=as_json)
+    return OK if good else FAILED
+
+
+def _print_checks(
+    name: str, rows: list[tuple[str, str, str]], good: bool, *, heading: str, as_json: bool
+) -> None:
+    """Print the outcomes of checks: what was checked, its outcome, a sentence."""
     if as_json:
-        checks = [
-            {"check": each.name, "outcome": "failed" if each.complaint else "passed",
-             "sentence": each.complaint}
-            for each in checked
-        ]  # fmt: skip
-        print_json({"name": info.name, "good": not failures, "checks": checks})
+        keys = ("check", "outcome", "sentence")
+        checks = [dict(zip(keys, row, strict=True)) for row in rows]
+        print_json({"name": name, "good": good, "checks": checks})
     else:
-        rows = [
-            (each.name, "failed" if each.complaint else "passed", each.complaint)
-            for each in checked
-        ]
-        print(table((info.kind, "outcome", "sentence"), rows))
-    return FAILED if failures else OK
+        print(table((heading, "outcome", "sentence"), rows))
 
 
 def _show(arguments: argparse.Namespace) -> int:
@@ -166,7 +168,7 @@ def _show(arguments: argparse.Namespace) -> int:
     from contactlab.registry.citations import references
     from contactlab.registry.composition import WAYS
 
-    entry: dict[str, Any] = _entry(REGISTRY.info(arguments.name))
+    entry = _entry(REGISTRY.info(arguments.name))
     law = REGISTRY.law_class(arguments.name)
     entry["summary"] = (inspect.getdoc(law) or "").partition("\n")[0]
     if issubclass(law, Integrator):
@@ -187,10 +189,7 @@ def _show(arguments: argparse.Namespace) -> int:
         details = {"options": [option.to_dict() for option in accepted], "references": sources}
         print_json(entry | details)
         return OK
-    width = max(map(len, entry))
-    for key, value in entry.items():
-        text = (", ".join(value) or "none") if isinstance(value, list) else value
-        print(f"{key.ljust(width)}  {text}")
+    _print_entry(entry)
     print("\noptions" if accepted else "\noptions: none")
     for option in accepted:
         print(f"  {_with_unit(option)}")
@@ -201,6 +200,14 @@ def _show(arguments: argparse.Namespace) -> int:
     for source in sources:
         print(_indent(source, "  "), end="")
     return OK
+
+
+def _print_entry(entry: Mapping[str, object]) -> None:
+    """Print a line for each key of an entry."""
+    width = max(map(len, entry))
+    for key, value in entry.items():
+        text = (", ".join(value) or "none") if isinstance(value, list) else value
+        print(f"{key.ljust(width)}  {text}")
 
 
 def _with_unit(option: Option) -> str:
@@ -228,24 +235,18 @@ def _check(arguments: argparse.Namespace) -> int:
     seconds = SECONDS if arguments.time_limit is None else arguments.time_limit
     with progress(arguments.progress, f"checking {arguments.name}") as counted:
         outcomes = examine(arguments.name, progress=counted, seconds=seconds)
-    failures = [outcome for outcome in outcomes if not outcome.verdict.good]
-    if arguments.json:
-        entries = [
-            {"check": outcome.check, "outcome": outcome.verdict.value, "sentence": outcome.sentence}
-            for outcome in outcomes
-        ]
-        print_json({"name": arguments.name, "good": not failures, "checks": entries})
-    else:
-        rows = [(outcome.check, outcome.verdict.value, outcome.sentence) for outcome in outcomes]
-        print(table(("check", "outcome", "sentence"), rows))
+    good = all(outcome.verdict.good for outcome in outcomes)
+    rows = [(outcome.check, outcome.verdict.value, outcome.sentence) for outcome in outcomes]
+    _print_checks(arguments.name, rows, good, heading="check", as_json=arguments.json)
+    if not arguments.json:
         counts = Counter(outcome.verdict.value for outcome in outcomes)
         print(", ".join(f"{count} {verdict}" for verdict, count in counts.items()))
-        if failures:
+        if not good:
             print(REMEDY)
-    return FAILED if failures else OK
+    return OK if good else FAILED
 
 
-def _entry(info: PluginInfo) -> dict[str, str | bool]:
+def _entry(info: PluginInfo) -> dict[str, Any]:
     """Return the entry of a law in the JSON."""
     names = (
         "name", "known_as", "kind", "distribution", "version", "module", "blocked", "malformed",
