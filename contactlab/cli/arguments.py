@@ -252,14 +252,14 @@ def save(
     return status
 
 
-def make_folder(option: str, folder: Path) -> None:
-    """Make a folder for files, or refuse it before the work."""
+def make_folder(folder: Path) -> None:
+    """Make the folder of ``--out``, or refuse it before the work."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise ValueError(f"{option} {folder}: cannot make the folder: {error.strerror}") from None
+        raise ValueError(f"--out {folder}: cannot make the folder: {error.strerror}") from None
     if why_not := unwritable(folder / "file"):
-        raise ValueError(f"{option} {folder}: {why_not}")
+        raise ValueError(f"--out {folder}: {why_not}")
 
 
 @contextlib.contextmanager
@@ -281,6 +281,11 @@ def tell_normal_spin(scene: Scene, *simulations: Simulation | None) -> None:
         for each in simulations
     )
     _, _, cautions = with_normal_spin(((), (), ()), scene, answered=answered)
+    tell_cautions(cautions)
+
+
+def tell_cautions(cautions: Iterable[object]) -> None:
+    """Print cautions on stderr."""
     for sentence in cautions:
         print(f"contactlab: caution: {sentence}", file=sys.stderr)
 

@@ -54,7 +54,7 @@ def execute(arguments: argparse.Namespace) -> int:
     given = {name: value for name in names if (value := getattr(arguments, name)) is not None}
     ball = SOLID._replace(**given)
     chi = ball.chi  # refuses what no sphere has
-    shared.make_folder("--out", arguments.out)
+    shared.make_folder(arguments.out)
     with shared.progress(arguments.progress, "figures") as progress:
         from contactlab.figures.files import save  # matplotlib only when drawing
         from contactlab.figures.paper import draw_paper

@@ -42,7 +42,7 @@ def contactlab_command(parser: argparse.ArgumentParser) -> Execute:
 def execute(arguments: argparse.Namespace) -> int:
     """Write the files and print their paths."""
     folder: Path = arguments.out
-    shared.make_folder("--out", folder)
+    shared.make_folder(folder)
     source = resources.files("contactlab").joinpath("kernels")
     for name in FILES:
         with replace_file(folder / name) as stream:

@@ -101,8 +101,7 @@ def execute(arguments: argparse.Namespace) -> int:
         interrupted=was_interrupted(result),
     )
     if arguments.csv:  # no plan is shown
-        for sentence in error_cautions(result):
-            print(f"contactlab: caution: {sentence}", file=sys.stderr)
+        shared.tell_cautions(error_cautions(result))
         shared.tell_normal_spin(result.scene, simulation)
         export.print_csv(result, sys.stdout)
     elif not arguments.json:
@@ -146,8 +145,7 @@ def report(
         if collision is not None:
             content["collision"] = collision.vectors()
         shared.print_json(content)
-    for sentence in error_cautions(result) if as_json else ():
-        print(f"contactlab: caution: {sentence}", file=sys.stderr)
+        shared.tell_cautions(error_cautions(result))
     failures = result.failures
     if not failures:
         return shared.OK

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping
-from typing import NamedTuple
 
 import numpy as np
 
@@ -18,14 +17,6 @@ from contactlab.scene_file.laws import beside
 
 #: Most impacts of a range, so that a typing error does not fill the memory.
 MOST_IMPACTS = 1_000_000
-
-
-class Inputs(NamedTuple):
-    """Scene and laws of a subcommand; ``file`` is None for psi1 and chi."""
-
-    file: SceneFile | None
-    scene: Scene
-    simulation: Simulation
 
 
 def add_allow_code(parser: argparse.ArgumentParser) -> None:
@@ -138,11 +129,11 @@ def check_alone(arguments: argparse.Namespace) -> None:
         )
 
 
-def inputs(arguments: argparse.Namespace) -> Inputs:
-    """Return the scene and the simulation of the arguments."""
+def inputs(arguments: argparse.Namespace) -> tuple[SceneFile | None, Scene, Simulation]:
+    """Return file, scene and simulation of the arguments; no file for psi1 and chi."""
     file = read(arguments)
     scene = _scene(arguments, file)
-    return Inputs(file, scene, compose_laws(arguments, file.laws if file else LawChoice()))
+    return file, scene, compose_laws(arguments, file.laws if file else LawChoice())
 
 
 def with_restitution(arguments: argparse.Namespace, choice: LawChoice) -> LawChoice:

@@ -94,15 +94,14 @@ def execute(arguments: argparse.Namespace) -> int:
         return sweep(arguments, file)
     if file and not file.scene.shape:
         raise ValueError(f"{arguments.scene}: holds a single impact; use contactlab run")
-    if _is_folder(arguments.out):
+    if arguments.out is not None and arguments.out.suffix.lower() not in WRITERS:
         return _into_folder(arguments, file)
     scene = file.scene if file else grid(arguments.psi1, arguments.chi)
     simulation = compose_laws(arguments, file.laws if file else LawChoice())
     keep = _folder(arguments.out) if arguments.resume else None
     before = 0 if keep is None else _count_before(keep)
     with (
-        shared.progress(arguments.progress, "impacts") as progress,
-        contextlib.redirect_stdout(sys.stderr),  # plug-ins may print
+        shared.working(arguments.progress, "impacts") as progress,
         _executor(arguments.workers) as executor,
     ):
         result = simulation.sweep(
@@ -125,7 +124,9 @@ def execute(arguments: argparse.Namespace) -> int:
         interrupted=was_interrupted(result),
     )
     if keep is not None and saved == shared.OK and _count_before(keep) == len(result):
-        _clear(keep)
+        from contactlab.runs.kept import remove  # only with --resume
+
+        remove(keep)
         keep = None
     if arguments.csv:
         names, rows = _rows(result)
@@ -163,11 +164,6 @@ def _output(text: str) -> Path:
     return path
 
 
-def _is_folder(out: Path | None) -> bool:
-    """Return whether an output is a folder."""
-    return out is not None and out.suffix.lower() not in WRITERS
-
-
 def _into_folder(arguments: argparse.Namespace, file: SceneFile | None) -> int:
     """Sweep into a folder, and report what is in it; the status is 1 if an impact failed."""
     for name in ("json", "csv", "figure"):
@@ -183,8 +179,7 @@ def _into_folder(arguments: argparse.Namespace, file: SceneFile | None) -> int:
         scenes = Scene.grid_in_parts(chi=entries["chi"], psi1=entries["psi1"])
     simulation = compose_laws(arguments, file.laws if file else LawChoice())
     with (
-        shared.progress(arguments.progress, "impacts") as progress,
-        contextlib.redirect_stdout(sys.stderr),  # plug-ins may print
+        shared.working(arguments.progress, "impacts") as progress,
         _executor(arguments.workers) as executor,
     ):
         folder = simulation.sweep(
@@ -237,13 +232,6 @@ def _count_before(folder: Path) -> int:
     from contactlab.runs.target import count
 
     return count("--resume", folder)
-
-
-def _clear(folder: Path) -> None:
-    """Delete the impacts that were kept."""
-    from contactlab.runs.kept import remove
-
-    remove(folder)
 
 
 def _count_new(result: ImpactResult) -> int:

@@ -60,7 +60,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if folder is not None:
         if not folder.parent.is_dir():
             raise ValueError(f"--out {folder}: there is no folder {folder.parent}")
-        shared.make_folder("--out", folder)
+        shared.make_folder(folder)
     if arguments.measured:
         return measured.execute(arguments)
     findings: list[Finding] = []
