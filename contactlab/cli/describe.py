@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from contactlab.impact.scene import entry_unit
 from contactlab.numeric.types import Array, Real
 from contactlab.outcome.numerical_error import error_cautions
 from contactlab.outcome.result import ImpactResult
@@ -33,8 +32,7 @@ def describe(
     """Return the report of one impact or a sweep, with vectors if ``collision`` is given."""
     cautions = "\n".join(f"caution: {text}" for text in error_cautions(result))
     if result.scene.shape:
-        shown = {name: (entry_unit(name), values) for name, values in varied.items()}
-        body = [table(*sweep_section(result, shown)), largest_imbalance(result)]
+        body = [table(*sweep_section(result, varied)), largest_imbalance(result)]
     else:
         lines = "\n".join(f"{name:24} {words}" for name, words in answer(result))
         body = [table(*section) for section in sections(result)]

@@ -36,7 +36,7 @@ from contactlab.cli.scene import (
 )
 from contactlab.contracts.status import Status, succeeded
 from contactlab.impact.grid import GridParts
-from contactlab.impact.scene import Scene, entry_unit
+from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
 from contactlab.outcome.answer import ImpactError
 from contactlab.outcome.chunk_forms import form_of
@@ -201,8 +201,7 @@ def _print_table(result: ImpactResult, varied: Mapping[str, Real], out: Path | N
     """Print one row for each impact; evenly spread rows if the file ``out`` holds all."""
     most = None if out is None else MOST_ROWS
     if varied:
-        shown = {name: (entry_unit(name), values) for name, values in varied.items()}
-        print(table(*sweep_section(result, shown, most=most)))
+        print(table(*sweep_section(result, varied, most=most)))
     else:
         print(table(*_rows(result, evenly(len(result), most))))
     if most is not None and len(result) > most:

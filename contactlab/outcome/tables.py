@@ -123,15 +123,15 @@ def sections(result: ImpactResult) -> list[Section]:
 
 
 def sweep_section(
-    result: ImpactResult, varied: Mapping[str, tuple[str, Real]], *, most: int | None = None
+    result: ImpactResult, varied: Mapping[str, Real], *, most: int | None = None
 ) -> Section:
-    """Return one row for each impact: entries that vary, by name and unit, quantities, status.
+    """Return one row for each impact: entries that vary, by name, quantities, status.
 
     If ``most`` is not None, at most this number of rows, evenly spread with both ends.
     """
     scene, columns = result.scene, {}
-    for name, (unit, values) in varied.items():
-        columns[heading(name, unit)] = np.broadcast_to(values, scene.shape)
+    for name, values in varied.items():
+        columns[heading(name, entry_unit(name))] = np.broadcast_to(values, scene.shape)
     for column in _show_columns(scene, (*SWEEP_TABLE, *foreign())):
         for part, values in _parts(result, column):
             if part not in varied and not np.isnan(values).all():

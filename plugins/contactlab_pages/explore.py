@@ -16,7 +16,6 @@ from contactlab.impact import shapes
 from contactlab.impact.bodies import HalfSpace
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.material import Material, entry, names
-from contactlab.impact.rigid_body import RigidBody
 from contactlab.numeric.checks import refuse
 from contactlab.runs.simulation import Simulation
 
@@ -43,22 +42,11 @@ TILTS, ROD_FRICTION, RESTITUTIONS = range(76), 0.3, (1.0, 0.8, 0.6, 0.4)
 def rod_table() -> list[list[list[list[float]]]]:
     """Return a rod after a fall at 1 m/s: [e][law][tilt][velocity x, z, spin], in SI."""
     steel, down = Material.named("steel"), np.array([0.0, 0.0, -1.0])
-    rods = [
-        shapes.rod(
-            length=1.0, radius=0.02, material=steel, normal=down,
-            axis=[np.sin(angle), 0.0, np.cos(angle)],
-        )
-        for angle in np.radians(TILTS)
-    ]  # fmt: skip
-    bodies = RigidBody(
-        mass=rods[0][0].mass,
-        inertia=np.stack([body.inertia for body, _ in rods]),
-        material=steel,
-        curvature_radius=0.02,
-    )
-    contacts = np.stack([contact for _, contact in rods])
+    tilt = np.radians(TILTS)
+    axis = np.column_stack((np.sin(tilt), np.zeros(len(tilt)), np.cos(tilt)))
+    rods, contact = shapes.rod(length=1.0, radius=0.02, material=steel, normal=down, axis=axis)
     met = Encounter(
-        bodies, HalfSpace(steel), ROD_FRICTION, normal=down, velocity=down, contact=contacts
+        rods, HalfSpace(steel), ROD_FRICTION, normal=down, velocity=down, contact=contact
     )
     table = []
     for e in RESTITUTIONS:

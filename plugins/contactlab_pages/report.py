@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 
 import contactlab
 from contactlab.figures.files import Panels, as_svg
-from contactlab.impact.scene import Scene, entry_unit
+from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Real
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.tables import (
@@ -84,8 +84,7 @@ def _answer(
         return [html.one_impact(result)]
     if agreements:
         return [*_at_measured_points(agreements, varied), html.pairs(closing(result))]
-    shown = {name: (entry_unit(name), values) for name, values in varied.items()}
-    headings, rows = sweep_section(result, shown, most=ROWS)
+    headings, rows = sweep_section(result, varied, most=ROWS)
     parts = [f"<div class='wide'>{html.table(headings, rows)}</div>"]
     if len(rows) < len(result):
         parts.append(html.paragraph(f"{len(rows)} of {len(result)} impacts are shown."))
@@ -98,7 +97,7 @@ def _at_measured_points(agreements: Sequence[Agreement], varied: Mapping[str, Re
     longest = max(agreements, key=lambda each: len(each.measured.x))
     x, against = longest.measured.x, longest.measured.against
     result = next(iter(longest.results.values()))
-    shown = {name: (entry_unit(name), values) for name, values in longest.measured.varied.items()}
+    shown = longest.measured.varied
     headings, rows = sweep_section(result, shown)
     for each in agreements:
         if np.array_equal(each.measured.x, x):
@@ -175,11 +174,7 @@ def _show_series(comparison: Comparison, agreement: Agreement) -> str:
 
 def _sources(file: SceneFile, simulations: Mapping[str, Simulation]) -> list[str]:
     """Return the citations of the file and of the laws, each once."""
-    laws = [
-        law
-        for simulation in simulations.values()
-        for law in (simulation.normal, simulation.tangential, simulation.integrator)
-    ]
+    laws = [law for simulation in simulations.values() for law in simulation.laws]
     data = [" ".join(file.citation.split())] if file.citation else []
     return list(dict.fromkeys([*data, *(text for law in laws for text in references(law))]))
 
