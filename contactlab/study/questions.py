@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 import attrs
 import numpy as np
 
 from contactlab.collisions.collide import collide
 from contactlab.collisions.gathered import GatheringResult
+from contactlab.contracts import NormalLaw
 from contactlab.contracts.law import claims
 from contactlab.impact import shapes
 from contactlab.impact.bodies import HalfSpace, Sphere
@@ -53,6 +54,8 @@ NO_COURSE = "NO_COURSE"
 #: Multiples of this number spread evenly over [0, 1].
 GOLDEN = 0.6180339887498949
 DOWN = np.array([0.0, 0.0, -1.0])
+#: A body, and the vector to its contact.
+Made: TypeAlias = tuple[RigidBody, Array]
 
 
 @attrs.frozen(kw_only=True)
@@ -143,18 +146,12 @@ def _with_loss(restitution: float) -> list[Question]:
     if restitution < LEAST_FOLLOWED:
         rule = f"must be at least {LEAST_FOLLOWED:g}: below it no springs give a true answer"
         raise refuse("restitution", restitution, rule)
-    rod, egg = _rod(0.5), _egg()
     return [
         _of_spheres(restitution),
-        _in_a_plane("plane with e", restitution),
-        Question(
-            "turning slip with e", "psi2",
-            lambda quick: _bodies(rod, restitution, quick, across=0.3),
-        ),
-        Question(
-            "ellipse with e", "psi2", lambda quick: _bodies(egg, restitution, quick, across=0.3)
-        ),
-    ]  # fmt: skip
+        _of_bodies("plane with e", _rod, restitution),
+        _of_bodies("turning slip with e", _rod, restitution, across=0.3),
+        _of_bodies("ellipse with e", _egg, restitution, across=0.3),
+    ]
 
 
 def _of_spheres(restitution: float) -> Question:
@@ -164,10 +161,15 @@ def _of_spheres(restitution: float) -> Question:
     )
 
 
-def _in_a_plane(name: str, restitution: float) -> Question:
-    """Return the question of a rod in a plane."""
+def _of_bodies(
+    name: str, make: Callable[[], Made], restitution: float, *, across: float = 0.0
+) -> Question:
+    """Return the question of a body that falls; slip keeps its line where ``across`` is 0."""
     return Question(
-        name, "psi2", lambda quick: _bodies(_rod(0.5), restitution, quick, across=0.0), peers=True
+        name,
+        "psi2",
+        lambda quick: _bodies(make(), restitution, quick, across=across),
+        peers=across == 0.0,
     )
 
 
@@ -213,11 +215,7 @@ def _ladders(chosen: Sequence[Method], quick: bool) -> list[Door]:
 
 def _sphere(chosen: Sequence[Method], quick: bool, *, alone: bool) -> Posed:
     """Return elastic spheres; without the doors that are no laws if laws were named ``alone``."""
-    sized = any(
-        need_units(each.simulation({"tangential": {}, "integrator": {}}).laws) for each in chosen
-    )
-    impacts = scenes(quick=quick, sized=sized)
-    exact = Simulation(**composition.exact(EXACT_TOLERANCE))
+    impacts = _scenes_for(chosen, quick)
     others = [] if alone else [
         doors.by_rebound(), *doors.in_c(spheres=True), *doors.limits(formula=True),
         *peers.of_spheres(),
@@ -225,9 +223,33 @@ def _sphere(chosen: Sequence[Method], quick: bool, *, alone: bool) -> Posed:
     return Posed(
         impacts=impacts,
         batch=sweep_scenes,
-        truths=[np.ravel(exact.run(each).check().psi2) for each in impacts],
+        truths=_exact(impacts),
         doors=[*others, *_ladders(chosen, quick)],
     )
+
+
+def _scenes_for(chosen: Sequence[Method], quick: bool) -> list[Scene]:
+    """Return the scenes of the benchmark, in SI if an option of a law has a unit."""
+    plain: Options = {"tangential": {}, "integrator": {}}
+    return scenes(
+        quick=quick, sized=any(need_units(each.simulation(plain).laws) for each in chosen)
+    )
+
+
+def _psi2(simulation: Simulation, impacts: Sequence[Scene]) -> list[Array]:
+    """Return psi2 of each impact, in one axis."""
+    return [np.ravel(simulation.run(each).check().psi2) for each in impacts]
+
+
+def _exact(impacts: Sequence[Scene], normal: NormalLaw | None = None) -> list[Array]:
+    """Return psi2 of each impact by the exact laws."""
+    return _psi2(Simulation(normal=normal, **composition.exact(EXACT_TOLERANCE)), impacts)
+
+
+def _extrapolate(answers: Callable[[int], list[Array]], fine: int) -> list[Array]:
+    """Return the limits of answers by so many springs, whose error falls with the square."""
+    both = zip(answers(fine // 2), answers(fine), strict=True)
+    return [whole + (whole - half) / 3.0 for half, whole in both]
 
 
 def _sphere_with_loss(restitution: float, quick: bool) -> Posed:
@@ -248,14 +270,14 @@ def _sphere_with_loss(restitution: float, quick: bool) -> Posed:
     )
 
 
-def _rod(angle: float, *, radius: float = 0.005) -> tuple[RigidBody, Array]:
-    axis = [math.sin(angle), 0.0, math.cos(angle)]
+def _rod() -> Made:
+    axis = [math.sin(0.5), 0.0, math.cos(0.5)]
     return shapes.rod(
-        length=0.1, radius=radius, material=Material.named("steel"), axis=axis, normal=DOWN
+        length=0.1, radius=0.005, material=Material.named("steel"), axis=axis, normal=DOWN
     )
 
 
-def _egg() -> tuple[RigidBody, Array]:
+def _egg() -> Made:
     axis = np.array([0.5, 0.0, math.sqrt(0.75)])
     axes = np.stack((axis, [0.0, 1.0, 0.0], np.cross(axis, [0.0, 1.0, 0.0])), axis=1)
     return shapes.ellipsoid(
@@ -263,7 +285,7 @@ def _egg() -> tuple[RigidBody, Array]:
     )
 
 
-def _falls(body: tuple[RigidBody, Array], velocity: tuple[Real, Real]) -> Encounter:
+def _falls(body: Made, velocity: tuple[Real, Real]) -> Encounter:
     """Return a fall on steel at 1 m/s; ``velocity`` are its parts along the floor."""
     along, across = np.broadcast_arrays(*velocity)
     return Encounter(
@@ -272,19 +294,16 @@ def _falls(body: tuple[RigidBody, Array], velocity: tuple[Real, Real]) -> Encoun
     )  # fmt: skip
 
 
-def _bodies(
-    body: tuple[RigidBody, Array], restitution: float, quick: bool, *, across: float
-) -> Posed:
+def _bodies(body: Made, restitution: float, quick: bool, *, across: float) -> Posed:
     """Return falls of one body; slip keeps its line where ``across`` is 0, in m/s."""
     alone = (0.1, 0.5) if quick else (-0.6, -0.2, 0.1, 0.3, 0.5, 0.9)
     impacts = [_falls(body, (each, across)) for each in alone]
-    plane, lossy = across == 0.0, restitution < 1.0
-    if plane and not lossy:
-        exact = Simulation(**composition.exact(EXACT_TOLERANCE))
-        truths = [np.ravel(exact.run(each.scene).check().psi2) for each in impacts]
+    plane = across == 0.0
+    falls = [each.scene for each in impacts]
+    if plane and restitution == 1.0:
+        truths, kernel = _exact(falls), doors.in_c(spheres=False)
     else:
-        truths = _by_fine_springs([each.scene for each in impacts], restitution, quick)
-    kernel = doors.in_c(spheres=False) if plane and not lossy else []
+        truths, kernel = _by_fine_springs(falls, restitution, quick), []
     return Posed(
         impacts=impacts,
         batch=lambda size: _falls(body, (np.linspace(-1.0, 1.0, size), across)),
@@ -303,14 +322,7 @@ def _bodies(
 def _by_fine_springs(impacts: Sequence[Scene], restitution: float, quick: bool) -> list[Array]:
     """Return psi2 by many springs, extrapolated as their error falls with the square."""
     fine = TRUE_SPRINGS_QUICK if quick else TRUE_SPRINGS
-    truths = []
-    for scene in impacts:
-        half, whole = (
-            np.ravel(doors.springs_of(each, restitution).run(scene).check().psi2)
-            for each in (fine // 2, fine)
-        )
-        truths.append(whole + (whole - half) / 3.0)
-    return truths
+    return _extrapolate(lambda n: _psi2(doors.springs_of(n, restitution), impacts), fine)
 
 
 def _normal_spin(quick: bool) -> Posed:
@@ -340,7 +352,7 @@ def _normal_spin(quick: bool) -> Posed:
         impacts=impacts,
         batch=lambda size: meet(np.linspace(0.1, 1.0, size), 300.0),
         most=MANY_BODIES,
-        truths=[np.ravel(finest.run(each.scene).check().psi2) for each in impacts],
+        truths=_psi2(finest, [each.scene for each in impacts]),
         doors=[attrs.evolve(doors.by_collide(), name="collide(), without"), *ladder],
     )
 
@@ -373,17 +385,16 @@ def _two_contacts(quick: bool) -> Posed:
             bind=lambda gathering: lambda: collide(gathering, simulation),
         )  # fmt: skip
 
+    def by_springs(count: int) -> list[Array]:
+        return [read(collide(each, doors.springs_of(count))).numbers for each in impacts]
+
     impacts = [meet(each) for each in ((0.3,) if quick else (0.1, 0.3, 0.6, 1.0, 2.0))]
     fine = TRUE_OF_TWO_QUICK if quick else TRUE_OF_TWO
-    half, whole = (
-        [read(collide(each, doors.springs_of(count))).numbers for each in impacts]
-        for count in (fine // 2, fine)
-    )
     return Posed(
         impacts=impacts,
         batch=lambda size: meet(np.linspace(0.1, 2.0, size)),
         most=MANY_BODIES,
-        truths=[fine + (fine - coarse) / 3.0 for coarse, fine in zip(half, whole, strict=True)],
+        truths=_extrapolate(by_springs, fine),
         doors=[
             door("collide()", "", None),
             *(
@@ -406,16 +417,9 @@ def _by_methods(chosen: Sequence[Method], quick: bool) -> Posed:
     own = [each.tangential for each in laws if converges(each.tangential)]
     if own and type(friction) not in map(type, own):
         friction = own[0]
-    truths = []
-    exact = (
-        Simulation(normal=normal, **composition.exact(EXACT_TOLERANCE))
-        if ("elastic_hertz" in claims(normal))
-        else None
-    )
-    for scene in impacts:
-        if exact is not None:
-            truths.append(np.ravel(exact.run(scene).check().psi2))
-            continue
+    elastic = "elastic_hertz" in claims(normal)
+    truths = _exact(impacts, normal) if elastic else []
+    for scene in impacts[len(truths) :]:
         change = reference_for(friction, normal)(scene, friction)
         psi2 = math.nan if change is None else float(scene.psi1) + float(scene.psi(change))
         truths.append(np.array([psi2]))
@@ -429,10 +433,7 @@ def _by_methods(chosen: Sequence[Method], quick: bool) -> Posed:
 
 def _course(chosen: Sequence[Method], quick: bool) -> Posed:
     """Return elastic spheres whose force is asked at every instant."""
-    steel = any(
-        need_units(each.simulation({"tangential": {}, "integrator": {}}).laws) for each in chosen
-    )
-    impacts = scenes(quick=quick, sized=steel)
+    impacts = _scenes_for(chosen, quick)
     exact = Simulation(**composition.exact(EXACT_TOLERANCE))
 
     def read(result: ImpactResult) -> Answer:
@@ -475,10 +476,10 @@ def _forces(result: ImpactResult) -> Array:
 
 _QUESTIONS = (
     _of_spheres(LOSS),
-    _in_a_plane("plane", 1.0),
-    _in_a_plane("plane with e", LOSS),
-    Question("turning slip", "psi2", lambda quick: _bodies(_rod(0.5), 1.0, quick, across=0.3)),
-    Question("ellipse", "psi2", lambda quick: _bodies(_egg(), 1.0, quick, across=0.3)),
+    _of_bodies("plane", _rod, 1.0),
+    _of_bodies("plane with e", _rod, LOSS),
+    _of_bodies("turning slip", _rod, 1.0, across=0.3),
+    _of_bodies("ellipse", _egg, 1.0, across=0.3),
     Question("spin about the normal", "psi2", _normal_spin, needs=SPINNING),
     Question("two contacts", "velocity over 1 m/s", _two_contacts),
 )
