@@ -24,7 +24,7 @@ from contactlab.numeric.checks import refuse
 from contactlab.numeric.names import nearest
 from contactlab.outcome.text_table import WIDTH, table
 from contactlab.registration.hooks import Execute, hookimpl
-from contactlab.registration.installed import by_name
+from contactlab.registration.installed import clashes
 from contactlab.registration.manager import MANAGER, RANK
 from contactlab.registration.names import (
     BLOCK_VARIABLE,
@@ -76,7 +76,7 @@ def execute(arguments: argparse.Namespace) -> int:
     infos = [*laws, *(info for info in MANAGER.installed() if info not in laws)]
     infos = sorted(infos, key=lambda info: (RANK.get(info.kind, len(RANK)), info.name))
     entries = [_entry(info) for info in infos if arguments.kind in (None, info.kind)]
-    for sentence in (*REGISTRY.clashes(), *(clash(each) for each in _rivals())):
+    for sentence in (*clashes(laws), *clashes(MANAGER.installed(COMMAND))):
         print(f"contactlab: warning: {sentence}", file=sys.stderr)
     if arguments.json:
         print_json(entries)
@@ -89,12 +89,6 @@ def execute(arguments: argparse.Namespace) -> int:
             row[0] += f" ({word})" if entry[word] else ""
     print(table(keys, rows))
     return OK
-
-
-def _rivals() -> list[list[PluginInfo]]:
-    """Return the commands that several distributions offer."""
-    usable = [info for info in MANAGER.installed(COMMAND) if info.usable]
-    return [rivals for rivals in by_name(usable).values() if len(rivals) > 1]
 
 
 def _no_law(name: str) -> PluginInfo | None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sized
 from functools import cache
 from typing import Any
 
@@ -63,11 +62,6 @@ def numbers_of(value: Any) -> AnyArray | None:
     return numbers
 
 
-def counts_rows(index: Sized) -> bool:
-    """Return whether an index of pandas counts 0, 1, 2, ...: then position and label are one."""
-    return bool(np.array_equal(np.asarray(index), np.arange(len(index))))
-
-
 def forbid_position(value: Any) -> tuple[str, str] | None:
     """Return why ``value`` must not be read by position, and the remedy; None for other values.
 
@@ -84,7 +78,7 @@ def forbid_position(value: Any) -> tuple[str, str] | None:
     if library == "pandas":
         if value.ndim > 1:
             return OF_COLUMNS
-        if not counts_rows(value.index):
+        if not np.array_equal(np.asarray(value.index), np.arange(len(value.index))):
             rule = "has an index other than 0, 1, 2, ..., but arrays are paired by position here"
             return rule, "give numbers in the order that is meant: .to_numpy()"
     if library in ("jax", "torch") and numbers_of(value) is None:

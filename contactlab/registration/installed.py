@@ -14,6 +14,7 @@ from contactlab.registration.names import (
     PROJECT,
     PluginInfo,
     blocks,
+    clash,
     read_blocks,
     resolve_name,
     same_distribution,
@@ -63,6 +64,12 @@ def by_name(infos: list[PluginInfo]) -> dict[str, list[PluginInfo]]:
     for info in infos:
         offers.setdefault(info.name, []).append(info)
     return offers
+
+
+def clashes(infos: Iterable[PluginInfo]) -> list[str]:
+    """Return a sentence on each name that several distributions offer, with its meaning."""
+    offers = by_name([info for info in infos if info.usable])
+    return [clash(rivals) for rivals in offers.values() if len(rivals) > 1]
 
 
 def describe_offers(found: Iterable[tuple[str, str, str, str]]) -> list[PluginInfo]:

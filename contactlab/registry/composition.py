@@ -165,18 +165,16 @@ def compose(normal: object, tangential: object, integrator: object) -> Laws:
     return _by_names(normal, tangential, integrator, state())
 
 
-@lru_cache(maxsize=256)
-def _by_names(normal: object, tangential: object, integrator: object, _: object) -> Laws:
-    """Return the laws that fit of three names; the plug-ins at hand are part of the key."""
-    return _compose(normal, tangential, integrator)
-
-
-def _compose(normal: object, tangential: object, integrator: object) -> Laws:
+def _compose(normal: object, tangential: object, integrator: object, _: object = None) -> Laws:
     given = {"normal": normal, "tangential": tangential, "integrator": integrator}
     named = {kind: law(kind, value) for kind, value in given.items() if value is not None}
     laws = _complete(named)
     check(laws)
     return laws
+
+
+#: Laws of three names; the plug-ins at hand are part of the key.
+_by_names = lru_cache(maxsize=256)(_compose)
 
 
 def _complete(given: Mapping[str, Law]) -> Laws:

@@ -23,27 +23,22 @@ def unfit(law: type[Law]) -> str | None:
             f"{law.__name__}.api_version is {version!r}, contactlab has {API_VERSION}; if the law "
             f"keeps this contract, write api_version: ClassVar[int] = {API_VERSION} in the class"
         )
-    for name, words in (("offers", law.offers), ("needs", law.needs)):
+    for name, words, entries in (
+        ("offers", law.offers, "words"),
+        ("needs", law.needs, "words, or classes of laws"),
+    ):
         if not isinstance(words, frozenset):
             return (
                 f"{law.__name__}.{name} must be a frozenset, a constant of the class; for words "
                 "that "
                 "depend on options define waives()"
             )
-        if not all(map(_word if name == "offers" else _word_or_law, words)):
-            entries = "words" if name == "offers" else "words, or classes of laws"
+        classes = name == "needs"
+        if not all(isinstance(each, str) or (classes and is_law_class(each)) for each in words):
             return f"{law.__name__}.{name} = {words!r}: must be {entries}"
     if "controls_error" in law.offers and law.resolution != "tolerance":
         return f"{law.__name__} offers 'controls_error': its resolution must be 'tolerance'"
     return _find_exchange(law) if law_kind(law) == "integrator" else None
-
-
-def _word(value: object) -> bool:
-    return isinstance(value, str)
-
-
-def _word_or_law(value: object) -> bool:
-    return _word(value) or is_law_class(value)
 
 
 def is_law_class(value: object) -> TypeGuard[type[Law]]:

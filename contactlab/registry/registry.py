@@ -11,7 +11,7 @@ from contactlab.contracts.law import Law, class_of, law_kind
 from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import nearest
 from contactlab.registration.hooks import PluginError
-from contactlab.registration.installed import PluginWarning, by_name
+from contactlab.registration.installed import PluginWarning
 from contactlab.registration.manager import MANAGER, RANK
 from contactlab.registration.names import (
     BLOCK_VARIABLE,
@@ -95,11 +95,6 @@ class Registry:
         """Return the shortest names of laws that can be made, of one kind or of all kinds."""
         usable = (info for info in self.installed() if info.usable)
         return sorted({info.known_as for info in usable if kind in (None, info.kind)})
-
-    def clashes(self) -> list[str]:
-        """Return a sentence on each name that several distributions offer, with its meaning."""
-        offers = by_name([info for info in self.installed() if info.usable])
-        return [clash(rivals) for rivals in offers.values() if len(rivals) > 1]
 
     def info(self, name: str) -> PluginInfo:
         """Return the installed law that ``name`` means.

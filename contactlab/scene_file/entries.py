@@ -74,11 +74,6 @@ def is_option(name: str) -> bool:
     return kind in KINDS and option.isidentifier()
 
 
-def is_entry(name: str) -> bool:
-    """Return whether a name is that of an entry that may vary."""
-    return name in ENTRIES or PROPERTY.fullmatch(name) is not None or is_option(name)
-
-
 def entry_path(name: str, *, where: str = "") -> str:
     """Return the dotted path of an entry that may vary, from its short or dotted name.
 

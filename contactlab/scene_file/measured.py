@@ -115,13 +115,9 @@ def _means(table: Table) -> dict[str, Any]:
             rows.setdefault(point, []).append((x, value))
     groups = [np.array(rows[point]) for point in sorted(rows)]
     middle = np.array([group.mean(axis=0) for group in groups])
-    half = np.array([_half_range(group) for group in groups])
+    # of a single reading nothing is known
+    half = np.array([0.5 * np.ptp(g, axis=0) if len(g) > 1 else [np.nan] * 2 for g in groups])
     return {"x": middle[:, 0], "values": middle[:, 1], "x_error": half[:, 0], "error": half[:, 1]}
-
-
-def _half_range(group: Array) -> Array:
-    """Return half the range of each column, NaN for a single reading."""
-    return 0.5 * np.ptp(group, axis=0) if len(group) > 1 else np.full(2, np.nan)
 
 
 def _equal_lengths(table: Table, **columns: Real) -> None:

@@ -47,7 +47,8 @@ def read_sweep(content: object, path_of: Callable[..., str] = entry_path) -> Swe
     varied: dict[str, Array] = {}
     paths: dict[str, str] = {}
     entries = {key: table[key] for key in table if key != PRODUCT}
-    for name, value in flatten(entries, leaf=_is_range).items():
+    flat = flatten(entries, leaf=lambda inner: not inner.keys().isdisjoint(RANGE_KEYS))
+    for name, value in flat.items():
         path = path_of(name, where="sweep.")
         if path in paths:
             raise ValueError(f"sweep: {paths[path]} and {name} are the same entry; leave out one")
@@ -65,11 +66,6 @@ def read_sweep(content: object, path_of: Callable[..., str] = entry_path) -> Swe
             f"for every combination of them write {PRODUCT} = true"
         )
     return Sweep(varied, {})
-
-
-def _is_range(value: Mapping[str, object]) -> bool:
-    """Return whether a table is a range of values, not part of a dotted name."""
-    return bool(set(value) & set(RANGE_KEYS))
 
 
 def _values(path: str, value: object) -> Array:

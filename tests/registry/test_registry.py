@@ -10,6 +10,7 @@ import contactlab
 from contactlab import PluginError
 from contactlab.contracts.law import law_kind
 from contactlab.contracts.normal import NormalLaw
+from contactlab.registration.installed import clashes
 from contactlab.registry.registry import KINDS, REGISTRY, PluginWarning
 
 MINE, KNOWN = "tangential.mine", "normal.hertz"
@@ -148,7 +149,7 @@ def test_laws_are_listed_by_kind_and_name_and_described_by_their_distribution(
     kinds = ["normal", "tangential", "integrator"]
     assert names == sorted(names, key=lambda name: (kinds.index(name.partition(".")[0]), name))
     assert registry.names("normal") == [name for name in names if name.startswith("normal.")]
-    assert registry.clashes() == []
+    assert clashes(registry.installed()) == []
     law = registry.info(MINE)
     assert registry.at_hand(registry.info(KNOWN))
     assert not registry.at_hand(law)
@@ -187,11 +188,11 @@ def test_a_distribution_cannot_take_over_a_built_in_name(
     theirs = registry.create("usurper:tangential.coulomb")
     assert registry.describe(theirs) == "coulomb (usurper 1.5)"
     assert {"tangential.coulomb", "usurper:tangential.coulomb"} <= set(registry.names())
-    (sentence,) = registry.clashes()
+    (sentence,) = clashes(registry.installed())
     assert "means 'contactlab:tangential.coulomb'; write 'usurper:tangential.coulomb'" in sentence
     monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "contactlab:tangential.coulomb")
     assert type(registry.create("tangential.coulomb")) is type(theirs)
-    assert registry.clashes() == []
+    assert clashes(registry.installed()) == []
     monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "usurper")
     assert type(registry.create("tangential.coulomb")) is type(ours)
 
