@@ -50,7 +50,9 @@ class Line(NamedTuple):
         self, w: Vectors, move: Vectors, _: Vectors, first: Array, last: Array, decay: Array
     ) -> Vectors:
         """Return w1 = clip(w0 + v h, w0 E - q, w0 E + q), theory §15, E = exp(-``decay``)."""
-        gone, q = relax_limit(first, last, decay)
+        # 1 - E is the share of w that relaxes, q may take its place; the limit moves evenly
+        gone = -np.expm1(-decay)
+        q = first * gone + (last - first) * (1.0 - gone / np.maximum(decay, TINY))
         free = w * (1.0 - gone)
         return np.asarray(np.minimum(np.maximum(w + move, free - q), free + q))
 
@@ -102,12 +104,3 @@ class Plane(NamedTuple):
 
 #: Where springs move.
 Direction: TypeAlias = Line | Plane
-
-
-def relax_limit(first: Array, last: Array, decay: Array) -> tuple[Array, Array]:
-    """Return 1 - E and q of theory §15: the share of w that relaxes, and what may take its place.
-
-    The limit goes evenly from ``first`` to ``last``; ``decay`` is the time of the step over A.
-    """
-    gone = -np.expm1(-decay)
-    return gone, first * gone + (last - first) * (1.0 - gone / np.maximum(decay, TINY))

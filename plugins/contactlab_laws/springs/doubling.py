@@ -161,8 +161,7 @@ def move_springs(
     size, held, merged = fit_grid(
         before.size, before.deflection, radius, unit, spans=spans, cross=cross
     )
-    cell = size / len(held)
-    places = np.multiply.outer(np.arange(len(held)) + 0.5, cell)
+    cell, places = size / len(held), place_springs(size, len(held))
     compression = np.maximum(radius * radius - places * places, 0.0)
     move = part_of_step(places, before.radius, radius) * displacement
     stiffness = modulus * cell  # stiffness of one spring, the same for all
@@ -225,6 +224,12 @@ def fit_grid(
     return size, held, lost
 
 
+def place_springs(size: Array, springs: int) -> Array:
+    """Return the places of springs in the middle of cells, shape (springs, items)."""
+    places: Array = np.multiply.outer(np.arange(springs) + 0.5, size / springs)
+    return places
+
+
 def part_of_step(places: Array, before: Array, after: Array) -> Array | float:
     """Return the part of the step in which each spring moves with the surfaces."""
     # A spring that the growing contact meets moves from then on only.
@@ -244,7 +249,7 @@ def fields(state: State) -> dict[str, Any]:
     """
     size, _, deflection, limit, _ = state.memory
     springs = len(deflection)
-    places = np.multiply.outer(np.arange(springs) + 0.5, size / springs)
+    places = place_springs(size, springs)
 
     def rows(each: Some) -> Some:
         return each.T.reshape(*state.shape, springs)

@@ -18,6 +18,7 @@ from contactlab.numeric.arrays import choose, greater, lesser, plain
 from contactlab.numeric.types import Real
 from contactlab.numeric.vectors import square_root
 from contactlab_laws.march.coupled_steps import deepest
+from contactlab_laws.springs.doubling import SPARE
 
 #: Error of psi2 by springs, over x/n².
 BY_SPRINGS = 0.46
@@ -30,9 +31,6 @@ BY_ENTERING, BY_ENTERING_DOUBLED = 2.5, 5.0
 DOUBLING = 2.0
 #: Slip (psi1, and eta) below which errors fall with it: all of the contact but its edge sticks.
 LITTLE_SLIP = 0.125
-#: What a grid of bodies spans, over the contact of the approach without friction; the grid doubles
-#: where friction presses the contact beyond, and half of the springs remain.
-SPANNED = 1.05
 #: Fewest springs beside a loss of which errors were measured; fewer are noise.
 LEAST_MEASURED = 8
 #: Measured up to these lam, and where friction can jam, abs(lam) > 1, down to this free share.
@@ -115,8 +113,9 @@ def of_bodies(scene: Scene, springs: int, steps: Real, *, shared: bool) -> Error
     depth: Real = deepest(scene)
     free = (lam <= JAMS) | (kinetics.free_share(scene) >= LEAST_FREE)
     known = (lam <= LARGEST_LAM) & free & (x < math.inf) & (psi1 < math.inf)
-    # the contact radius grows as the fifth root of the energy that presses it
-    doublings = np.ceil(np.log2(greater(depth**0.2 / SPANNED, 1.0)))
+    # the contact radius grows as the fifth root of the energy that presses it; the grid doubles
+    # where friction presses the contact beyond, and half of the springs remain
+    doublings = np.ceil(np.log2(greater(depth**0.2 / SPARE, 1.0)))
     by_springs = BY_SPRINGS * x * 4.0**doublings / springs**2
     even = BY_GRADED_STEPS if shared else BY_STEPS
     root = square_root(depth)

@@ -19,14 +19,9 @@ import numpy as np
 from contactlab.numeric.types import Array, Real
 from contactlab_laws.jaeger.step import common
 from contactlab_laws.springs.directions import Direction
-from contactlab_laws.springs.doubling import fit_grid
+from contactlab_laws.springs.doubling import fit_grid, place_springs
 from contactlab_laws.springs.slip_velocity import Slip, share_of_edge, solve_slip
 from contactlab_laws.springs.turning import TINY, Vectors
-
-#: Place of a spring in its cell, and of the relaxation time in a step.
-MIDDLE = 0.5
-#: Part of the step for which springs move that touched before.
-ALL: Real = 1.0
 
 
 class Contact(NamedTuple):
@@ -135,13 +130,18 @@ def move_springs(
 ) -> tuple[Vectors, Array, Array, Memory]:
     """Return force (N), friction work and loss in shear (scaled), and the springs after a step."""
     items = before.deflection.shape[1:]
-    decay = motion.drift / np.maximum(average_times(before.time, contact.time), TINY)  # h/A
-    edge, excess, decay = (_merge(each, items) for each in (contact.edge, contact.excess, decay))
+    between = 0.5 * (before.time + contact.time)
+    time = np.where(before.time > 0.0, between, contact.time)  # 0 before first touch
+    decay = motion.drift / np.maximum(time, TINY)  # h/A
+    edge, excess, decay = (  # one number where all impacts agree
+        np.atleast_1d(common(each, items)) for each in (contact.edge, contact.excess, decay)
+    )
 
     begin = _begin(before, edge, direction, grows=grows, splits=splits)
     first, last = begin.limit, limit_springs(begin.squares, edge, excess)
 
-    w, part = begin.held, ALL
+    w: Vectors = begin.held
+    part: Real = 1.0  # of the step, for which springs move
     if (edge > before.edge).any():
         earlier = before.edge, before.excess
         part, first = enter_springs(begin.squares, first, earlier, edge, excess)
@@ -209,12 +209,6 @@ def square_places(size: Array, springs: int) -> Array:
     return places * places
 
 
-def place_springs(size: Array, springs: int) -> Array:
-    """Return r of springs in the middle of cells, shape (springs, K)."""
-    places: Array = np.multiply.outer(np.arange(springs) + MIDDLE, size / springs)
-    return places
-
-
 def limit_springs(squares: Array, edge: Array, excess: Array) -> Array:
     """Return l of the springs."""
     inside = edge - squares
@@ -235,13 +229,3 @@ def enter_springs(
     part = np.where(entering, inside / np.where(growth > 0.0, growth, 1.0), 1.0)
     part = np.minimum(part, 1.0)
     return part, np.where(entering, excess + (before[1] - excess) * part, least)
-
-
-def average_times(before: Array, after: Array) -> Array:
-    """Return A in the middle of steps, from A at their ends: 0 before first touch."""
-    return np.where(before > 0.0, MIDDLE * (before + after), after)
-
-
-def _merge(value: Array, items: tuple[int, ...]) -> Array:
-    """Return one number where all impacts agree, as an array."""
-    return np.atleast_1d(common(value, items))

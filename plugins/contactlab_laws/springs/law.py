@@ -223,7 +223,7 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
         spanned = normal.maximum_radius
         if shares_loss(self, normal.law):
             return self._viscous(
-                scene, normal, spanned, spanned=viscous.SPARE, grows=True, vectors=vectors
+                scene, normal, spanned, spanned=doubling.SPARE, grows=True, vectors=vectors
             )
         return doubling.start(scene, self.even_springs(), spanned=spanned, vectors=vectors)
 

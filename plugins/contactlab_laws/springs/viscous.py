@@ -20,22 +20,19 @@ from contactlab.numeric.types import Array, Real
 from contactlab_laws.jaeger.bundle import spring_fields
 from contactlab_laws.jaeger.partial_slip import Scales
 from contactlab_laws.springs.directions import Direction, Line, Plane
-from contactlab_laws.springs.doubling import crossing
+from contactlab_laws.springs.doubling import crossing, place_springs
 from contactlab_laws.springs.kelvin_voigt import (
     Contact,
     Memory,
     Motion,
     limit_springs,
     move_springs,
-    place_springs,
 )
 from contactlab_laws.springs.slip_velocity import Slip
 from contactlab_laws.springs.turning import TINY, Some
 
 #: Rates below this times that at first touch say nothing of A: the law is asked at this one.
 SLOWEST = 1e-3
-#: A grid that spans a contact known before spans this much more.
-SPARE = 1.05
 #: 1.5 in P = b³ + 1.5 j b, the force of springs of limit b² - r² + j (theory §15).
 OF_EXCESS = 1.5
 #: Part of the time for which a force acts that lies in the drift before it, and part of a drift
@@ -86,9 +83,9 @@ def start(
     radius: Real,
     *,
     shear_loss: float,
-    spanned: float | None = 1.0,
-    grows: bool = False,
-    vectors: bool = False,
+    spanned: float | None,
+    grows: bool,
+    vectors: bool,
 ) -> State:
     """Return contacts without traction, lengths in units of ``radius`` in m.
 

@@ -168,8 +168,7 @@ def rebound_with_loss(
     slow = xp.where((p > 0.0) & (p < 1.0), p, 1.0)
     dead = xp.where(x < 0.5, rest * slow ** (1.0 / rest), 0.0)
     psi2 = xp.where(e <= 0.0, xp.where(p > 0.0, dead, 0.0), psi2)
-    psi2 = xp.where(psi2 < full, full, psi2)
-    psi2 = xp.where(psi2 > p, p, xp.where(psi2 < -p, -p, psi2))
+    psi2 = _bounded(xp, psi2, p, full)
     end = border(x, e)
     psi2 = xp.where(p < xp.where(end > 1.0, end, 1.0), psi2, full)
     return xp.where(inside, sign * psi2, xp.nan)
@@ -238,9 +237,13 @@ def _elastic(
     count = elastic.NODES
     g = _sum(xp, constants["terms"], patch, (count, count), local, p.shape, with_slopes)
     psi2 = p * (measure * g - 1.0)
+    return xp.where(through, full, _bounded(xp, psi2, p, full))
+
+
+def _bounded(xp: Library, psi2: Traced, p: Traced, full: Traced) -> Traced:
+    """Return psi2 not below that of ``full`` slip, and within plus and minus psi1 = p."""
     psi2 = xp.where(psi2 < full, full, psi2)
-    psi2 = xp.where(psi2 > p, p, xp.where(psi2 < -p, -p, psi2))
-    return xp.where(through, full, psi2)
+    return xp.where(psi2 > p, p, xp.where(psi2 < -p, -p, psi2))
 
 
 def _partial(
@@ -332,9 +335,7 @@ def _horner(
 ) -> Traced:
     """Return polynomials of local coordinates by Horner's rule; terms begin at ``first``."""
     count, *others = counts
-    width = 1
-    for other in others:
-        width *= other
+    width = math.prod(others)
     total: Traced | None = None
     for power in range(count - 1, -1, -1):
         start = first + power * width
