@@ -30,8 +30,7 @@ def unfit(law: type[Law]) -> str | None:
         if not isinstance(words, frozenset):
             return (
                 f"{law.__name__}.{name} must be a frozenset, a constant of the class; for words "
-                "that "
-                "depend on options define waives()"
+                "that depend on options define waives()"
             )
         classes = name == "needs"
         if not all(isinstance(each, str) or (classes and is_law_class(each)) for each in words):

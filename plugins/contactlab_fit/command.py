@@ -244,8 +244,7 @@ def _files(names: list[str], film: Path | None) -> tuple[Path | SceneFile, Path]
     if len(scenes) != 1 or len(tables) > 1:
         raise ValueError(
             f"FILE = {' '.join(names)}: give DATA.csv with the measured impacts and SCENE.toml "
-            "with "
-            "the bodies, or a SCENE.toml with measured values"
+            "with the bodies, or a SCENE.toml with measured values"
         )
     path = Path(scenes[0])
     if film is not None:

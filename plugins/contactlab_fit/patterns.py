@@ -146,8 +146,7 @@ def _changes(
     if same:
         why = (
             f"{ORDER} (also that of {same[0]}): has the set-up changed, or do the laws fail in "
-            "part "
-            "of the range?"
+            "part of the range?"
         )
     rows = np.concatenate([np.flatnonzero(np.isfinite(v)) for v in problem.measured.values()])
     lasts = np.arange(SPARE, int(rows.max()) + 2 - SPARE)

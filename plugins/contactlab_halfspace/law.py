@@ -15,8 +15,7 @@ from contactlab.numeric.types import Real
 from contactlab_halfspace.groups import Options
 from contactlab_halfspace.whole_impacts import own_answers
 from contactlab_laws.differences import table as differences
-from contactlab_laws.jaeger.gross_slip import gross_slip
-from contactlab_laws.jaeger.partial_slip import hemisphere
+from contactlab_laws.jaeger.partial_slip import gross_slip, hemisphere
 
 #: Energy that one-way coupling loses by nature, over that at the start and Lambda²; at most at the
 #: largest Lambda that was measured.

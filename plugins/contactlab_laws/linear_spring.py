@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import attrs
 import numpy as np
 
 from contactlab.contracts import (
-    CausalTangentialLaw,
     Increment,
     NormalContact,
     NormalMotion,
@@ -19,14 +17,12 @@ from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import spread
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, quantity
 from contactlab.numeric.types import Real
-from contactlab_laws.mindlin import (
-    DAMPED,
-    PARTIAL_SLIP,
+from contactlab_laws.one_spring import (
     InPlane,
+    OneSpring,
     along,
     critical_share,
     cut,
-    in_plane,
     move_in_plane,
     with_dashpot,
 )
@@ -54,7 +50,7 @@ class State(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class LinearSpring(CausalTangentialLaw):
+class LinearSpring(OneSpring):
     """F = k_t u + c v_x within mu L: spring and dashpot, in series with a slider.
 
     The stiffness is the same from first touch to separation, k_t = ``stiffness_ratio`` times
@@ -75,7 +71,6 @@ class LinearSpring(CausalTangentialLaw):
     """
 
     api_version: ClassVar[int] = 2
-    offers: ClassVar[frozenset[str]] = frozenset({"vectors"})
 
     stiffness_ratio: float | None = quantity("1", rule=POSITIVE, default=None)
     damping: float = quantity("1", rule=NON_NEGATIVE, default=0.0)
@@ -84,22 +79,12 @@ class LinearSpring(CausalTangentialLaw):
         """Return the bound at the fewest steps; without a dashpot the books close to rounding."""
         return COARSEST_BOOKS
 
-    def _list_failures(self) -> Mapping[str, str]:
-        """Return the checks that a dashpot fails, if there is one."""
-        return DAMPED if self.damping else {}
-
-    expected_failures: ClassVar[Any] = property(_list_failures)
-
     def stiffness(self, scene: Scene, normal: NormalMotion) -> Real:
         """Return k_t in N/m."""
         pair = scene.pair
         ratio = pair.stiffness_ratio if self.stiffness_ratio is None else self.stiffness_ratio
         frequency = scene.normal_speed / normal.maximum_approach
         return ratio * pair.normal_mass * frequency * frequency
-
-    def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
-        """Return the cautions of every law, and one on partial slip."""
-        return (*super().cautions(scene, normal), PARTIAL_SLIP)
 
     def path_cautions(self) -> tuple[str, ...]:
         """Return the caution of one spring for the whole contact."""
@@ -117,12 +102,6 @@ class LinearSpring(CausalTangentialLaw):
             zero,
             zero,
         )
-
-    def begin(
-        self, scene: Scene, normal: NormalMotion, *, vectors: bool = False
-    ) -> State | InPlane:
-        """Return a spring at rest, whose displacement is a vector if ``vectors``."""
-        return in_plane(self, scene, normal) if vectors else self.start(scene, normal)
 
     def advance(
         self,

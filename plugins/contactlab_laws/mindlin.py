@@ -3,27 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, NamedTuple, TypeAlias, overload
+from typing import ClassVar, NamedTuple
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
 
 from contactlab.contracts import (
-    CausalTangentialLaw,
     Increment,
     NormalContact,
     NormalMotion,
-    SteppedTangentialLaw,
     TangentialResponse,
     WholeImpact,
     sliding,
 )
 from contactlab.impact.cautions import OUTSIDE
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import shape_as, spread
+from contactlab.numeric.arrays import spread
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, choice, quantity
-from contactlab.numeric.types import Array, Mask, Real
+from contactlab.numeric.types import Mask, Real
+from contactlab_laws.one_spring import (
+    InPlane,
+    OneSpring,
+    along,
+    critical_share,
+    cut,
+    move_in_plane,
+    with_dashpot,
+)
 
 FORMS = ("displacement", "displacement_rescaled", "increment", "increment_rescaled")
 
@@ -58,15 +64,6 @@ FAILURES: Mapping[str, Mapping[str, str]] = {
 SOFTER = frozenset({"impact_bounds"})
 #: Checks that pass with a dashpot of 0.2 and more, which absorbs the energy that the spring makes.
 TAKEN = frozenset({"closed_cycles", "random_paths", "partial_unloading", "impact_bounds"})
-#: Further checks that a law with a dashpot fails.
-DAMPED = {
-    "turning_points": "the force of a dashpot depends on the velocity, not on the path alone",
-    "stiffness": "the force of a dashpot does not depend on the displacement",
-}
-PARTIAL_SLIP = (
-    "model: one spring, so the whole contact slips at once. psi2 of solid spheres is off by up to "
-    "0.7."
-)
 PATH = (
     "model: one spring. Along random paths the force is off by up to 0.5 mu N, and load cycles at "
     "a held displacement change the force. springs do neither."
@@ -94,81 +91,6 @@ DAMPED_GAIN = {
 }
 
 
-def critical_share(share: float, stiffness: Real, mass: Real) -> Real:
-    """Return 2 share sqrt(stiffness mass), the constant of a dashpot in N s/m."""
-    return 2.0 * share * np.sqrt(stiffness * mass)
-
-
-def with_dashpot(
-    spring: Real, constant: Real, increment: Increment, tangential_mass: Real, limit: Real
-) -> Real:
-    """Return the force of a spring and a dashpot in N, cut off at the limit mu L."""
-    # The dashpot acts on the velocity in the middle of the time in which the force acts. The force
-    # itself changes that velocity: solving for it keeps the march of second order.
-    slowing = 0.5 * increment.duration / tangential_mass
-    force = (spring + constant * increment.velocity) / (1.0 + constant * slowing)
-    return cut(force, limit)
-
-
-#: Displacements, velocities or forces: numbers along a line, or complex ones of a plane.
-Along: TypeAlias = Real | NDArray[np.complex128]
-
-
-class InPlane(NamedTuple):
-    """A law's state whose displacements and forces are vectors, held as complex numbers."""
-
-    own: object
-    shape: tuple[int, ...]
-
-
-def in_plane(law: SteppedTangentialLaw, scene: Scene, normal: NormalMotion) -> InPlane:
-    """Return the state at first touch of a law of one spring, for vectors."""
-    own, zero = law.start(scene, normal), np.zeros(scene.shape or (1,), dtype=complex)
-    names = {"held", "spring", "force"} & set(own._fields)
-    return InPlane(own._replace(**dict.fromkeys(names, zero)), scene.shape)
-
-
-def move_in_plane(
-    law: SteppedTangentialLaw,
-    state: InPlane,
-    increment: Increment,
-    before: NormalContact,
-    after: NormalContact,
-) -> tuple[TangentialResponse, InPlane]:
-    """Return the answer to a step whose displacement and velocity have the shape (..., 2)."""
-    shape = state.shape
-    numbers = (np.asarray(each) for each in (increment.displacement, increment.velocity))
-    moved, velocity = ((each[..., 0] + 1j * each[..., 1]).reshape(shape or 1) for each in numbers)
-    step = increment._replace(displacement=moved, velocity=velocity)  # type: ignore[arg-type]
-    response, own = law.advance(state.own, step, before, after)
-    force = np.stack((response.force.real, response.force.imag), axis=-1).reshape(*shape, 2)
-    work = np.asarray(response.friction_work)
-    return TangentialResponse(force, shape_as(work, shape)), InPlane(own, shape)
-
-
-@overload
-def along(force: Real, slip: Real) -> Real: ...
-@overload
-def along(force: NDArray[np.complex128], slip: NDArray[np.complex128]) -> Array: ...
-def along(force: Along, slip: Along) -> object:
-    """Return force times slip: the product, or the scalar product of complex numbers."""
-    if isinstance(slip, np.ndarray) and slip.dtype.kind == "c":
-        return (np.conj(force) * slip).real
-    return force * slip
-
-
-@overload
-def cut(value: Real, limit: Real) -> Real: ...
-@overload
-def cut(value: NDArray[np.complex128], limit: Real) -> NDArray[np.complex128]: ...
-def cut(value: Along, limit: Real) -> object:
-    """Return ``value`` within plus and minus ``limit``; of a complex number the length."""
-    if isinstance(value, np.ndarray) and value.dtype.kind == "c":
-        size = np.abs(value)
-        return value * (np.minimum(size, limit) / (size + (size == 0.0)))
-    return np.minimum(np.maximum(value, -limit), limit)
-
-
 class State(NamedTuple):
     """Twice G* in Pa, masses in kg, the friction coefficient, and the memory of the spring."""
 
@@ -182,7 +104,7 @@ class State(NamedTuple):
 
 
 @attrs.frozen(kw_only=True)
-class MindlinCap(CausalTangentialLaw):
+class MindlinCap(OneSpring):
     """The stiffness of a contact that sticks all over, k = 2 G* b, under Coulomb's cap mu P.
 
     No part of the contact slips before the whole does. The energy that the changing
@@ -213,7 +135,6 @@ class MindlinCap(CausalTangentialLaw):
     """
 
     api_version: ClassVar[int] = 2
-    offers: ClassVar[frozenset[str]] = frozenset({"vectors"})
     needs: ClassVar[frozenset[str]] = frozenset({"radius"})
 
     form: str = choice(*FORMS, default="displacement")
@@ -224,9 +145,7 @@ class MindlinCap(CausalTangentialLaw):
         """Return the checks that this form fails by its nature, with the path that shows it."""
         passed = TAKEN if self.damping else SOFTER if self.stiffness_factor < 1.0 else frozenset()
         failed = {name: why for name, why in FAILURES[self.form].items() if name not in passed}
-        return {**failed, **(DAMPED if self.damping else {})}
-
-    expected_failures: ClassVar[Any] = property(_list_failures)
+        return {**failed, **super()._list_failures()}
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of every law, of partial slip, and of energy that the form makes."""
@@ -236,7 +155,7 @@ class MindlinCap(CausalTangentialLaw):
         least = LEAST_E * (1.0 - 1e-5) * scene.normal_speed
         if made and not np.all((scene.chi <= most) & (-normal.final_rate >= least)):
             made = [_MADE.format(f"by an amount {OUTSIDE}")]
-        return (*super().cautions(scene, normal), PARTIAL_SLIP, *made)
+        return (*super().cautions(scene, normal), *made)
 
     def whole_impacts(self, scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
         """Return the whole-impact answers, with elastic impacts at the cap from start to end."""
@@ -288,12 +207,6 @@ class MindlinCap(CausalTangentialLaw):
         masses = (pair.normal_mass, pair.tangential_mass)
         modulus = self._modulus(scene)
         return State(modulus, *masses, scene.friction_coefficient, zero, zero, zero)
-
-    def begin(
-        self, scene: Scene, normal: NormalMotion, *, vectors: bool = False
-    ) -> State | InPlane:
-        """Return a spring at rest, whose displacement is a vector if ``vectors``."""
-        return in_plane(self, scene, normal) if vectors else self.start(scene, normal)
 
     def advance(
         self,

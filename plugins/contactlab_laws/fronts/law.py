@@ -32,7 +32,7 @@ from contactlab.numeric.arrays import greater, magnitude, spread
 from contactlab.numeric.types import Array, Mask, Real
 from contactlab_laws.compiled import library
 from contactlab_laws.fronts import compiled
-from contactlab_laws.jaeger.gross_slip import gross_slip
+from contactlab_laws.jaeger.partial_slip import gross_slip
 from contactlab_laws.tables.elastic import ERROR, rebound
 from contactlab_laws.tables.regions import LARGEST_CHI
 

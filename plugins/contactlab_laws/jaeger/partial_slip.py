@@ -7,10 +7,10 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from contactlab.contracts import NormalMotion, SteppedTangentialLaw, WholeImpact
+from contactlab.contracts import NormalMotion, SteppedTangentialLaw, WholeImpact, sliding
+from contactlab.impact.hertz import slips_throughout
 from contactlab.impact.scene import Scene
 from contactlab.numeric.types import Array, Real
-from contactlab_laws.jaeger.gross_slip import gross_slip
 
 #: Phases at which the friction load is compared with Hertz's, and the relative tolerance.
 PHASES = np.linspace(0.1, 0.9, 9) * math.pi
@@ -83,6 +83,17 @@ class PartialSlip(SteppedTangentialLaw):
         return scene.pair.tangential_stiffness(normal.maximum_radius)
 
 
+def gross_slip(scene: Scene, normal: NormalMotion) -> tuple[WholeImpact, ...]:
+    """Return the answers of eq. (45), for impacts of elastic Hertz contacts; else none."""
+    if "elastic_hertz" not in normal.claims:
+        return ()
+    where = slips_throughout(scene.psi1, scene.chi)
+    if where is False:  # a single impact; a batch has a mask
+        return ()
+    reason = "the impact slips from start to end, eq. (45)"
+    return (sliding(scene, normal, where=where, reason=reason, stops=False),)
+
+
 def hemisphere(normal: NormalMotion) -> tuple[str, ...]:
     """Return the caution of an assumed hemispherical pressure, empty if none is assumed."""
     # Without the claim ``hertzian_pressure`` the friction law makes the assumption. With the claim
@@ -90,8 +101,7 @@ def hemisphere(normal: NormalMotion) -> tuple[str, ...]:
     if "hertzian_pressure" not in normal.claims:
         return (
             "model: the friction law assumes Hertz's pressure profile; the normal law does not "
-            "state "
-            "its own.",
+            "state its own.",
         )
     if "elastic_hertz" in normal.claims or _hertzian(normal):
         return ()

@@ -101,8 +101,7 @@ def _pull(scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         return ()
     return (
         "model: stronge's normal spring does not pull, but this normal law does. The impulse of "
-        "the "
-        f"friction load is up to {largest:.3g} times that of the spring.",
+        f"the friction load is up to {largest:.3g} times that of the spring.",
     )
 
 
