@@ -235,7 +235,9 @@ def _candidates(scene: Scene) -> tuple[Scene, Array, str]:
     if scene.along is not None:
         return _candidates_of_bodies(scene), ANGLES_DEG, ANGLES_IN_WORDS
     if scene.sphere is None and scene.has_units:
-        return _candidates_in_units(scene.take(0).central), INCIDENCES, "psi1"
+        one = scene.take(0).central
+        slip, mu = INCIDENCES / one.psi_scale, one.friction_coefficient
+        return Scene(None, None, mu, one.normal_speed, slip, pair=one.pair), INCIDENCES, "psi1"
     if scene.sphere is None:
         chi = float(np.median(scene.chi))
         return Scene.nondimensional(psi1=INCIDENCES, chi=chi), INCIDENCES, "psi1"
@@ -249,12 +251,6 @@ def _candidates(scene: Scene) -> tuple[Scene, Array, str]:
         spin=0.0,
     )
     return impacts, ANGLES_DEG, ANGLES_IN_WORDS
-
-
-def _candidates_in_units(first: Scene) -> Scene:
-    """Return impacts at the angles of ``INCIDENCES`` of the bodies of one."""
-    slip = INCIDENCES / first.psi_scale
-    return Scene(None, None, first.friction_coefficient, first.normal_speed, slip, pair=first.pair)
 
 
 def _candidates_of_bodies(scene: Scene) -> Scene:

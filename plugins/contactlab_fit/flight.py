@@ -287,20 +287,15 @@ def _bounces(film: dict[str, Array], *, in_pixels: bool) -> Measurements:
     ]
     restitution = -columns["rebound_normal_velocity"] / columns["normal_speed"]
     notes.append(tell_restitutions(columns["normal_speed"], restitution))
+    level = () if "z" in film else ("z = 0 m: the ball stays in the plane of x and y",)
     return Measurements(
         given={name: columns[name] for name in GIVEN if name in columns},
         measured={name: columns[name] for name in measured},
         errors={name: columns[f"{name}_error"] for name in measured},
         notes=(*dict.fromkeys(notes), *fall),
-        taken=_tell_assumptions(film),
+        taken=(f"gravity = {GRAVITY} m/s², of flights without air", *level),
         thrown={} if "angle" in film else thrown,
     )
-
-
-def _tell_assumptions(film: Mapping[str, Array]) -> tuple[str, ...]:
-    """Return sentences on what is taken of the flights of a film."""
-    level = () if "z" in film else ("z = 0 m: the ball stays in the plane of x and y",)
-    return (f"gravity = {GRAVITY} m/s², of flights without air", *level)
 
 
 def _throws(film: dict[str, Array]) -> Iterator[dict[str, Array]]:

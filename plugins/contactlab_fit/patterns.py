@@ -78,7 +78,9 @@ def pattern(
             row = own[name][0][present]
             order = np.argsort(x, kind="stable")
             ends = np.searchsorted(x[order], np.arange(SPARE, max(int(x.max()), SPARE) + 2))
-            gains = _to(ends, (row * number)[order]) ** 2 / _nonzero(_to(ends, number[order] ** 2))
+            weights = _to(ends, number[order] ** 2)
+            along = _to(ends, (row * number)[order])
+            gains = along**2 / np.where(weights > 0.0, weights, 1.0)
             low = order[: ends[int(np.argmax(gains))]]  # the line nearest to the residuals
             words = _climb(name, number[low], row[low], column)
             chance = np.min(
@@ -106,11 +108,6 @@ def _to(ends: NDArray[np.intp], products: Array) -> Array:
     """Return the sums of products, shape (numbers, ...), before each end."""
     zero = np.zeros((1, *products.shape[1:]))
     return np.asarray(np.concatenate([zero, np.cumsum(products, axis=0)])[ends])
-
-
-def _nonzero(squares: Array) -> Array:
-    """Return squares, with 1 in place of 0."""
-    return np.where(squares > 0.0, squares, 1.0)
 
 
 def _chances(

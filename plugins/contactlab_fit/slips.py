@@ -317,7 +317,7 @@ def _free_shear_loss(problem: Problem, values: Array) -> Wider:
     own = float(getattr(setup.simulation and setup.simulation.tangential, SHEAR_LOSS, 1.0))
 
     def words(shear_loss: float) -> str:
-        others = ", ".join(map(_of_law, laws_with("beta0")))
+        others = ", ".join(f"beta0 of {short_name(law)}" for law in laws_with("beta0"))
         return (
             f"the contact point looks as if it rebounded {'less' if shear_loss > own else 'more'} "
             f"than these laws give: as with {SHEAR_LOSS} = {shear_loss:.3g} (now {own:.3g}). Fit "
@@ -344,11 +344,6 @@ def _of_the_batch(problem: Problem, values: Array) -> tuple[Problem, Array]:
     parameters = tuple(model.parameters[place] for place in kept)
     fixed = attrs.evolve(model, setup=setup, parameters=parameters)
     return attrs.evolve(problem, model=fixed), values[kept]
-
-
-def _of_law(law: str) -> str:
-    """Return in words beta0 of a law."""
-    return f"beta0 of {short_name(law)}"
 
 
 def _free_restitution(problem: Problem, values: Array) -> Wider:

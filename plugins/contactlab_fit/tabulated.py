@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from functools import cache
 
 import numpy as np
 
 from contactlab.collisions.rebound import rebound
-from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.cautions import unit_slips
 from contactlab.impact.coupling import coupling
@@ -47,15 +45,10 @@ def holds(simulation: Simulation | None) -> bool:
     if simulation is None:
         return True
     normal = simulation.normal
-    if type(normal) is not _normal_law() or getattr(normal, RESTITUTION, None) is None:
+    lossy = type(composition.law("normal", LOSSY))  # behind ``rebound(restitution=)``
+    if type(normal) is not lossy or getattr(normal, RESTITUTION, None) is None:
         return False
     return simulation == Simulation(normal=normal)
-
-
-@cache
-def _normal_law() -> type[NormalLaw]:
-    """Return the class of the normal law behind ``rebound(restitution=)``."""
-    return type(composition.law("normal", LOSSY))
 
 
 def with_loss(restitution: float) -> Simulation:

@@ -102,7 +102,7 @@ class Fields:
         spare = SPARE if motion.departures is not None else 0.0
         radii = basis(rings, 1 if group.plain else angles + 2, spare).edges[:-1]
         values = np.zeros((5, len(motion.impulse), angles, len(radii)))
-        theta = _angles(angles)
+        theta = (np.arange(angles) + 0.5) * np.pi / angles  # in the middle of equal parts
         if group.spins:
             theta = (theta + 0.5 * np.pi) * signs(group.matter.psi1, group.matter.rim)[1]
         cosine, sine = np.cos(theta)[:, None], np.sin(theta)[:, None]
@@ -115,11 +115,6 @@ class Fields:
                     values[first, k] = vector[0] * cosine - vector[1] * sine
                     values[first + 1, k] = vector[0] * sine + vector[1] * cosine
         return motion.impulse[:, 0], radii, values, theta
-
-
-def _angles(count: int) -> Array:
-    """Return the angles in the middle of equal parts of the half circle."""
-    return np.asarray((np.arange(count) + 0.5) * np.pi / count)
 
 
 def _around(knots: Array, impulse: float, values: Array) -> tuple[Array, float]:

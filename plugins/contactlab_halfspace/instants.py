@@ -127,7 +127,11 @@ def _phases(normal: NormalMotion, places: Array, top: int) -> Array:
         phases[[0, top, -1], 0] = 0.0, 0.5 * math.pi, math.pi
         return phases
     if isinstance(normal, ClosedFormMotion):
-        return _halve(lambda phase: _scale_radius(normal, phase), places, top, 0.5 * math.pi)
+
+        def scaled(phase: Array) -> Array:  # over the largest, which all impacts share
+            return np.asarray(normal.scaled(phase[:, 0]).radius)[:, None]
+
+        return _halve(scaled, places, top, 0.5 * math.pi)
     single = not normal.scene.shape
 
     def radius(phase: Array) -> Array:
@@ -145,11 +149,6 @@ def _phases(normal: NormalMotion, places: Array, top: int) -> Array:
         rises = inner < outer
         low, high = np.where(rises, low + third, low), np.where(rises, high, high - third)
     return _halve(radius, places, top, 0.5 * (low + high))
-
-
-def _scale_radius(normal: ClosedFormMotion, phase: Array) -> Array:
-    """Return the radius over its largest of the scaled motion, which all impacts share."""
-    return np.asarray(normal.scaled(phase[:, 0]).radius)[:, None]
 
 
 def _halve(

@@ -62,11 +62,6 @@ def key(law: Law) -> str:
     return f"{type(law).__module__}.{type(law).__qualname__}".replace(".law.", ".")
 
 
-def _name_normal(law: Law) -> str:
-    """Return the name of a normal law of this shelf."""
-    return _name_law(type(law).__name__)
-
-
 def _name_law(law: str) -> str:
     """Return the name of a law by that of its class: ``kuwabara_kono`` for ``KuwabaraKono``."""
     return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", law).lower()
@@ -89,15 +84,17 @@ def springs(scene: Scene, normal: NormalMotion, *, part: str = "spring") -> tupl
     if "elastic_hertz" in normal.claims or not kinetics.rubs(scene):
         return ()
     own, e, chi = rows().get(key(normal.law)), _restitution(normal), np.asarray(scene.chi)
-    if own is None or not np.all(_within(e, own)) or _beyond(chi):
+    beyond = np.min(chi) < NODES[0] or np.max(chi) > NODES[-1]
+    if own is None or not np.all(_within(e, own)) or beyond:
         told = f"psi2 is off by an amount {OUTSIDE}"
     else:
         size = _by_springs(own, e, chi)
         if not size >= LEAST:
             return ()
         told = f"psi2 is off by up to {_above(size, AROUND)}"
+    name = _name_law(type(normal.law).__name__)
     return (
-        f"model: under {_name_normal(normal.law)} each {part} is limited separately, which "
+        f"model: under {name} each {part} is limited separately, which "
         f"violates Coulomb's law locally; {told}. annulus has the right limit.",
     )
 
@@ -107,11 +104,6 @@ def _within(e: Real, rows: tuple[Row, ...]) -> Mask:
     least, most = rows[0].restitution - ROUNDED, rows[-1].restitution + ROUNDED
     within: Mask = (np.asarray(e) >= least) & (np.asarray(e) <= most)
     return within
-
-
-def _beyond(chi: Real) -> bool:
-    """Return whether any chi lies beyond those that were measured."""
-    return bool(np.min(chi) < NODES[0] or np.max(chi) > NODES[-1])
 
 
 def _by_springs(measured: tuple[Row, ...], e: Real, chi: Real) -> float:
