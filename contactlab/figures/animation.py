@@ -74,7 +74,7 @@ def animate(
         )
 
     def frames(only: Collection[int]) -> Iterator[NDArray[np.uint8]]:
-        return _frames(result, None if only else progress, ghosts or {}, only=only)
+        return _frames(result, None if only else progress, ghosts or {}, only)
 
     write_gif(path, frames, len(_sequence(result)))
 
@@ -144,9 +144,8 @@ def _palette(
 def _frames(
     result: ImpactResult,
     progress: Callable[[int, int], object] | None,
-    ghosts: Mapping[str, ImpactResult] | None = None,
-    *,
-    only: Collection[int] = (),
+    ghosts: Mapping[str, ImpactResult],
+    only: Collection[int],
 ) -> Iterator[NDArray[np.uint8]]:
     """Iterate over frames as arrays of red, green, blue, shape (height, width, 3).
 
@@ -159,7 +158,7 @@ def _frames(
         panels = _panels(figure, result)
         for panel in panels:
             if isinstance(panel, Ball):
-                panel.add_ghosts(ghosts or {})
+                panel.add_ghosts(ghosts)
         for _ in range(LAYOUT_PASSES):
             canvas.draw()
         figure.set_layout_engine("none")  # no layout in later frames

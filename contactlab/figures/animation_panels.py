@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Ellipse, Patch
 from numpy.typing import NDArray
 
-from contactlab.figures.stick_slip import NO_CONTACT, STATES
+from contactlab.figures.stick_slip import NO_CONTACT, STATES, number_states
 from contactlab.impact.hertz import semi_axes
 from contactlab.outcome.history import scale_forces
 from contactlab.outcome.result import ImpactResult
@@ -192,9 +192,7 @@ class Disc:
         history = result.history
         assert history
         fields = history.fields
-        self.state = np.where(
-            fields["stuck"], 1, np.where(fields["slipping"] == 0, 3, fields["slipping"] + 1)
-        )
+        self.state = number_states(fields)
         self.radius = np.asarray(fields["radius"])
         self.edge = np.asarray(history.contact_radius)
         self.largest = float(result.motion.maximum_radius)

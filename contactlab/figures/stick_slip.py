@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
@@ -35,34 +38,9 @@ def draw_stick_slip(axes: Axes, result: ImpactResult) -> Axes:
             "run(scene, history='fields') with a law of partial slip, such as the default for "
             "spheres or springs for any body; an impact without slip velocity may have no fields",
         )
-    fields = history.fields
     time = history.time / result.motion.duration
-    radius = fields["radius"][0] / result.motion.maximum_radius
-    return stick_slip_map(axes, time, radius, fields["stuck"], fields["slipping"])
-
-
-def stick_slip_map(
-    axes: Axes,
-    time: NDArray[np.float64],
-    radius: NDArray[np.float64],
-    stuck: NDArray[np.bool_],
-    slipping: NDArray[np.int8],
-) -> Axes:
-    """Draw the state of each annulus over time.
-
-    Parameters
-    ----------
-    axes : Axes
-    time : array, shape (K,)
-        Time over the duration of contact, increasing.
-    radius : array, shape (n,)
-        Middle of each annulus over the largest contact radius.
-    stuck : array of bool, shape (K, n)
-    slipping : array of int, shape (K, n)
-        Sign of the traction where an annulus slips, 0 elsewhere: positive where it opposes
-        slip in the sense of positive slip velocity.
-    """
-    state = np.where(stuck, 1, np.where(slipping == 0, 3, slipping + 1))
+    radius = history.fields["radius"][0] / result.motion.maximum_radius
+    state = number_states(history.fields)
     colours = ListedColormap([*STATES.values(), NO_CONTACT])
     norm = BoundaryNorm(np.arange(-0.5, 4.0), 4)
     axes.pcolormesh(time, radius, state.T, cmap=colours, norm=norm, shading="nearest")
@@ -74,3 +52,9 @@ def stick_slip_map(
     patches = [Patch(color=STATES[name], label=name) for name in present]
     axes.legend(handles=patches, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(patches))
     return axes
+
+
+def number_states(fields: Mapping[str, NDArray[Any]]) -> NDArray[np.int_]:
+    """Return the place in ``STATES`` of each annulus at each instant; one more out of contact."""
+    slipping = fields["slipping"]  # sign of the traction where it slips
+    return np.where(fields["stuck"], 1, np.where(slipping == 0, 3, slipping + 1))
