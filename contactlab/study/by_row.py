@@ -12,7 +12,6 @@ from contactlab.numeric.types import Array
 from contactlab.outcome.tables import heading, number
 from contactlab.registry.composition import DEFAULT_NORMAL
 from contactlab.runs.simulation import Simulation
-from contactlab.study.agreement import Agreement
 from contactlab.study.evidence import (
     NORMALS,
     Slopes,
@@ -167,19 +166,15 @@ def _slopes(item: Slopes) -> ByRow:
 def _series(item: Source) -> Iterator[ByRow]:
     one = evidence_of(item)
     for agreement in one.comparison.agreements:
-        yield _agreement(item, agreement, one.file.title, one.file.citation)
-
-
-def _agreement(item: Source, agreement: Agreement, title: str, citation: str) -> ByRow:
-    measured, known = agreement.measured, agreement.defined
-    return ByRow(
-        name=item.name,
-        kind=item.kind,
-        title=title,
-        words=(citation.strip(),),
-        quantity=heading(measured.quantity, agreement.unit),
-        rows=tuple(f"{measured.against} {x:.4g}" for x in measured.x[known]),
-        values=measured.values[known],
-        errors=measured.error[known],
-        laws={law: values[known] for law, values in agreement.predicted.items()},
-    )
+        measured, known = agreement.measured, agreement.defined
+        yield ByRow(
+            name=item.name,
+            kind=item.kind,
+            title=one.file.title,
+            words=(one.file.citation.strip(),),
+            quantity=heading(measured.quantity, agreement.unit),
+            rows=tuple(f"{measured.against} {x:.4g}" for x in measured.x[known]),
+            values=measured.values[known],
+            errors=measured.error[known],
+            laws={law: values[known] for law, values in agreement.predicted.items()},
+        )

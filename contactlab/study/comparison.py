@@ -121,9 +121,11 @@ class Comparison(Tabled):
             error = self.numerical_error(law) / result.scene.psi_scale
             change = np.asarray(result.motion.slip_velocity_change)
             error = np.multiply.outer(error, np.ones(kinetics.slip_axes(result.scene)))
-        ends = [
-            values_of(quantity, _shift_slip(result, change + sign * error)) for sign in (1.0, -1.0)
-        ]
+        moved = (
+            attrs.evolve(result.motion, slip_velocity_change=change + sign * error)
+            for sign in (1.0, -1.0)
+        )
+        ends = [values_of(quantity, attrs.evolve(result, motion=each)) for each in moved]
         return np.array(0.5 * np.abs(ends[0] - ends[1]))
 
     @overload
@@ -305,11 +307,6 @@ def _find_entries(scene: Scene) -> dict[str, Array]:
         if np.unique(values).size > 1:
             return {name: np.array(values)}
     return {"psi1": np.array(np.broadcast_to(psi1, scene.shape))}
-
-
-def _shift_slip(result: ImpactResult, change: Array) -> ImpactResult:
-    """Return a result with another change of slip velocity."""
-    return attrs.evolve(result, motion=attrs.evolve(result.motion, slip_velocity_change=change))
 
 
 def _estimate(run: LawRun, simulation: Simulation) -> LawRun:

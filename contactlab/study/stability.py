@@ -202,4 +202,4 @@ def work(case: Cell) -> float:
 
 def _skip(case: Cell) -> Outcome:
     """Return the outcome of a case that is too much work."""
-    return Outcome.of(case, SKIPPED, note="too much work")
+    return Outcome.of(case, SKIPPED, "too much work")

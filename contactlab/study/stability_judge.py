@@ -91,27 +91,10 @@ class Outcome:
         return self.outcome in (ANSWERED, WRONG) and not np.isnan(self.error)
 
     @classmethod
-    def of(
-        cls,
-        case: Cell,
-        outcome: str,
-        *,
-        error: float = np.nan,
-        bound: float = np.nan,
-        note: str = "",
-        run_time_s: float = 0.0,
-    ) -> Outcome:
-        """Return the outcome of a case."""
-        return cls(
-            method=case.method.name,
-            family=case.family,
-            case=case.label,
-            outcome=outcome,
-            error=error,
-            bound=bound,
-            note=note,
-            run_time_s=run_time_s,
-        )
+    def of(cls, case: Cell, outcome: str, note: str = "") -> Outcome:
+        """Return the outcome of a case without an error."""
+        name = case.method.name
+        return cls(method=name, family=case.family, case=case.label, outcome=outcome, note=note)
 
 
 def judge(case: Cell) -> Outcome:
@@ -120,7 +103,7 @@ def judge(case: Cell) -> Outcome:
         scene = case.scene.make()
         simulation = case.method.simulation(case.options, normal=case.normal)
     except (ValueError, PluginError) as error:
-        return Outcome.of(case, REFUSED, note=f"bad input: {error}")
+        return Outcome.of(case, REFUSED, f"bad input: {error}")
     return judge_run(case, simulation, scene)
 
 
@@ -152,12 +135,12 @@ def judge_run(
         # the integrator into a status; a march does not.
         note = f"{type(error).__name__}: {error}"
         if case.planned:
-            return Outcome.of(case, RAISED, note=note)
-        return Outcome.of(case, REFUSED, note=f"LAW_RAISED {note}")
+            return Outcome.of(case, RAISED, note)
+        return Outcome.of(case, REFUSED, f"LAW_RAISED {note}")
     took = time.perf_counter() - before
     if result.status is not Status.SUCCESS:
         note = f"{result.status.name} {result.motion.detail}"
-        return Outcome.of(case, REFUSED, note=note, run_time_s=took)
+        return attrs.evolve(Outcome.of(case, REFUSED, note), run_time_s=took)
     try:
         with np.errstate(all="ignore"):
             if result.scene.inverse_mass is not None:
@@ -167,10 +150,10 @@ def judge_run(
                 off, bound, wrong = _of_spheres(simulation, result, against)
     except Exception as error:
         note = f"its reference: {type(error).__name__}: {error}"
-        return Outcome.of(case, RAISED, note=note, run_time_s=took)
+        return attrs.evolve(Outcome.of(case, RAISED, note), run_time_s=took)
     note = "; ".join(wrong) or (NO_REFERENCE if np.isnan(off) else "")
-    outcome = WRONG if wrong else ANSWERED
-    return Outcome.of(case, outcome, error=off, bound=bound, note=note, run_time_s=took)
+    outcome = Outcome.of(case, WRONG if wrong else ANSWERED, note)
+    return attrs.evolve(outcome, error=off, bound=bound, run_time_s=took)
 
 
 def march_impact(simulation: Simulation, scene: Scene) -> ImpactResult:

@@ -188,14 +188,14 @@ def finer(normal: NormalLaw, scene: Scene, law: TangentialLaw) -> float | None:
     return float(result.motion.slip_velocity_change) if result.status else None
 
 
-def itself(scene: Scene, law: TangentialLaw) -> float | None:
-    """Return the change by the law itself at many more steps, in m/s; None if not settled."""
-    return _fine(scene, law) if isinstance(law, SteppedTangentialLaw) else None
-
-
 @lru_cache(maxsize=4096)
-def _fine(scene: Scene, law: SteppedTangentialLaw) -> float | None:
-    """Return the change extrapolated at second order, in m/s; None if it does not settle."""
+def itself(scene: Scene, law: TangentialLaw) -> float | None:
+    """Return the change by the law itself at many more steps, in m/s; None if not settled.
+
+    It is extrapolated at second order.
+    """
+    if not isinstance(law, SteppedTangentialLaw):
+        return None
     coarse = Simulation(tangential=law, integrator=fixed_steps(FEWEST))
     normal = coarse.normal_motion(scene)
     frequency = np.sqrt(law.stiffness(scene, normal) / scene.pair.tangential_mass)

@@ -12,8 +12,7 @@ NAN = np.nan
 
 def area(law, error):
     return ErrorMap(
-        law=law, integrator="paper", steps=(10, 30, 100), chis=(0.5, 4.0, 20.0),
-        error=np.array(error), converges=True,
+        law=law, steps=(10, 30, 100), chis=(0.5, 4.0, 20.0), error=np.array(error)
     )  # fmt: skip
 
 
