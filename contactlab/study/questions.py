@@ -84,14 +84,13 @@ class Posed:
 
 @attrs.frozen
 class Question:
-    """A question: its name, what its error is of, and what poses it, ``quick`` or not.
+    """A question: its name, and what poses it, ``quick`` or not.
 
     ``needs`` is the law of the true answers, which may not be installed. ``peers`` tells whether
     other engines are asked.
     """
 
     name: str
-    about: str
     pose: Callable[[bool], Posed]
     needs: str | None = None
     peers: bool = False
@@ -120,13 +119,12 @@ def questions(
         found = [
             Question(
                 "sphere",
-                "psi2",
                 lambda quick: _sphere(usual if quick else chosen, quick, alone=False),
                 peers=True,
             ),
             *(each for each in _QUESTIONS if each.needs in (None, *REGISTRY.names())),
-            Question("any normal law", "psi2", lambda quick: _by_methods(damped, quick)),
-            Question("course", "force over mu P_max", lambda quick: _course(usual, quick)),
+            Question("any normal law", lambda quick: _by_methods(damped, quick)),
+            Question("course", lambda quick: _course(usual, quick)),
         ]
     else:
         found = []
@@ -157,7 +155,7 @@ def _with_loss(restitution: float) -> list[Question]:
 def _of_spheres(restitution: float) -> Question:
     """Return the question of spheres with a restitution."""
     return Question(
-        "sphere with e", "psi2", lambda quick: _sphere_with_loss(restitution, quick), peers=True
+        "sphere with e", lambda quick: _sphere_with_loss(restitution, quick), peers=True
     )
 
 
@@ -167,7 +165,6 @@ def _of_bodies(
     """Return the question of a body that falls; slip keeps its line where ``across`` is 0."""
     return Question(
         name,
-        "psi2",
         lambda quick: _bodies(make(), restitution, quick, across=across),
         peers=across == 0.0,
     )
@@ -184,10 +181,10 @@ def _usual(chosen: Sequence[Method]) -> list[Method]:
 def _of_normal(normal: str, own: list[Method]) -> list[Question]:
     """Return the question for laws under one normal law."""
     if normal != composition.DEFAULT_NORMAL:
-        return [Question(f"sphere, {normal}", "psi2", lambda quick: _by_methods(own, quick))]
+        return [Question(f"sphere, {normal}", lambda quick: _by_methods(own, quick))]
     return [
-        Question("sphere", "psi2", lambda quick: _sphere(own, quick, alone=True)),
-        Question("course", "force over mu P_max", lambda quick: _course(own, quick)),
+        Question("sphere", lambda quick: _sphere(own, quick, alone=True)),
+        Question("course", lambda quick: _course(own, quick)),
     ]
 
 
@@ -480,6 +477,6 @@ _QUESTIONS = (
     _of_bodies("plane with e", _rod, LOSS),
     _of_bodies("turning slip", _rod, 1.0, across=0.3),
     _of_bodies("ellipse", _egg, 1.0, across=0.3),
-    Question("spin about the normal", "psi2", _normal_spin, needs=SPINNING),
-    Question("two contacts", "velocity over 1 m/s", _two_contacts),
+    Question("spin about the normal", _normal_spin, needs=SPINNING),
+    Question("two contacts", _two_contacts),
 )
