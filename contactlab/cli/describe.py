@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Real
 from contactlab.outcome.numerical_error import error_cautions
 from contactlab.outcome.result import ImpactResult
+from contactlab.outcome.sheet import tell_vector
 from contactlab.outcome.tables import (
     answer,
     closing,
@@ -52,10 +53,6 @@ def in_space(collision: Collision) -> str:
     rows = []
     for name, unit in VECTORS_AFTER:
         before = getattr(collision.encounter, name, None)
-        shown = "" if before is None else _vector(before)
-        rows.append([name.replace("_", " "), shown, _vector(getattr(collision, name)), unit])
+        shown = "" if before is None else tell_vector(before)
+        rows.append([name.replace("_", " "), shown, tell_vector(getattr(collision, name)), unit])
     return table(["in space", "before", "after", "unit"], rows)
-
-
-def _vector(numbers: Array) -> str:
-    return f"({', '.join(f'{number + 0.0:.6g}' for number in numbers.tolist())})"

@@ -21,7 +21,7 @@ import numpy as np
 
 from contactlab.contracts.status import Status, succeeded
 from contactlab.numeric.types import AnyArray
-from contactlab.outcome.columns import columns, csv_heading, json_value
+from contactlab.outcome.columns import columns, csv_heading
 from contactlab.outcome.files import replace_file, write_table
 from contactlab.outcome.result import ImpactResult
 
@@ -39,8 +39,7 @@ def write_json(result: ImpactResult, path: str | Path) -> None:
     """Write ``result.to_dict``, and the history if the result has one."""
     content = result.to_dict()
     if result.history:
-        course = result.history.columns() | result.history.fields
-        content["history"] = {name: json_value(np.asarray(item)) for name, item in course.items()}
+        content["history"] = result.history.to_dict()
     text = json.dumps(content, indent=2, allow_nan=False) + "\n"
     with replace_file(path) as stream:
         stream.write(text)
@@ -161,14 +160,9 @@ WRITERS = {".json": write_json, ".csv": write_csv, ".npz": write_npz}
 def _flat(value: object, shape: tuple[int, ...]) -> AnyArray:
     """Return a column as a flat array of numbers, or of names of statuses."""
     array = np.asarray(math.nan if value is None else value)
-    if array.dtype == object:
-        if array.shape == shape and succeeded(array):  # looking up a million names takes long
-            return np.full(array.size, Status.SUCCESS.name)
-        return np.array(_spread(value, shape))
-    return np.broadcast_to(array.astype(np.float64), shape).ravel()
-
-
-def _spread(value: object, shape: tuple[int, ...]) -> list[float | str]:
-    """Return a column as a list with one item for each impact, statuses by name."""
-    items = np.broadcast_to(np.asarray(value, dtype=object), shape).ravel().tolist()
-    return [math.nan if item is None else getattr(item, "name", item) for item in items]
+    if array.dtype != object:
+        return np.broadcast_to(array.astype(np.float64), shape).ravel()
+    if array.shape == shape and succeeded(array):  # looking up a million names takes long
+        return np.full(array.size, Status.SUCCESS.name)
+    items = np.broadcast_to(array, shape).ravel().tolist()
+    return np.array([math.nan if each is None else getattr(each, "name", each) for each in items])

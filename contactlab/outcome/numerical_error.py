@@ -64,8 +64,7 @@ def error_cautions(result: WithPlan) -> list[str]:
     with np.errstate(all="ignore"):
         contradicted = estimate > CONTRADICTS * declared
         unit, width, _ = range_of(result.scene)
-        error = np.where(np.isnan(estimate), declared, estimate)  # a bound may be far larger
-        share: Real = error * np.divide(unit, width)
+        share: Real = error_of(result) * np.divide(unit, width)
         share = np.where(result.plan.marched, share, 0.0)
     cautions = []
     if contradicted.any():
@@ -100,6 +99,12 @@ def _errors(result: WithPlan) -> tuple[Array, Array]:
     estimate = np.nan if result.psi2_error_estimate is None else result.psi2_error_estimate
     declared = np.broadcast_to(np.asarray(result.plan.psi2_error, dtype=np.float64), shape)
     return np.broadcast_to(np.asarray(estimate, dtype=np.float64), shape), declared
+
+
+def error_of(result: WithPlan) -> Array:
+    """Return the estimated error of psi2, else the declared one; NaN if neither, batch shape."""
+    estimate, declared = _errors(result)
+    return np.where(np.isnan(estimate), declared, estimate)  # a bound may be far larger
 
 
 def _largest(error: Array, word: str) -> str:

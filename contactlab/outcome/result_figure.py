@@ -14,6 +14,7 @@ from contactlab.outcome.columns import find_quantity, unit_in
 from contactlab.outcome.functions_of_results import WithScene
 from contactlab.outcome.history import WithHistory, scale_forces
 from contactlab.outcome.history_figure import on_axes
+from contactlab.outcome.numerical_error import error_of
 from contactlab.outcome.plan import Plan
 from contactlab.outcome.sheet_figure import refuse_itself
 from contactlab.outcome.style import (
@@ -172,10 +173,7 @@ def _quantities(axes: Axes, result: Drawn, x: str, y: str) -> Axes:
 
 def _band(axes: Axes, result: Drawn, x: Array, y: Array, order: Places) -> None:
     """Draw the visible numerical error of psi2, estimated or else declared."""
-    error = result.psi2_error_estimate
-    if error is None:
-        error = result.plan.psi2_error
-    error = np.broadcast_to(np.asarray(error, dtype=float), result.scene.shape).ravel()
+    error = error_of(result).ravel()
     look = {"color": curve_colour(0), "label": "numerical error"}
     error_band(axes, x[order], y[order], error[order], look)
     if axes.collections:

@@ -64,5 +64,9 @@ def names_of(statuses: Statuses, shape: tuple[int, ...]) -> AnyArray:
 
 def moving(name: str, velocity: Array, spin: Array) -> str:
     """Return how a body moves, in a line: velocity in m/s and spin in rad/s."""
-    told = (f"({', '.join(f'{number + 0.0:.6g}' for number in each)})" for each in (velocity, spin))
-    return f"  {name}: velocity {next(told)} m/s, spin {next(told)} rad/s"
+    return f"  {name}: velocity {tell_vector(velocity)} m/s, spin {tell_vector(spin)} rad/s"
+
+
+def tell_vector(numbers: Array) -> str:
+    """Return a vector in words."""
+    return f"({', '.join(f'{number + 0.0:.6g}' for number in numbers.tolist())})"  # no -0

@@ -14,6 +14,7 @@ from contactlab.numeric.checks import of_kind, refuse
 from contactlab.numeric.names import nearest, tell_attributes
 from contactlab.numeric.progress import Count, follow
 from contactlab.numeric.types import AnyArray, Array, Json, Real
+from contactlab.outcome.numerical_error import error_of
 from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.sheet import Sheet
 from contactlab.outcome.tabled import Tabled
@@ -109,10 +110,7 @@ class Comparison(Tabled):
 
     def numerical_error(self, law: str) -> Array:
         """Return the estimated numerical error of psi2, else the declared one; NaN if neither."""
-        result = self.result(law)
-        estimate = np.nan if result.psi2_error_estimate is None else result.psi2_error_estimate
-        error = np.where(np.isfinite(estimate), estimate, result.plan.psi2_error)
-        return np.array(np.broadcast_to(error, result.scene.shape))
+        return error_of(self.result(law))
 
     def band(self, quantity: str, law: str) -> Array:
         """Return the error of a quantity that follows from the numerical error of psi2, or NaN."""
