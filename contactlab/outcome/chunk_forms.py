@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import importlib
+import itertools
 import json
 import zlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import IO, Any, NamedTuple, Protocol
@@ -35,6 +36,12 @@ class Chunk(NamedTuple):
     def size(self) -> int:
         """Number of impacts."""
         return self.stop - self.first
+
+
+def find_gaps(chunks: Iterable[Chunk], stop: int) -> list[Chunk]:
+    """Return the impacts up to ``stop`` that no chunk has."""
+    pairs = itertools.pairwise([Chunk(0, 0), *sorted(chunks), Chunk(stop, stop)])
+    return [Chunk(one.stop, other.first) for one, other in pairs if one.stop < other.first]
 
 
 class About(NamedTuple):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 import math
 import os
@@ -29,11 +28,10 @@ from contactlab.outcome.chunk_files import (
     refuse_damage,
     refuse_file,
 )
-from contactlab.outcome.chunk_forms import COLUMN_OF_STATUS, FORMS, NPZ, About, Form
+from contactlab.outcome.chunk_forms import COLUMN_OF_STATUS, FORMS, NPZ, About, Form, find_gaps
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.files import stamp
 from contactlab.outcome.frames import import_optional
-from contactlab.outcome.result import ImpactResult
 from contactlab.outcome.sheet import Sheet, batch_axes
 
 if TYPE_CHECKING:
@@ -48,43 +46,6 @@ if TYPE_CHECKING:
 KIND, STATUSES = "columns of results", "statuses"
 #: A number in a sentence.
 NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?")
-
-
-def about_of(
-    result: ImpactResult,
-    units: Mapping[str, str],
-    counts: Mapping[str, int],
-    *,
-    first: int,
-    stop: int,
-    sweep: str,
-    scene: str,
-    sums: Mapping[str, int],
-    computer: str,
-) -> About:
-    """Return what the chunk of a result tells.
-
-    Parameters
-    ----------
-    result : ImpactResult
-    units, counts, first, stop, sweep, scene, sums, computer
-        As of ``About``.
-    """
-    error = float(np.max(result.plan.psi2_error))
-    failures = result.failures if [*counts] != [Status.SUCCESS.name] else {}
-    return About(
-        first=first,
-        stop=stop,
-        sweep=sweep,
-        scene=scene,
-        units=units,
-        counts=counts,
-        failures={str(first + index): words for index, words in failures.items()},
-        cautions=[str(caution) for caution in result.plan.cautions],
-        psi2_error=None if math.isnan(error) else error,
-        sums=sums,
-        computer=computer,
-    )
 
 
 def _tell(same: list[tuple[list[float], str, About]], total: int) -> str:
@@ -199,10 +160,11 @@ class SweepFolder(Checked):
 
         The same sweep into the same folder computes them.
         """
-        spans = [(about.first, about.stop) for _, about in self._abouts]
-        last = self.impacts if self.impacts is not None else max((b for _, b in spans), default=0)
-        pairs = itertools.pairwise([(0, 0), *spans, (last, last)])
-        return [(before, after) for (_, before), (after, _) in pairs if before < after]
+        chunks = [about.chunk for _, about in self._abouts]
+        last = (
+            self.impacts if self.impacts is not None else max((c.stop for c in chunks), default=0)
+        )
+        return [(gap.first, gap.stop) for gap in find_gaps(chunks, last)]
 
     @property
     def complete(self) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
@@ -21,11 +22,10 @@ from contactlab.outcome.chunk_files import (
     refuse_file,
     refuse_place,
 )
-from contactlab.outcome.chunk_forms import COLUMN_OF_STATUS, Chunk, Form, checksum
+from contactlab.outcome.chunk_forms import COLUMN_OF_STATUS, About, Chunk, Form, checksum
 from contactlab.outcome.columns import columns, unit_in
 from contactlab.outcome.files import replace_file
 from contactlab.outcome.result import ImpactResult
-from contactlab.outcome.sweep_folder import about_of
 from contactlab.runs.pieces import Part, Piece
 from contactlab.runs.recomputed import Finished, Sample, refuse_other_bits
 from contactlab.runs.target import write_piece
@@ -103,15 +103,20 @@ class ChunkFolder:
         self._same_columns(units, piece.chunk)
         if self.form.whole:
             arrays = {name: np.broadcast_to(v, piece.chunk.size) for name, v in arrays.items()}
-        counts = np.bincount(arrays[COLUMN_OF_STATUS], minlength=len(CODES)).tolist()
-        about = about_of(
-            result,
-            units,
-            {status.name: count for status, count in zip(CODES, counts, strict=True) if count},
-            first=piece.chunk.first,
+        each = np.bincount(arrays[COLUMN_OF_STATUS], minlength=len(CODES)).tolist()
+        counts = {name: count for name, count in zip(NAMES, each, strict=True) if count}
+        failures = result.failures if [*counts] != [Status.SUCCESS.name] else {}
+        first, error = piece.chunk.first, float(np.max(result.plan.psi2_error))
+        about = About(
+            first=first,
             stop=piece.chunk.stop,
             sweep=self.sweep,
             scene=scene,
+            units=units,
+            counts=counts,
+            failures={str(first + index): words for index, words in failures.items()},
+            cautions=[str(caution) for caution in result.plan.cautions],
+            psi2_error=None if math.isnan(error) else error,
             sums={name: checksum(values) for name, values in arrays.items()},
             computer=piece.computer,
         )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import itertools
 import math
 from collections.abc import Generator, Iterable, Iterator
 from contextlib import AbstractContextManager
@@ -15,7 +14,7 @@ from contactlab.contracts.status import Status
 from contactlab.impact import batches, kinetics
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse, whole
-from contactlab.outcome.chunk_forms import Chunk
+from contactlab.outcome.chunk_forms import Chunk, find_gaps
 from contactlab.outcome.motion import Motion
 from contactlab.outcome.plan import PlanColumns
 from contactlab.registry.composition import Laws
@@ -75,7 +74,7 @@ def sweep_columns(
     with _keep_pieces(keep, laws, scene, block) as kept:
         finished = [] if kept is None else kept.pieces()
         done = sum(piece.chunk.size for piece in finished)
-        missing = cut(_gaps(finished, size), step)
+        missing = cut(find_gaps([piece.chunk for piece in finished], size), step)
         parts = (Part(each, plain.take(slice(*each)), block) for each in missing)
         pieces = solve(parts)
         try:
@@ -94,7 +93,7 @@ def sweep_columns(
             if not return_partial:
                 where = f" are in {keep}: the same sweep goes on" if keep else ""
                 raise type(error)(f"{done} of {size} impacts{where}") from None
-            gaps = _gaps(finished, size)
+            gaps = find_gaps([piece.chunk for piece in finished], size)
             finished += [
                 leave_open(gap, kinetics.slip_axes(scene), Status.INTERRUPTED) for gap in gaps
             ]
@@ -122,16 +121,6 @@ def one_axis(scene: Scene) -> None:
     if len(scene.shape) != 1:
         rule = "must be a sequence, or a one-dimensional batch"
         raise refuse("scenes", scene.shape, rule, "for one impact use run")
-
-
-def _gaps(pieces: Iterable[Piece], size: int) -> list[Chunk]:
-    """Return the chunks that no piece covers."""
-    chunks = [(0, 0), *sorted(piece.chunk for piece in pieces), (size, size)]
-    return [
-        Chunk(before, after)
-        for (_, before), (after, _) in itertools.pairwise(chunks)
-        if before < after
-    ]
 
 
 def cut(gaps: Iterable[Chunk], step: int) -> Iterator[Chunk]:
