@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -54,7 +53,7 @@ def draw_stick_slip(axes: Axes, result: ImpactResult) -> Axes:
     return axes
 
 
-def number_states(fields: Mapping[str, NDArray[Any]]) -> NDArray[np.int_]:
+def number_states(fields: Mapping[str, NDArray[np.generic]]) -> NDArray[np.int_]:
     """Return the place in ``STATES`` of each annulus at each instant; one more out of contact."""
     slipping = fields["slipping"]  # sign of the traction where it slips
     return np.where(fields["stuck"], 1, np.where(slipping == 0, 3, slipping + 1))

@@ -11,7 +11,7 @@ from contactlab.impact import inverse_mass
 from contactlab.impact.bodies import Pair, Sphere, size_ratio
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.arrays import choose, magnitude, quotient, some
-from contactlab.numeric.types import Array, Index, Places, Real
+from contactlab.numeric.types import Array, Index, Places, Real, Tree
 from contactlab.numeric.vectors import components, dot, entry, hypotenuse, join_components, rows
 
 if TYPE_CHECKING:
@@ -288,11 +288,11 @@ def batch_of(scene: Motions) -> tuple[int, ...]:
     return scene.shape if scene.links is None else scene.shape[:-1]
 
 
-def over_contacts(scene: Motions, each: Any) -> Any:
+def over_contacts(scene: Motions, each: Tree) -> Tree:
     """Return what each gathering has, for each of its contacts; what one contact has as it is."""
     if scene.links is None:
         return each
-    return np.broadcast_to(np.asarray(each)[..., None], scene.shape)
+    return np.broadcast_to(np.asarray(each)[..., None], scene.shape)  # type: ignore[return-value]
 
 
 def slip_axes(scene: Motions) -> tuple[int, ...]:

@@ -51,11 +51,11 @@ class Followed(NamedTuple):
 
 def join_impacts(parts: Sequence[Followed], order: Places) -> Followed:
     """Return the impacts of all parts in an order; fields are those of the first."""
-    columns: dict[str, Any] = {}
-    for name, column in zip(Followed._fields, zip(*parts, strict=True), strict=True):
-        if name != "fields" and column[0] is not None:
-            columns[name] = np.concatenate(column, axis=-1)[..., order]
-    return parts[0]._replace(**columns)
+    columns: list[Any] = [
+        np.concatenate(each, axis=-1)[..., order] if isinstance(each[0], np.ndarray) else each[0]
+        for each in zip(*parts, strict=True)
+    ]
+    return Followed(*columns)
 
 
 def follow(

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from contactlab.numeric.types import Array, Mask, Real
+from contactlab.numeric.types import Array, Real
 from contactlab_halfspace.instants import Instants
 from contactlab_halfspace.modes import SPARE, Modes
 
@@ -32,7 +33,7 @@ class Contact(NamedTuple):
         Approach that a force of 1 takes away by the end of the step.
     """
 
-    touching: Mask
+    touching: NDArray[np.bool_]
     rings: int
     limit: Array | None
     load: Real
@@ -105,7 +106,7 @@ class Answering(Prescribed):
     def impulse(self, k: int) -> Array:
         """Return the impulses of the step, with the excess of force at its start."""
         more = self.stiffness * self.duration[k - 1] * self.excess[k - 1]
-        return super().impulse(k) + more
+        return np.asarray(super().impulse(k) + more)
 
     def contact(self, k: int) -> Contact | None:
         """Return the contacts; None where all surfaces have parted."""
@@ -136,7 +137,7 @@ class Answering(Prescribed):
         self.approach[k] = self._approach(k, excess)
         self.rate[k] = self.rate[k - 1] - more
         self.excess[k] = excess
-        return super().impulse(k) + more
+        return np.asarray(super().impulse(k) + more)
 
 
 def _hemisphere(edge: float, points: Array) -> Array:

@@ -144,9 +144,10 @@ class _Mixing:
 
     def next(self, now: Array, change: Array) -> Array:
         """Return the next iterates after ``now``, whose plain successors are now + change."""
-        rows = np.empty((2, *now.shape))
-        rows[0], plain = change, np.add(now, change, out=rows[1])
-        rows = rows.reshape(2, len(now), -1)
+        both = np.empty((2, *now.shape))
+        plain: Array = np.add(now, change, out=both[1])
+        both[0] = change
+        rows = both.reshape(2, len(now), -1)
         last, self._last = self._last, rows
         if last is None:
             return plain
