@@ -22,8 +22,8 @@ class NormalContact(NamedTuple):
     radius : float or array
         b in m, the contact radius; 0 out of contact, and 0 from a law without contact radius.
     overlap : float or array
-        Any length in m that is positive in contact, and zero or negative out of contact. The
-        impact ends where its sign changes.
+        A length in m, not a plain number: positive in contact, zero or negative out of contact.
+        The impact ends where its sign changes.
     friction_load : float or array, optional
         The normal force in N that Coulomb's limit is taken of, never negative. A normal law
         may omit the friction load, which is then max(P, 0). Tangential laws always receive it.

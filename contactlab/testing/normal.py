@@ -173,7 +173,7 @@ def contacts_non_finite(law: NormalLaw) -> None:
             continue
         force, _, overlap, load = (float(np.ravel(part)[0]) for part in contact.complete)
         hold(math.isnan(force), f"An approach of NaN gives a force of {force!r}.")
-        hold(not overlap <= 0.0, "An approach of NaN is taken for no contact.")
+        hold(not overlap <= 0.0, "An approach of NaN is taken for no contact; keep the NaN.")
         hold(math.isnan(load), f"An approach of NaN gives a friction load of {load!r}.")
     try:
         unsure, *_ = law.respond(law.start(impact), depth, math.nan)[0].complete
