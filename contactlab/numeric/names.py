@@ -79,7 +79,7 @@ def nearest(name: str, known: Iterable[str], *, alike: float = 0.5) -> str:
     meant = [names[word] for word in words if word in names] or [
         names[each] for word in words for each in names if each.endswith(f".{word}")
     ]
-    if not meant and last not in REMARKS:  # a remark fits its own name only
+    if not meant and last not in REMARKS:  # which would be wrong of another name
         import difflib  # slow to import, needed for misspelt names only
 
         if "." not in plain:
@@ -95,7 +95,7 @@ def _plain(name: str) -> str:
 
 
 def tell_arguments(made: Class) -> Class:
-    """Return a class that refuses wrong arguments, and names the nearest argument and all of them.
+    """Return a class that users make: wrong arguments are refused with the nearest, and all names.
 
     ``_remedy(name, value)`` of a class tells where an argument belongs that it does not have.
     """
@@ -112,7 +112,7 @@ def state_arguments(made: Class) -> Class:
 
 
 def _telling(made: Class, call: Callable[..., None]) -> Class:
-    """Return a class with ``call`` for ``__init__``, whose class methods refuse wrong arguments."""
+    """Return a class whose class methods tell, and ``call`` in place of its ``__init__``."""
     for name, each in [*vars(made).items()]:
         if isinstance(each, classmethod):
             setattr(made, name, classmethod(_tell(made, each.__func__)))
@@ -122,7 +122,7 @@ def _telling(made: Class, call: Callable[..., None]) -> Class:
 
 
 def tell_function(call: Function) -> Function:
-    """Return a function that refuses wrong arguments, and names the nearest argument and all."""
+    """Return a function whose wrong arguments are refused with the nearest, and all names."""
 
     @functools.wraps(call)
     def run(*values: object, **named: object) -> object:
@@ -190,7 +190,7 @@ def _unfit(
     except TypeError:
         parameters = [*signature.parameters.values()][own:]
     else:
-        return ""  # the body of the method raised it
+        return ""  # the error came from within
     names = [each.name for each in parameters]
     free = [each.name for each in parameters if each.kind is each.POSITIONAL_OR_KEYWORD]
     listed = f"arguments: {', '.join(names)}"
