@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import attrs
 import numpy as np
 
+from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.gathering import Gathering
 from contactlab.impact.gathering_scene import SPARSE
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.types import Array
+from contactlab.numeric.types import Array, Real
 from contactlab.outcome.motion import Motion
+from contactlab.registration.bring import state
 from contactlab.registration.names import KINDS
 from contactlab.registry import composition
 from contactlab.registry.acceptance import accept
@@ -110,11 +114,23 @@ def _laws_of(gathering: Gathering, laws: Laws | None) -> Laws:
             remedy = "leave out normal of the simulation, or restitution of the contacts"
             value = gathering.touches[k].restitution
             raise refuse(f"touches[{k}].restitution", value, rule, remedy)
-        name = composition.RESTITUTION["normal"]
         one = float(e.flat[0])  # one motion scales to all contacts of one restitution
-        given_e = one if np.all(e == one) else e
-        named["normal"] = composition.law("normal", name, restitution=given_e)
+        alike = bool(np.all(e == one))
+        if alike and not named:
+            return _of_restitution(one, state())
+        named["normal"] = _viscous(one if alike else e)
     return composition.compose(*(named.get(kind) for kind in KINDS))
+
+
+def _viscous(restitution: Real) -> NormalLaw:
+    """Return the normal law that stands for restitutions."""
+    return composition.law("normal", composition.RESTITUTION["normal"], restitution=restitution)
+
+
+@lru_cache(maxsize=16)
+def _of_restitution(restitution: float, _: object) -> Laws:
+    """Return the usual laws of one restitution; the plug-ins at hand are part of the key."""
+    return composition.compose(_viscous(restitution), None, None)
 
 
 def _bind(gathering: Gathering, laws: Laws) -> tuple[Laws, Scene]:
