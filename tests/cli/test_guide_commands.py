@@ -71,7 +71,7 @@ def test_the_first_commands_of_a_newcomer_run(run, tmp_path, monkeypatch):
 
 
 #: Commands that other tests run, for they are long.
-LONG = ("bench", "stability", "compare --all")
+LONG = ("bench", "stability", "compare --all", "validate")
 
 
 @pytest.mark.slow
