@@ -240,6 +240,7 @@ def test_third_party_plugin_on_the_command_line(plugin_path, tmp_path):
 KNOWLEDGE = ("materials", "columns", "shapes", "cautions", "reports", "options")
 
 
+@pytest.mark.slow
 def test_third_party_plugin_brings_one_of_each_kind(plugin_path, tmp_path):
     code = (
         "import contactlab; from contactlab.cli.main import main; "

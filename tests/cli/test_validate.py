@@ -148,6 +148,7 @@ def short(monkeypatch):
     )
 
 
+@pytest.mark.slow
 def test_tables_pictures_and_json(run, short, tmp_path):
     ran = run("validate", "--out", tmp_path / "pictures")
     assert ran.status == 0

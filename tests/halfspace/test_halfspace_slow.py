@@ -40,6 +40,7 @@ def test_finite_element_case(psi1, coupling):
     expected = FINITE_ELEMENTS[psi1][coupling == "two_way"]
     result = simulation(coupling=coupling).run(finite_element_case(psi1))
     assert result.psi2 == pytest.approx(expected, abs=4e-3)
+    assert abs(result.psi2 - expected) < 1.5 * result.plan.psi2_error
     if coupling == "two_way":
         normal = 0.5 * result.scene.pair.normal_mass * result.scene.normal_speed**2
         assert abs(result.energy.imbalance) < 3e-4 * normal
@@ -61,7 +62,6 @@ def test_64_rings(psi1, coupling):
     ("coupling", "cells", "steps", "bound"),
     [
         ("none", 32, 60, 6e-3),
-        ("none", 48, 120, 3e-3),
         ("one_way", 32, 60, 3e-3),
         ("two_way", 32, 100, 3e-3),
     ],

@@ -67,7 +67,8 @@ def test_torsion_of_little_and_of_much_slip_is_a_closed_form():
     assert (1e-7 - torsion(1e-7, 1e-6, nodes=40)) / 1e-13 == pytest.approx(7.5462014746, rel=2e-5)
 
 
-@pytest.mark.parametrize(("sigma1", "chi_t", "sigma2"), [TORSION[0], *longer(*TORSION[1:])])
+@pytest.mark.slow
+@pytest.mark.parametrize(("sigma1", "chi_t", "sigma2"), TORSION)
 def test_pure_spin_of_the_half_space(sigma1, chi_t, sigma2):
     assert pure(sigma1, chi_t, rings=64) == pytest.approx(sigma2, abs=1e-4)
 
@@ -122,9 +123,7 @@ def test_slip_and_spin_against_two_other_programs(rings, case):
     assert result.energy.checked
 
 
-@pytest.mark.parametrize(
-    ("cells", "steps", "bound"), longer((16, 30, 7e-3), (32, 60, 5e-3), (48, 120, 3.5e-3))
-)
+@pytest.mark.parametrize(("cells", "steps", "bound"), longer((16, 30, 7e-3), (32, 60, 5e-3)))
 def test_square_cells(cells, steps, bound):
     """Another discretisation, another solver, other steps, and no mirror."""
     grid = SquareGrid(cells, NU, 0.0, 0.0)

@@ -11,6 +11,7 @@ import pytest
 
 from contactlab import Scene, Simulation
 from contactlab_laws.march.division import midpoints, one_by_one
+from tests.longer import longer
 
 #: Modules that nothing here needs at first; NumPy 1 imports numpy.ma by itself.
 SLOW = ("scipy", "matplotlib", "argparse", *(["numpy.ma"] if int(np.__version__[0]) > 1 else []))
@@ -121,7 +122,7 @@ def test_a_central_elastic_run_loads_no_module_for_other_scenes():
 OTHERS = ("contactlab_fit", "contactlab_pages", "contactlab_halfspace", "contactlab.study")
 
 
-@pytest.mark.parametrize("normal", ["hertz", "viscoelastic"])
+@pytest.mark.parametrize("normal", ["hertz", *longer("viscoelastic")])
 def test_a_run_loads_no_module_of_fits_pages_study_or_half_space(normal):
     lines = (
         "import json, sys",

@@ -12,6 +12,7 @@ import pytest
 import contactlab
 from contactlab import Scene, Simulation, Status
 from contactlab_laws import compiled
+from tests.longer import longer
 
 needs_library = pytest.mark.skipif(compiled.library() is None, reason=compiled.tell())
 #: Equal numbers of both; of lossy scenes where a rounding of the speed moves nothing.
@@ -238,7 +239,7 @@ def test_impacts_that_last_too_long_are_told_as_by_python(both, monkeypatch):
 
 @needs_library
 @pytest.mark.skipif(not hasattr(signal, "SIGINT"), reason="no such signal")
-@pytest.mark.parametrize("lam", [0.0, 0.2])
+@pytest.mark.parametrize("lam", [0.0, *longer(0.2)])
 def test_control_c_is_heard_within_a_second(lam):
     scene = Scene.nondimensional(
         psi1=np.full(50, 0.5), chi=3.0, **({"lam": lam, "rho": 0.5} if lam else {})

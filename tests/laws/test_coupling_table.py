@@ -52,6 +52,7 @@ def test_at_a_node_the_table_is_the_solution():
     assert table == pytest.approx(fresh, abs=2e-4)
 
 
+@pytest.mark.slow
 @extra("contactlab_halfspace")
 def test_between_nodes():
     check(np.array([0.6, 4.5]), np.array([1.3, 1.5]), np.array([0.2, 0.4]), (0.7,))
@@ -61,5 +62,5 @@ def test_between_nodes():
 @pytest.mark.slow
 def test_between_nodes_at_random():
     random = np.random.default_rng(3)
-    psi1 = np.concatenate([random.uniform(0.2, 2.5, 20), random.uniform(0.0, 7.0, 20)])
-    check(psi1, random.uniform(0.85, 2.2, 40), random.uniform(0.0, 0.5, 40), (0.35, 1.5, 3.0))
+    psi1 = np.concatenate([random.uniform(0.2, 2.5, 10), random.uniform(0.0, 7.0, 10)])
+    check(psi1, random.uniform(0.85, 2.2, 20), random.uniform(0.0, 0.5, 20), (0.35, 1.5, 3.0))

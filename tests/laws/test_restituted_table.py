@@ -209,7 +209,7 @@ def test_the_largest_chi():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("chi", [3.5, 12.0, 40.0, 120.0, 500.0])
+@pytest.mark.parametrize("chi", [3.5, 40.0, 500.0])
 def test_far_beyond_the_table_the_error_is_declared(chi):
     """Springs of twice as many and of four times the steps, e next to 0 and 1 too."""
     from contactlab_laws.viscoelastic.batch import rebound as springs
@@ -243,7 +243,7 @@ def test_the_table_is_finer_springs():
     pytest.importorskip("table_builders", reason="table_builders is not in the wheel")
     from table_builders.restituted.checks import verify
 
-    assert verify(600, 11) == 0
+    assert verify(200, 11) == 0
 
 
 @pytest.mark.parametrize(("e", "seed"), [(0.8, 3), *longer((0.4, 4), (0.05, 5), (0.985, 6))])

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from contactlab import HalfSpace, Material, Scene, Simulation, Sphere
 from contactlab.registry.registry import REGISTRY
-from contactlab.study.bench_methods import methods
+from tests.every_method import every_method
 
 COARSE = {"annuli": 8, "springs": 8, "steps": 40, "tolerance": 1e-3}
 #: The exact solution and the fixed steps; adaptive steps follow rounding, and are slow.
-METHODS = [method for method in methods() if method.integrator != "adaptive"]
+METHODS = [method for method in every_method() if method.integrator != "adaptive"]
 
 
 def longer(method):

@@ -18,13 +18,13 @@ from hypothesis import strategies as st
 import contactlab
 from contactlab import HalfSpace, Material, PluginError, Scene, Simulation, Sphere
 from contactlab.registry.registry import REGISTRY
-from contactlab.study.bench_methods import methods
+from tests.every_method import every_method
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 #: chi above which the oscillations of one impact are counted in the hundreds.
 SLOW = 1e3
 FOLDER = Path(tempfile.mkdtemp(prefix="contactlab"))
-METHODS = methods()
+METHODS = every_method()
 CHEAP = {"annuli": 5, "springs": 5, "steps": 20}
 
 TRIED: dict[str, int] = {}

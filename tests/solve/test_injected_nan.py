@@ -15,7 +15,7 @@ import pytest
 import contactlab
 from contactlab import HalfSpace, ImpactError, Material, Scene, Simulation, Sphere
 from contactlab.registry.registry import REGISTRY
-from contactlab.study.bench_methods import methods
+from tests.every_method import every_method
 from tests.solve.spoiled import (
     Spoiler,
     spoiled_closed_form,
@@ -111,7 +111,7 @@ def answer(simulation, scene):
     return [*map(float, numbers), 1.0 + float(work)]
 
 
-METHODS = [method for method in methods() if not method.whole]
+METHODS = [method for method in every_method() if not method.whole]
 #: Adaptive steps are those of symplectic, and more of them: tried in the slow tests.
 STEPPED = [
     pytest.param(

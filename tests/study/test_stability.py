@@ -51,13 +51,14 @@ SPRINGS = contactlab.create("tangential.springs", shear_loss=0.0)
 
 
 @pytest.mark.slow
-def test_nothing_is_silently_wrong():
+@pytest.mark.parametrize("part", range(3))  # side by side
+def test_nothing_is_silently_wrong(part):
     """The reduced set over every installed law and integrator."""
-    found = stability(methods(), quick=True)
+    found = stability(methods()[part::3], quick=True)
     told = [f"{item.method}, {item.case}: {item.note}" for item in found.failures()]
     assert not told
     assert found.complete
-    assert found.tried() > 500
+    assert found.tried() > 170
 
 
 @attrs.frozen(kw_only=True)

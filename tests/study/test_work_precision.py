@@ -68,6 +68,7 @@ def test_errors_fall_with_the_steps_and_the_order_is_seen():
     assert all(entry.sweep_time_s < entry.time_s for entry in found.rows)
 
 
+@pytest.mark.slow
 def test_annuli_grow_as_the_tolerance_falls():
     found = bench(asked("tangential.annulus", "integrator.adaptive"), quick=True)
     errors = {entry.options.partition("tolerance=")[2]: entry.error_rms for entry in found.rows}
@@ -232,6 +233,7 @@ def test_doors_of_a_question_agree_with_its_truth(name, door, error):
             assert np.abs(answer - truth).max() < 1e-3
 
 
+@pytest.mark.slow
 @extra("contactlab_halfspace")
 def test_spin_about_the_normal_is_no_question_of_a_door_without_it():
     posed, answers = numbers("spin about the normal")
