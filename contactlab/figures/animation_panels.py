@@ -192,7 +192,7 @@ class Disc:
         history = result.history
         assert history
         fields = history.fields
-        self.state = number_states(fields)
+        self.state = number_states(fields["stuck"], fields["slipping"])
         self.radius = np.asarray(fields["radius"])
         self.edge = np.asarray(history.contact_radius)
         self.largest = float(result.motion.maximum_radius)

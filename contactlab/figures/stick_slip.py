@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
@@ -39,7 +37,7 @@ def draw_stick_slip(axes: Axes, result: ImpactResult) -> Axes:
         )
     time = history.time / result.motion.duration
     radius = history.fields["radius"][0] / result.motion.maximum_radius
-    state = number_states(history.fields)
+    state = number_states(history.fields["stuck"], history.fields["slipping"])
     colours = ListedColormap([*STATES.values(), NO_CONTACT])
     norm = BoundaryNorm(np.arange(-0.5, 4.0), 4)
     axes.pcolormesh(time, radius, state.T, cmap=colours, norm=norm, shading="nearest")
@@ -53,7 +51,9 @@ def draw_stick_slip(axes: Axes, result: ImpactResult) -> Axes:
     return axes
 
 
-def number_states(fields: Mapping[str, NDArray[np.generic]]) -> NDArray[np.int_]:
-    """Return the place in ``STATES`` of each annulus at each instant; one more out of contact."""
-    slipping = fields["slipping"]  # sign of the traction where it slips
-    return np.where(fields["stuck"], 1, np.where(slipping == 0, 3, slipping + 1))
+def number_states(stuck: NDArray[np.bool_], slipping: NDArray[np.int8]) -> NDArray[np.int_]:
+    """Return the place in ``STATES`` of each annulus at each instant; 3 out of contact.
+
+    ``slipping`` is the sign of the traction where an annulus slips, else 0.
+    """
+    return np.where(stuck, 1, np.where(slipping == 0, 3, slipping + 1))

@@ -13,6 +13,7 @@ import attrs
 import numpy as np
 
 from contactlab.numeric.labels import forbid_position
+from contactlab.numeric.names import quote as quote  # with what refuses
 from contactlab.numeric.taken import Taken
 from contactlab.numeric.types import Array, Numbers, Places, Real
 
@@ -58,15 +59,6 @@ GYRATION = Rule(
     lambda value: (value > 0.0) & (value <= 1.0),
     "must lie in (0, 1]: radius of gyration over radius, 1 with all mass at the surface",
 )
-
-
-def quote(value: object, *, most: int = 80) -> str:
-    """Return ``value`` as one line of at most ``most`` characters, for a message."""
-    try:
-        text = " ".join(repr(value).split())
-    except Exception:  # too many digits, lists nested too deeply, or a faulty __repr__
-        text = f"a {type(value).__name__}"
-    return text if len(text) <= most else text[: most - 3] + "..."
 
 
 def refuse(argument: str, value: object, rule: str, remedy: str = "") -> ValueError:

@@ -89,6 +89,15 @@ def nearest(name: str, known: Iterable[str], *, alike: float = 0.5) -> str:
     return f"did you mean {' or '.join(map(repr, meant[:2]))}{remark}? " if meant else ""
 
 
+def quote(value: object, *, most: int = 80) -> str:
+    """Return ``value`` as one line of at most ``most`` characters, for a message."""
+    try:
+        text = " ".join(repr(value).split())
+    except Exception:  # too many digits, lists nested too deeply, or a faulty __repr__
+        text = f"a {type(value).__name__}"
+    return text if len(text) <= most else text[: most - 3] + "..."
+
+
 def _plain(name: str) -> str:
     """Return a name without the hyphens of an option on the command line."""
     return name.lstrip("-").replace("-", "_")
@@ -113,27 +122,18 @@ def state_arguments(made: Class) -> Class:
 
 def _telling(made: Class, call: Callable[..., None]) -> Class:
     """Return a class whose class methods tell, and ``call`` in place of its ``__init__``."""
+    remedy = getattr(made, "_remedy", None)
     for name, each in [*vars(made).items()]:
         if isinstance(each, classmethod):
-            setattr(made, name, classmethod(_tell(made, each.__func__)))
+            setattr(made, name, classmethod(_tell(made.__name__, each.__func__, remedy)))
     stated = made.__init__  # type: ignore[misc]
-    made.__init__ = functools.wraps(stated)(_tell(made, call))  # type: ignore[misc]
+    made.__init__ = functools.wraps(stated)(_tell(made.__name__, call, remedy))  # type: ignore[misc]
     return made
 
 
 def tell_function(call: Function) -> Function:
     """Return a function whose wrong arguments are refused with the nearest, and all names."""
-
-    @functools.wraps(call)
-    def run(*values: object, **named: object) -> object:
-        try:
-            return call(*values, **named)
-        except TypeError:
-            if complaint := _unfit(call, (None, *values), named, None, own=0):
-                raise TypeError(f"{call.__name__}: {complaint}") from None
-            raise
-
-    return run  # type: ignore[return-value]
+    return _tell(call.__name__, call, None, own=0)  # type: ignore[return-value]
 
 
 def tell_attributes(made: Class) -> Class:
@@ -155,16 +155,18 @@ def tell_attributes(made: Class) -> Class:
     return made
 
 
-def _tell(made: type, call: Callable[..., T]) -> Callable[..., T]:
-    """Return a method that says which of its arguments are wrong."""
+def _tell(
+    name: str, call: Callable[..., T], remedy: Callable[[str, object], str] | None, *, own: int = 1
+) -> Callable[..., T]:
+    """Return a function that says which arguments are wrong; the first of methods is their own."""
 
     @functools.wraps(call)
     def run(*values: object, **named: object) -> T:
         try:
             return call(*values, **named)
         except TypeError:
-            if complaint := _unfit(call, values, named, getattr(made, "_remedy", None)):
-                raise TypeError(f"{made.__name__}: {complaint}") from None
+            if complaint := _unfit(call, values, named, remedy, own):
+                raise TypeError(f"{name}: {complaint}") from None
             raise
 
     return run
@@ -175,18 +177,14 @@ def _unfit(
     values: Sequence[object],
     named: Mapping[str, object],
     remedy: Callable[[str, object], str] | None,
-    *,
-    own: int = 1,
+    own: int,
 ) -> str:
-    """Return why arguments do not fit a method, and what would; empty if they fit.
-
-    ``values`` begin with the object; a function has ``own`` = 0 arguments of this kind.
-    """
+    """Return why arguments do not fit a call, and what would; empty if they fit."""
     import inspect  # slow to import, needed for wrong arguments only
 
     signature = inspect.signature(call)
     try:
-        signature.bind(*values[1 - own :], **named)
+        signature.bind(*values, **named)
     except TypeError:
         parameters = [*signature.parameters.values()][own:]
     else:
@@ -199,10 +197,10 @@ def _unfit(
             told = remedy(name, named[name]) if remedy else ""
             told = told or nearest(name, names, alike=0.75 if remedy else 0.5)
             return f"{name} is not an argument; {told}{listed}"
-    if len(values) - 1 > len(free):
+    if len(values) - own > len(free):
         rest = f"but for {' and '.join(free)}, " if free else ""
         return f"{rest}write arguments as name=value; {listed}"
-    given = {*free[: len(values) - 1], *named}
+    given = {*free[: len(values) - own], *named}
     for each in parameters:
         if each.default is each.empty and each.name not in given:
             return f"{each.name} must be given; {listed}"
@@ -227,7 +225,7 @@ def import_on_use(
         """Return a public name, imported on first use and kept."""
         if name not in modules:
             hint = "" if name.startswith("_") else f"; {nearest(name, modules)}".rstrip("; ")
-            if name.lower() in SHAPES and name not in modules:
+            if name.lower() in SHAPES:
                 hint = f"; that body is made by contactlab.{SHAPES[name.lower()]}"
                 hint = hint.replace("contactlab.contactlab", "contactlab")
             raise AttributeError(f"module {package!r} has no attribute {name!r}{hint}")

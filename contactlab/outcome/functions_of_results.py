@@ -11,7 +11,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from contactlab.impact.scene import Scene
-from contactlab.registration.hooks import short, shorten
+from contactlab.numeric.names import quote
+from contactlab.registration.hooks import short
 from contactlab.registration.installed import PluginWarning
 
 HISTORY = "history"
@@ -63,7 +64,7 @@ def _numbers(value: Callable[[WithScene], object], result: WithScene) -> object:
     try:
         numbers = np.asarray(given, dtype=float)
     except (TypeError, ValueError):
-        raise TypeError(f"it gave {shorten(given)}, which is no number") from None
+        raise TypeError(f"it gave {quote(given)}, which is no number") from None
     if numbers.ndim and numbers.shape[: len(shape)] != shape:
         raise ValueError(f"it gave the shape {numbers.shape} for impacts of the shape {shape}")
     return given

@@ -11,7 +11,8 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
-from contactlab.registration.hooks import HOOKS, PluginError, shorten
+from contactlab.numeric.names import quote
+from contactlab.registration.hooks import HOOKS, PluginError
 from contactlab.registration.manager import MANAGER, Told
 from contactlab.registration.names import BLOCK_VARIABLE, HERE, PROJECT
 
@@ -49,7 +50,7 @@ def sound(
         if not rule:
             found.append(told)
             continue
-        what = shorten(getattr(told.item, "name", told.item))
+        what = quote(getattr(told.item, "name", told.item))
         MANAGER.tell(told.info, PluginError(f"{told.info.source} brought {what}, {rule}"))
     return found
 

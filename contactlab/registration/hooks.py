@@ -170,12 +170,6 @@ def guard(source: str, failed: str, *, silent: bool = True) -> Iterator[None]:
         raise PluginError(f"{source} {failed}: {short(error)}{place}") from error
 
 
-def shorten(value: object, *, most: int = 60) -> str:
-    """Return an object as one line of a message."""
-    text = " ".join(repr(value).split())
-    return text if len(text) <= most else text[: most - 3] + "..."
-
-
 def short(error: BaseException) -> str:
     """Return the class and the message of an exception."""
     return f"{type(error).__name__}: {error}"

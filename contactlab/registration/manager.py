@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import pluggy
 
-from contactlab.numeric.names import nearest
+from contactlab.numeric.names import nearest, quote
 from contactlab.registration import hooks
 from contactlab.registration.hooks import (
     FURTHER,
@@ -21,7 +21,6 @@ from contactlab.registration.hooks import (
     PluginError,
     guard,
     short,
-    shorten,
 )
 from contactlab.registration.installed import (
     PluginWarning,
@@ -279,7 +278,7 @@ class Manager(pluggy.PluginManager):
                     answers = caller(**arguments)
                 for answer in answers:
                     if no_list(answer):
-                        rule = f"returned {shorten(answer)} when asked for its {kind}"
+                        rule = f"returned {quote(answer)} when asked for its {kind}"
                         raise PluginError(f"{info.source} {rule}: must be a list; return [...]")
                 with guard(info.source, f"raised when asked for its {kind}", silent=silent):
                     found += [Told(info, item) for answer in answers for item in answer or ()]

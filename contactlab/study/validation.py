@@ -16,10 +16,11 @@ from contactlab.impact.elliptic import ellipse
 from contactlab.impact.hertz import hertz_scales, rigid_body_rebound
 from contactlab.impact.material import Material
 from contactlab.impact.scene import Scene
+from contactlab.numeric.names import quote
 from contactlab.numeric.progress import Count
 from contactlab.numeric.types import Array
 from contactlab.registration.bring import sound
-from contactlab.registration.hooks import PluginError, guard, hookimpl, shorten
+from contactlab.registration.hooks import PluginError, guard, hookimpl
 from contactlab.registration.manager import Told
 from contactlab.registration.names import PROJECT
 from contactlab.registry import composition
@@ -138,7 +139,7 @@ def _run_check(told: Told) -> Finding:
     try:
         with guard(f"{name} of {told.info.distribution}", "raised"):
             found = told.item()
-        rule = f"returned {shorten(found)}, no Finding"
+        rule = f"returned {quote(found)}, no Finding"
     except PluginError as error:
         found, rule = None, str(error)
     if isinstance(found, Finding):

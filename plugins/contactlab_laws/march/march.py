@@ -26,7 +26,14 @@ from contactlab.contracts import (
 )
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import keep_freed_memory, lock_arrays, plain, spread, spread_object
+from contactlab.numeric.arrays import (
+    finite,
+    keep_freed_memory,
+    lock_arrays,
+    plain,
+    spread,
+    spread_object,
+)
 from contactlab.numeric.checks import quote
 from contactlab.numeric.types import Array, Real
 from contactlab_laws.march.division import one_by_one
@@ -69,7 +76,7 @@ def _all_at_once(
     if response.settled is not True and not np.all(response.settled):
         detail = faults.sentence(law, "no division into stick and slip found", count + 1)
         fault = faults.LawFaultError(Status.UNSETTLED, detail)
-    elif not _finite(change):
+    elif not finite(change):
         step = int((~np.isfinite(force)).reshape(count, -1).any(axis=1).argmax())
         detail = faults.sentence(law, f"force {_number(force[step])}", step + 1)
         fault = faults.LawFaultError(Status.NON_FINITE, detail)
@@ -193,7 +200,7 @@ def _end(
     shear_loss: Real = 0.0,
 ) -> TangentialMotion:
     """Return the motion up to ``fault``; friction work that is not finite is a failure too."""
-    if fault is None and not _finite(work):
+    if fault is None and not finite(work):
         detail = faults.sentence(law, f"friction work {_number(work)}", count)
         fault = faults.LawFaultError(Status.NON_FINITE, detail)
     shape = normal.scene.shape
@@ -210,11 +217,6 @@ def _end(
 def _number(value: Real) -> str:
     """Return a number, or the numbers of a batch, for a sentence."""
     return quote(plain(value))
-
-
-def _finite(value: Real) -> bool:
-    """Return whether all numbers are finite."""
-    return math.isfinite(value) if isinstance(value, float) else bool(np.isfinite(value).all())
 
 
 def _unsound(normal: NormalMotion, steps: Steps) -> tuple[Status, str] | None:
