@@ -6,3 +6,6 @@ distribution. The module docstring is the help (one line, then examples), and it
 subcommand prints data on stdout and everything else on stderr, and raises ``ValueError`` for bad
 input.
 """
+
+#: Exit statuses; the last two are those of a shell for a program that a signal ended.
+OK, FAILED, BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 130, 141

@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Any, TextIO, TypedDict
 
 import attrs
 
-from contactlab.cli.statuses import BAD_INPUT as BAD_INPUT
-from contactlab.cli.statuses import FAILED as FAILED
-from contactlab.cli.statuses import INTERRUPTED as INTERRUPTED
-from contactlab.cli.statuses import OK as OK
+from contactlab.cli import BAD_INPUT as BAD_INPUT
+from contactlab.cli import FAILED as FAILED
+from contactlab.cli import INTERRUPTED as INTERRUPTED
+from contactlab.cli import OK as OK
 from contactlab.numeric.progress import progress as progress  # exported to the subcommands
 from contactlab.outcome.files import distinct, replace_file, unwritable
 from contactlab.registration.hooks import Execute

@@ -17,7 +17,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from typing import TYPE_CHECKING, NoReturn, TextIO
 
 import contactlab
-from contactlab.cli.statuses import BAD_INPUT, BROKEN_PIPE, FAILED, INTERRUPTED
+from contactlab.cli import BAD_INPUT, BROKEN_PIPE, FAILED, INTERRUPTED
 from contactlab.cli.terminal import fit_terminal
 from contactlab.numeric.names import nearest
 from contactlab.registration.hooks import PluginError

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import textwrap
 from pathlib import Path
 from typing import Any
 
 from contactlab.cli import arguments as shared
 from contactlab.outcome.columns import json_value
-from contactlab.outcome.text_table import WIDTH, table
+from contactlab.outcome.text_table import fill, table
 from contactlab.study.by_row import ByRow, by_row
 
 #: The picture of all slopes, in the folder of ``--out``.
@@ -49,11 +48,7 @@ def _text(one: ByRow) -> str:
         [law, one.rms(law), _count_within(one, law), one.chi2(law), one.worst(law)]
         for law in one.ordered
     ]
-    words = [
-        textwrap.fill(text, WIDTH, break_on_hyphens=False, break_long_words=False)
-        for text in one.words
-        if text
-    ]
+    words = [fill(text) for text in one.words if text]
     return "\n".join([f"{one.title} ({one.kind})", *words, table(headings, rows, digits=3)])
 
 

@@ -11,7 +11,6 @@ Examples
 from __future__ import annotations
 
 import argparse
-import textwrap
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +20,7 @@ from contactlab.cli import arguments as shared
 from contactlab.cli import measured
 from contactlab.outcome.columns import json_value
 from contactlab.outcome.tables import heading
-from contactlab.outcome.text_table import WIDTH, table
+from contactlab.outcome.text_table import fill, table
 from contactlab.registration.hooks import Execute, hookimpl
 from contactlab.study.evidence import Evidence, gather
 from contactlab.study.validation import Finding, validate
@@ -127,10 +126,7 @@ def _agreement(evidence: Evidence) -> str:
         rows.append(reading)
     paragraphs = [
         f"{evidence.file.title} ({evidence.source.kind})",
-        *(
-            textwrap.fill(text.strip(), WIDTH, break_on_hyphens=False, break_long_words=False)
-            for text in (evidence.file.citation, evidence.file.notes)
-        ),
+        *(fill(text.strip()) for text in (evidence.file.citation, evidence.file.notes)),
         table(headings, rows, digits=3),
     ]
     return "\n".join(paragraphs)

@@ -34,6 +34,11 @@ def table(headings: Sequence[str], rows: Sequence[Sequence[object]], *, digits: 
     return "\n".join(line for row in (head, rule, *body) for line in _lines(row, widths, texts))
 
 
+def fill(text: str) -> str:
+    """Return a text in lines of ``WIDTH``, no word broken."""
+    return textwrap.fill(text, WIDTH, break_on_hyphens=False, break_long_words=False)
+
+
 def _lines(row: Sequence[Sequence[str]], widths: Sequence[int], texts: Sequence[bool]) -> list[str]:
     """Return the lines of a row; each cell is a list of lines."""
     lines = []

@@ -121,6 +121,11 @@ class Agreement:
         return float(self.measured.x[self.defined][np.argmax(off)])
 
 
+def by_rms(rms: Mapping[str, float]) -> list[str]:
+    """Return the names of laws by their rms; NaN comes last."""
+    return sorted(rms, key=lambda law: (math.isnan(rms[law]), rms[law]))
+
+
 def values_of(quantity: str, result: ImpactResult) -> Array:
     """Return a quantity of a result, with NaN for impacts that failed."""
     good = np.asarray(result.status, dtype=object) == Status.SUCCESS

@@ -12,6 +12,7 @@ from contactlab.numeric.types import Array
 from contactlab.outcome.tables import heading, number
 from contactlab.registry.composition import DEFAULT_NORMAL
 from contactlab.runs.simulation import Simulation
+from contactlab.study.agreement import by_rms
 from contactlab.study.evidence import (
     NORMALS,
     Slopes,
@@ -55,8 +56,7 @@ class ByRow:
     @property
     def ordered(self) -> list[str]:
         """Names of the laws by rms; laws that fail come last."""
-        rms = {law: self.rms(law) for law in self.laws}
-        return sorted(rms, key=lambda law: (np.isnan(rms[law]), rms[law]))
+        return by_rms({law: self.rms(law) for law in self.laws})
 
     def off(self, law: str) -> Array:
         """Return predicted less measured values, shape (n,)."""

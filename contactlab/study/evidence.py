@@ -19,7 +19,7 @@ from contactlab.registry.composition import DEFAULT_NORMAL
 from contactlab.registry.registry import REGISTRY, PluginError
 from contactlab.runs.simulation import Simulation
 from contactlab.scene_file import SceneFile, read_scene
-from contactlab.study.agreement import Agreement, LawRun
+from contactlab.study.agreement import Agreement, LawRun, by_rms
 from contactlab.study.comparison import Comparison
 from contactlab.study.slopes import SlopeFile, read_slopes
 from contactlab.study.validation import Finding
@@ -139,8 +139,7 @@ class Evidence:
     def laws(self) -> list[str]:
         """Names of the laws by rms difference from the first series; failed laws come last."""
         first = self.comparison.agreements[0]
-        rms = {name: first.rms(name) for name in first.results}
-        return sorted(rms, key=lambda name: (np.isnan(rms[name]), rms[name]))
+        return by_rms({name: first.rms(name) for name in first.results})
 
     def scatter(self, agreement: Agreement) -> float:
         """Return the rms measurement error of a series, in its unit; NaN if none is stated."""

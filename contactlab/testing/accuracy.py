@@ -55,9 +55,7 @@ def controls_error(integrator: Integrator) -> None:
     bound = accuracy_of(integrator) or 0.0
     apply_if(bound, "The integrator controls no error.")
     for simulation in fitting(integrator, (PressedSpring(), SlidingForEver()), "normal.hertz"):
-        exact = _exact(simulation, 7.0)
-        unit = abs(scene(7.0, CHI).slip_velocity)
-        error = abs(march_impact(simulation, 7.0).slip_velocity_change - exact) / unit
+        error = _error(simulation)
         within(error, bound, f"psi2 is {error:.1e} off the exact solution.")
 
 
@@ -65,17 +63,14 @@ def controls_error(integrator: Integrator) -> None:
 def finer_is_better(integrator: Integrator) -> None:
     """A finer resolution reduces the error (contract of Law, 5)."""
     for simulation in fitting(integrator, (PressedSpring(), SlidingForEver()), "normal.hertz"):
-        exact = _exact(simulation, 7.0)
-        unit = abs(scene(7.0, CHI).slip_velocity)
-        error = abs(march_impact(simulation, 7.0).slip_velocity_change - exact) / unit
+        error = _error(simulation)
         within(error, 0.05, f"psi2 is {error:.1e} off the exact solution.")
         if integrator.resolution is None or accuracy_of(integrator) is not None:
             continue
         value = resolution_of(integrator)
         better = 4 * value if isinstance(value, int) else value / 16.0
         finer = at_resolution(integrator, better)
-        change = march_impact(attrs.evolve(simulation, integrator=finer), 7.0).slip_velocity_change
-        finer_error = abs(change - exact) / unit
+        finer_error = _error(attrs.evolve(simulation, integrator=finer))
         within(
             finer_error,
             max(0.6 * error, 1e-12),
@@ -146,6 +141,12 @@ def _imbalance(simulation: Simulation, psi1: float) -> float:
     change, unit = impact.psi(motion.slip_velocity_change), impact.pair.tangential_mass
     work = motion.friction_work * impact.psi_scale**2 / unit
     return float(abs(change * (psi1 + 0.5 * change) + work) / (0.5 * max(psi1, 1.0) ** 2))
+
+
+def _error(simulation: Simulation) -> float:
+    """Return the error of psi2 over psi1 where psi1 is 7."""
+    off = march_impact(simulation, 7.0).slip_velocity_change - _exact(simulation, 7.0)
+    return abs(float(off)) / abs(float(scene(7.0, CHI).slip_velocity))
 
 
 def _exact(simulation: Simulation, psi1: float) -> Real:

@@ -7,9 +7,9 @@ import warnings
 import pytest
 
 import contactlab
+from contactlab import cli
 from contactlab.cli import main as module
 from contactlab.cli import run as run_command
-from contactlab.cli import statuses
 from contactlab.contracts.status import Status
 from contactlab.registry.registry import PluginWarning
 
@@ -73,8 +73,8 @@ def test_a_command_that_is_not_there(run):
 
 
 def test_exit_statuses_are_those_of_a_shell():
-    found = (statuses.OK, statuses.FAILED, statuses.BAD_INPUT, statuses.INTERRUPTED,
-             statuses.BROKEN_PIPE)  # fmt: skip
+    found = (cli.OK, cli.FAILED, cli.BAD_INPUT, cli.INTERRUPTED,
+             cli.BROKEN_PIPE)  # fmt: skip
     assert found == (0, 1, 2, 128 + 2, 128 + 13)  # of SIGINT and of SIGPIPE
 
 
