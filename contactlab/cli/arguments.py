@@ -341,7 +341,14 @@ def add_laws(
     parser: argparse.ArgumentParser, *, kinds: Sequence[str] = KINDS, many: bool = False
 ) -> None:
     """Add ``--set`` and an option for each kind of law; with ``many`` a list of names."""
-    add_law_names(parser, kinds=kinds, many=many)
+    for kind in kinds:
+        word = "integrator" if kind == "integrator" else f"{kind} law"
+        parser.add_argument(
+            f"--{kind}",
+            type=names if many else str,
+            metavar="A,B,..." if many else "NAME",
+            help=f"name of the {word}" + (", or several" if many else "") + "; or file.py:Class",
+        )
     if "normal" in kinds:
         add_restitution(parser)
     parser.add_argument(
@@ -353,20 +360,6 @@ def add_laws(
         metavar="KIND.OPTION=VALUE",
         help="option of a law: tangential.annuli=50, integrator.steps=500; may be repeated",
     )
-
-
-def add_law_names(
-    parser: argparse.ArgumentParser, *, kinds: Sequence[str] = KINDS, many: bool = False
-) -> None:
-    """Add an option for each kind of law; with ``many`` a list of names."""
-    for kind in kinds:
-        word = "integrator" if kind == "integrator" else f"{kind} law"
-        parser.add_argument(
-            f"--{kind}",
-            type=names if many else str,
-            metavar="A,B,..." if many else "NAME",
-            help=f"name of the {word}" + (", or several" if many else "") + "; or file.py:Class",
-        )
 
 
 def add_restitution(parser: argparse.ArgumentParser) -> None:

@@ -83,9 +83,10 @@ def _draw(
         )
         print(f"no map drawn: {why}", file=sys.stderr)
         return False
-    from contactlab.figures.stability import draw_stability  # matplotlib only when drawing
+    from contactlab.figures.files import save  # matplotlib only when drawing
+    from contactlab.figures.stability import draw_least_steps
 
-    draw_stability(path, maps, **shared.look(arguments))
+    save(path, lambda axes: draw_least_steps(axes, maps), **shared.look(arguments))
     return True
 
 

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from contactlab.figures.files import save
 from contactlab.figures.names import name_curves
-from contactlab.outcome.style import ASIDE, Look, Width, label, law_style, verbatim
+from contactlab.outcome.style import ASIDE, label, law_style, verbatim
 from contactlab.study.error_map import ErrorMap
 
 #: Error of psi2 that is asked for, from the law's own limit.
@@ -20,21 +18,6 @@ ALLOWED = 0.01
 #: The factor of the root of chi that is enough is told in multiples of this number.
 ROUNDED = 5
 REFUSED_COLOUR = "#DDDDDD"
-
-
-def draw_stability(
-    path: Path, maps: Sequence[ErrorMap], *, look: Look = "print", width: Width | None = None
-) -> None:
-    """Draw the steps that each law needs, and write a picture.
-
-    Parameters
-    ----------
-    path : Path
-    maps : sequence of ErrorMap
-    look, width
-        As of ``contactlab.figures.files.save``.
-    """
-    save(path, lambda axes: draw_least_steps(axes, maps), look=look, width=width)
 
 
 def draw_least_steps(axes: Axes, maps: Sequence[ErrorMap]) -> Axes:
@@ -47,7 +30,11 @@ def draw_least_steps(axes: Axes, maps: Sequence[ErrorMap]) -> Axes:
     """
     lines, names = [], []
     for number, each in enumerate(maps):
-        lines += axes.plot(each.chis, _least(each), **(law_style(number) | {"linewidth": 1.0}))
+        lines += axes.plot(
+            each.chis,
+            _least(each, each.error <= ALLOWED, np.nan),
+            **(law_style(number) | {"linewidth": 1.0}),
+        )
         names.append(verbatim(each.law.replace("_", " ")))
     axes.set_xscale("log")
     axes.set_yscale("log")
@@ -65,7 +52,9 @@ def draw_least_steps(axes: Axes, maps: Sequence[ErrorMap]) -> Axes:
         words = "\n".join([rf"more than {max(maps[0].steps)} at some $\chi$:", *beyond])
         axes.text(0.03, 0.97, words, transform=axes.transAxes, va="top", **ASIDE)
     if maps:
-        refused = np.min([_find_least_steps(each) for each in maps], axis=0)
+        refused = np.min(
+            [_least(each, np.isfinite(each.error), each.steps[-1]) for each in maps], axis=0
+        )
         lowest = min(maps[0].steps)
         axes.fill_between(maps[0].chis, lowest, refused, color=REFUSED_COLOUR, linewidth=0.0)
         axes.set_ylim(lowest, None)
@@ -85,7 +74,7 @@ def enough_steps(maps: Sequence[ErrorMap]) -> tuple[int, list[str]]:
     needs: list[float] = []
     beyond: list[str] = []
     for each in maps:
-        least = _least(each)
+        least = _least(each, each.error <= ALLOWED, np.nan)
         if np.isnan(least).any():
             beyond.append(each.law.replace("_", " "))
             continue
@@ -95,19 +84,8 @@ def enough_steps(maps: Sequence[ErrorMap]) -> tuple[int, list[str]]:
     return factor, beyond
 
 
-def _least(drawn: ErrorMap) -> NDArray[np.float64]:
-    """Return the least steps from which on the error is allowed, for each chi; NaN if none are."""
-    steps = np.array([*drawn.steps, np.nan])
-    good = drawn.error <= ALLOWED
-    return np.asarray(steps[len(drawn.steps) - _from_above(good)])
-
-
-def _find_least_steps(drawn: ErrorMap) -> NDArray[np.float64]:
-    """Return the least steps that were not refused, for each chi."""
-    steps = np.array([*drawn.steps, drawn.steps[-1]], dtype=np.float64)
-    return np.asarray(steps[len(drawn.steps) - _from_above(np.isfinite(drawn.error))])
-
-
-def _from_above(good: NDArray[np.bool_]) -> NDArray[np.int_]:
-    """Return how many rows, counted from the last, are good without a gap."""
-    return np.asarray(np.cumprod(good[::-1], axis=0).sum(axis=0))
+def _least(drawn: ErrorMap, good: NDArray[np.bool_], beyond: float) -> NDArray[np.float64]:
+    """Return the least steps from which on all are good, for each chi; ``beyond`` if none are."""
+    steps = np.array([*drawn.steps, beyond], dtype=np.float64)
+    from_above = np.cumprod(good[::-1], axis=0).sum(axis=0)  # rows, counted from the last
+    return np.asarray(steps[len(drawn.steps) - from_above])

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from contactlab.figures.stability import draw_least_steps, draw_stability, enough_steps
+from contactlab.figures.files import save
+from contactlab.figures.stability import draw_least_steps, enough_steps
 from contactlab.study.error_map import ErrorMap
 
 NAN = np.nan
@@ -61,5 +62,5 @@ def test_least_steps_of_the_map_do_not_set_the_line():
 @pytest.mark.slow
 def test_a_picture_is_written_also_without_a_map(tmp_path):
     for maps in (MAPS, []):
-        draw_stability(tmp_path / "a.png", maps, width="two")
+        save(tmp_path / "a.png", lambda axes, maps=maps: draw_least_steps(axes, maps), width="two")
         assert (tmp_path / "a.png").read_bytes()[1:4] == b"PNG"
