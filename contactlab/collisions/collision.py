@@ -428,7 +428,8 @@ def _attributes(encounter: Encounter, result: ImpactResult, met: Mask) -> dict[s
     motion, part = result.motion, encounter if every(met) else encounter.take(met)
     axes = result.scene.frame
     assert axes is not None
-    moved: dict[str, Any] = push_bodies(part, axes, result.impulse, result.couple) | {
+    couple = result.couple if kinetics.turns(result.scene) else 0.0
+    moved: dict[str, Any] = push_bodies(part, axes, result.impulse, couple) | {
         "normal_velocity": motion.normal_velocity,
         "slip_velocity_change": motion.slip_velocity_change,
         "friction_work": motion.friction_work,

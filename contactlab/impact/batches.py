@@ -231,7 +231,7 @@ class Batches(Motions):
         if indices.shape != self.shape or indices.dtype.kind not in "iu":
             rule = f"must be whole numbers of the shape {self.shape}"
             raise refuse("index", index, rule, "such as scene.index of the whole batch")
-        return self._with(_index=indices if self.shape else int(indices))
+        return self._with(_index=batch.lock_arrays(indices) if self.shape else int(indices))
 
 
 def over(scene: AnyScene, axes: Mapping[str, Numbers]) -> AnyScene:

@@ -20,8 +20,8 @@ from contactlab.impact.bodies import (
 )
 from contactlab.impact.of_speed import OfSlip
 from contactlab.impact.rigid_body import RigidBody
-from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import choose, every, magnitude, some
+from contactlab.impact.scene import Scene, of_contact
+from contactlab.numeric.arrays import choose, every, lock_arrays, magnitude, some
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import AnyArray, Array, Complex, Mask, Real, Rows, Vector
 from contactlab.numeric.vectors import (
@@ -35,7 +35,7 @@ from contactlab.numeric.vectors import (
     moving,
     over,
     rows,
-    solve_tensor,
+    solve_factored,
     square_root,
 )
 
@@ -160,10 +160,12 @@ class Side(NamedTuple):
 def sides(encounter: _Meeting, normal: Vector) -> list[Side]:
     """Return the bodies that move; a half-space does not."""
     found = []
-    for name, sense in (("", 1.0), ("target_", -1.0)):
-        body = encounter.target if name else encounter.body
+    for name, body, contact, sense in (
+        ("", encounter.body, encounter.contact, 1.0),
+        ("target_", encounter.target, encounter.target_contact, -1.0),
+    ):
         if isinstance(body, RigidBody):
-            found.append(Side(name, body, components(getattr(encounter, f"{name}contact")), sense))
+            found.append(Side(name, body, components(contact), sense))
         elif isinstance(body, Sphere):
             reach = sense * body.radius
             found.append(Side(name, body, tuple(reach * each for each in normal), sense))
@@ -173,18 +175,24 @@ def sides(encounter: _Meeting, normal: Vector) -> list[Side]:
 def turn_body(body: Sphere | RigidBody, *moments: Vector) -> list[Vector]:
     """Return J⁻¹ times moments about the centre of mass."""
     if isinstance(body, RigidBody):
-        tensor = rows(body.inertia)
-        return [solve_tensor(tensor, moment) for moment in moments]
+        return solve_factored(body._factors, *moments)
     inertia = body.mass * body.gyration_ratio**2 * body.radius * body.radius
     return [tuple(each / inertia for each in moment) for moment in moments]
 
 
-def inverse_mass_of(bodies: Sequence[Side], axes: Sequence[Vector]) -> list[list[Any]]:
-    """Return the rows of W in 1/kg along unit vectors at right angles."""
-    W: list[list[Any]] = [[0.0 for _ in axes] for _ in axes]
-    for side in bodies:
-        add_coupling(W, (side, axes), (side, axes))
-    return W
+def inverse_mass_of(bodies: Sequence[Side], axes: Sequence[Vector]) -> Rows:
+    """Return the rows of W in 1/kg along three unit vectors at right angles."""
+    a: Real = 0.0
+    b, c, d, e, f = a, a, a, a, a
+    for _, body, arm, _ in bodies:
+        # an impulse p turns the body by J⁻¹ (arm x p), and moves the contact by that x its arm
+        first, second, third = moments = [cross(arm, axis) for axis in axes]
+        x, y, z = turn_body(body, *moments)
+        lightness = 1.0 / body.mass
+        a = a + lightness + dot(first, x)
+        b, c = b + dot(second, x), c + lightness + dot(second, y)
+        d, e, f = d + dot(third, x), e + dot(third, y), f + lightness + dot(third, z)
+    return (a, b, d), (b, c, e), (d, e, f)
 
 
 def add_coupling(
@@ -194,21 +202,11 @@ def add_coupling(
 ) -> None:
     """Add to rows of W in 1/kg the motion of one contact of a body by forces at another.
 
-    A contact is its body and its axes; with itself it is a block on the diagonal of W.
+    A contact is its body and its axes.
     """
     (here, axes), (there, across) = one, other
-    mass = here.body.mass
-    # an impulse p turns the body by J⁻¹ (arm x p), and moves a contact by that x its arm
+    mass, sense = here.body.mass, here.sense * there.sense
     moments = [cross(here.arm, axis) for axis in axes]
-    if here is there:
-        turns = turn_body(here.body, *moments)
-        for i, moment in enumerate(moments):
-            row = inverse[i]
-            row[i] = row[i] + 1.0 / mass
-            for j in range(i + 1):
-                row[j] = inverse[j][i] = row[j] + dot(moment, turns[j])
-        return
-    sense = here.sense * there.sense
     turns = turn_body(here.body, *[cross(there.arm, axis) for axis in across])
     for row, axis, moment in zip(inverse, axes, moments, strict=True):
         for j, turn in enumerate(turns):
@@ -219,7 +217,7 @@ def relative_velocity(encounter: _Meeting, bodies: Sequence[Side]) -> Vector:
     """Return the velocity in m/s of the first body over the target at the contact."""
     velocity: Vector = difference(encounter.velocity, encounter.target_velocity)
     for name, _, arm, sense in bodies:
-        spin = getattr(encounter, f"{name}spin")
+        spin = encounter.target_spin if name else encounter.spin
         if moving(spin):
             rim = cross(components(spin), arm)
             velocity = [v + sense * each for v, each in zip(velocity, rim, strict=True)]
@@ -246,6 +244,8 @@ def _spin_alone(encounter: _Meeting, bodies: Sequence[Side], n: Vector, round_: 
 
     The spin counts as 0 where a body is off centre, or the normal no principal axis of its inertia.
     """
+    if not some(round_):
+        return 0.0
     spin = choose(round_, spin_about(encounter, n), 0.0)
     for _, body, arm, _ in bodies:
         if isinstance(body, RigidBody) and some(spin != 0.0):
@@ -279,13 +279,15 @@ def meeting_of_bodies(encounter: _Meeting, normal: Vector) -> Contact:
 
 def _tangents(normal: Vector) -> tuple[Vector, Vector]:
     """Return unit vectors of the tangent plane at right angles: along an axis, and n times that."""
-    x, y, z = map(magnitude, normal)
-    first, second = (x <= y) & (x <= z), (y < x) & (y <= z)
-    axis = (choose(first, 1.0, 0.0), choose(second, 1.0, 0.0), choose(first | second, 0.0, 1.0))
-    part = dot(axis, normal)
-    along = [each - part * n for each, n in zip(axis, normal, strict=True)]
-    size = square_root(dot(along, along))
-    one = along[0] / size, along[1] / size, along[2] / size
+    (x, y, z), (a, b, c) = normal, map(magnitude, normal)
+    # the axis of the least component: one of the three is 1
+    i = choose((a <= b) & (a <= c), 1.0, 0.0)
+    j = choose((b < a) & (b <= c), 1.0, 0.0)
+    k = 1.0 - i - j
+    part = i * x + j * y + k * z
+    u, v, w = i - part * x, j - part * y, k - part * z
+    size = square_root(u * u + v * v + w * w)
+    one = u / size, v / size, w / size
     return one, cross(normal, one)
 
 
@@ -295,18 +297,19 @@ def frame(encounter: _Meeting, bodies: Sequence[Side], normal: Vector) -> Frame:
     For an ellipse t1 is the axis that holds both, or else the major one.
     """
     one, other = _tangents(normal)
-    W = inverse_mass_of(bodies, (normal, one, other))
+    (pressed, p, q), (_, a, b), (_, _, d) = inverse_mass_of(bodies, (normal, one, other))
     velocity = relative_velocity(encounter, bodies)
     approach = dot(velocity, normal)
     # vectors of the tangent plane are complex numbers
-    coupling = W[0][1] + 1j * W[0][2]
+    coupling = p + 1j * q
     slip = dot(velocity, one) + 1j * dot(velocity, other)
+    # half the trace of the tangential part, and the rest, which turns twice as far
+    mean, rest = 0.5 * (a + d), 0.5 * (a - d) + 1j * b
     # the first of coupling, slip and any axis that is not lost in rounding, as ``ways`` judges it
-    least = (
-        inverse_mass.ROUNDING * square_root(0.5 * W[0][0] * (W[1][1] + W[2][2])),
-        inverse_mass.ROUNDING * square_root(dot(velocity, velocity)),
+    candidates = (
+        (coupling, inverse_mass.ROUNDING * square_root(pressed * mean)),
+        (slip, inverse_mass.ROUNDING * square_root(dot(velocity, velocity))),
     )
-    candidates = ((coupling, least[0]), (slip, least[1]))
     turn: Complex = 1.0 + 0.0j
     for vector, rounding in reversed(candidates):
         size = magnitude(vector)
@@ -316,17 +319,15 @@ def frame(encounter: _Meeting, bodies: Sequence[Side], normal: Vector) -> Frame:
         turn, gap = _along_an_axis(gap, turn, candidates)
     back: Any = turn.conjugate()
     coupling, slip = coupling * back, slip * back
-    c, s = turn.real, turn.imag
-    # half the trace of the tangential part, and the rest, which turns twice as far
-    mean, rest = 0.5 * (W[1][1] + W[2][2]), 0.5 * (W[1][1] - W[2][2]) + 1j * W[1][2]
     rest = rest * back * back
+    c, s, (x, y, z), (u, v, w) = turn.real, turn.imag, one, other
     axes = (
         normal,
-        (c * one[0] + s * other[0], c * one[1] + s * other[1], c * one[2] + s * other[2]),
-        (c * other[0] - s * one[0], c * other[1] - s * one[1], c * other[2] - s * one[2]),
+        (c * x + s * u, c * y + s * v, c * z + s * w),
+        (c * u - s * x, c * v - s * y, c * w - s * z),
     )
     tensor = (
-        (W[0][0], coupling.real, coupling.imag),
+        (pressed, coupling.real, coupling.imag),
         (coupling.real, mean + rest.real, rest.imag),
         (coupling.imag, rest.imag, mean - rest.real),
     )
@@ -341,14 +342,12 @@ def gap_of(encounter: _Meeting, t1: Vector, t2: Vector) -> Gap:
     ValueError
         If the bodies do not curve apart in every direction: they touch along a line or a face.
     """
-    bodies = encounter.body, encounter.target
-    (one, other, axis), (two, another, across) = (_curvatures(body, t1, t2) for body in bodies)
+    one, other, axis = _curvatures(encounter.body, t1, t2)
+    two, another, across = _curvatures(encounter.target, t1, t2)
     mean = 0.5 * ((one + other) + (two + another))
-    elliptic: Mask = False
-    if any(getattr(body, "cross_radius", None) is not None for body in bodies):
-        uneven = 0.5 * ((one - other) * axis * axis + (two - another) * across * across)
-        size = magnitude(uneven)
-        elliptic = size > ROUND * magnitude(mean)
+    uneven = 0.5 * ((one - other) * axis * axis + (two - another) * across * across)
+    size = magnitude(uneven)
+    elliptic = size > ROUND * magnitude(mean)
     if not some(elliptic):
         if not every(mean > 0.0):
             rule = "one of the bodies must be curved, and both curve apart"
@@ -426,7 +425,7 @@ def _along_an_axis(
     back = np.where(pressed, sense[0], sense[1]) < 0.0
     first = np.where(minor, 1j, 1.0) * gap.major
     first = np.where(gap.elliptic, np.where(back, -first, first), turn)
-    return first[()], gap._replace(minor=minor)
+    return first if first.ndim else first.item(), gap._replace(minor=minor)
 
 
 def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
@@ -442,7 +441,10 @@ def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
     planar = not some(across | (ways == inverse_mass.SPATIAL))
     along = slip[0] if planar else join_components(slip, shape)
     tangential = W[1][1] if planar else 0.5 * (W[1][1] + W[2][2])
-    entries: dict[str, Any] = {"inverse_mass": join_components(W, shape), "planar": planar}
+    entries: dict[str, Any] = {
+        "inverse_mass": lock_arrays(join_components(W, shape)),
+        "planar": planar,
+    }
     if every(central):
         along, entries = hypotenuse(*slip), {}
         unit = along + (along == 0.0)
@@ -452,12 +454,20 @@ def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
     if some(spin != 0.0):
         turning = turning_compliance(bodies, normal, contact["radius"])
         contact |= {"inverse_spin_mass": turning}
-    entries |= {"encounter": encounter, "frame": join_components(axes, shape), "normal_spin": spin}
-    entries["of_slip"] = encounter.of_slip
+    entries |= {
+        "friction_coefficient": encounter.friction_coefficient,
+        "normal_speed": speed,
+        "tangential_velocity": lock_arrays(along),
+        "normal_spin": spin,
+        "encounter": encounter,
+        "frame": join_components(axes, shape),
+    }
     try:
-        masses = {"normal_mass": 1.0 / W[0][0], "tangential_mass": 1.0 / tangential}
-        pair = Pair.of_numbers(masses | contact)
-        return Scene(None, None, encounter.friction_coefficient, speed, along, pair=pair, **entries)
+        contact |= {"normal_mass": 1.0 / W[0][0], "tangential_mass": 1.0 / tangential}
+        entries["pair"] = Pair.of_numbers(contact)
+        if shape or encounter.of_slip is not None:
+            return Scene(None, None, **entries, of_slip=encounter.of_slip)
+        return of_contact(entries)
     except (ValueError, ZeroDivisionError):
         try:
             inverse_mass.check(join_components(W, shape))
@@ -549,9 +559,8 @@ def push_bodies(
     for side, changes in changes_of(encounter, axes, impulse, couple):
         for entry, change in changes.items():
             name = side.name + entry
-            x, y, z = components(getattr(encounter, name))
-            after = x + change[0], y + change[1], z + change[2]
-            moved[name] = join_components(after, shape)
+            (x, y, z), (u, v, w) = components(getattr(encounter, name)), change
+            moved[name] = join_components((x + u, y + v, z + w), shape)
     for name in VELOCITIES:
         if name not in moved:
             moved[name] = over(getattr(encounter, name), impulse.shape)
@@ -565,8 +574,8 @@ def changes_of(
 
     Changes are vectors by their components.
     """
-    (normal, one, other), (p, q, r) = rows(axes), components(impulse)
-    (n, a, d), (m, b, e), (k, c, f) = zip(normal, one, other, strict=True)
+    (normal, (a, b, c), (d, e, f)), (p, q, r) = rows(axes), components(impulse)
+    n, m, k = normal
     x, y, z = p * n + q * a + r * d, p * m + q * b + r * e, p * k + q * c + r * f
     for side in sides(encounter, normal):
         # the impulse on this body, and its angular impulse about the centre of mass

@@ -35,6 +35,7 @@ from contactlab.numeric.vectors import (
     NOTHING,
     ZERO,
     components,
+    cross,
     difference,
     dot,
     moving,
@@ -367,7 +368,8 @@ class Encounter:
             return ""
         one = self.take(index)
         contact = one.meeting()
-        (pressed, coupling), _ = inverse_mass_of(sides(one, contact.normal), contact[:2])
+        axes = *contact[:2], cross(*contact[:2])
+        (pressed, coupling, _), *_ = inverse_mass_of(sides(one, contact.normal), axes)
         lam = one.friction_coefficient * coupling / pressed
         if lam >= -1.0 or not contact.slip:
             return ""

@@ -7,7 +7,7 @@ import numpy as np
 from contactlab.numeric.arrays import choose, every, magnitude, quotient
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import Array, Mask, Real, Rows, Vector
-from contactlab.numeric.vectors import hypotenuse, rows, solve_tensor, square_root
+from contactlab.numeric.vectors import hypotenuse, rows, square_root
 
 #: Smallest over largest eigenvalue of an inverse mass, scaled to ones on the diagonal, that is
 #: told from zero.
@@ -41,7 +41,7 @@ def check(inverse: Array) -> None:
 def _is_definite(tensor: Rows) -> Mask:
     """Return where W is positive definite without a look at its eigenvalues, which takes longer."""
     (x, _, _), (a, y, _), (b, c, z) = tensor
-    p, q, r = (square_root(magnitude(each)) for each in (x, y, z))
+    p, q, r = square_root(magnitude(x)), square_root(magnitude(y)), square_root(magnitude(z))
     a, b, c = quotient(a, p * q), quotient(b, p * r), quotient(c, q * r)
     # scaled to ones on the diagonal; the sum of the eigenvalues is 3 then, so that two have at most
     # 9/4 as product, and the least is no less than 4/9 of the determinant
@@ -63,17 +63,16 @@ def ways(tensor: Rows, speed: Real, slip: Vector, cross_stiffness_ratio: Real = 
     cross_stiffness_ratio : float or array
         That of the pair: where it is not 1, slip keeps its line along t1 only.
     """
-    W, (x, y) = tensor, slip
-    size, pressed = _coupled_size(W), presses(W)
-    turned = magnitude((W[1][1] * x + W[1][2] * y) * y - (W[2][1] * x + W[2][2] * y) * x)
+    ((_, p, q), (_, a, b), (_, c, d)), (x, y) = tensor, slip
+    least = ROUNDING * _coupled_size(tensor)
+    pressed = hypotenuse(p, q) > least
+    turned = magnitude((a * x + b * y) * y - (c * x + d * y) * x)
     leaves = magnitude(y) > ROUNDING * (magnitude(x) + magnitude(speed))
     moved = x * x + y * y
     # across its line slip changes by a share of itself: a slip that is rounding turns by nothing
-    turns = turned > ROUNDING * W[1][1] * (moved + square_root(moved) * magnitude(speed))
+    turns = turned > ROUNDING * a * (moved + square_root(moved) * magnitude(speed))
     turns = turns | (leaves & (cross_stiffness_ratio != 1.0))
-    leaves = (
-        leaves | (magnitude(W[0][2]) > ROUNDING * size) | (magnitude(W[1][2]) > ROUNDING * W[1][1])
-    )
+    leaves = leaves | (magnitude(q) > least) | (magnitude(b) > ROUNDING * a)
     return choose(pressed | turns, choose(leaves, SPATIAL, PLANAR), CENTRAL)
 
 
@@ -86,12 +85,6 @@ def _coupled_size(tensor: Rows) -> Real:
     """Return the scale in 1/kg against which W's coupling of approach and slip is small."""
     W = tensor
     return square_root(W[0][0] * 0.5 * (W[1][1] + W[2][2]))
-
-
-def impulse(inverse: Array, change: Vector) -> tuple[Real, Real, Real]:
-    """Return the impulse on the target in N s that makes a change of velocity, by components."""
-    p, q, r = solve_tensor(rows(inverse), change)
-    return -p, -q, -r
 
 
 def unit_slip(slip: Array) -> Array:

@@ -12,7 +12,16 @@ from contactlab.impact.bodies import Pair, Sphere, size_ratio
 from contactlab.numeric import arrays as batch
 from contactlab.numeric.arrays import choose, magnitude, quotient, some
 from contactlab.numeric.types import Array, Index, Places, Real, Tree
-from contactlab.numeric.vectors import components, dot, entry, hypotenuse, join_components, rows
+from contactlab.numeric.vectors import (
+    components,
+    dot,
+    entry,
+    factor,
+    hypotenuse,
+    join_components,
+    rows,
+    solve_factored,
+)
 
 if TYPE_CHECKING:
     from contactlab.impact.links import Links
@@ -160,15 +169,12 @@ class Motions:
             unit = slip + still
             mass = 1.0 / inverse_mass.along(rows(self.inverse_mass), (x + still) / unit, y / unit)
             pair = batch.change_entries(pair, tangential_mass=batch.lock_arrays(mass))
-        slip = batch.spread(slip, self.shape)
+        slip = batch.lock_arrays(batch.spread(slip, self.shape))
         alone = {"inverse_mass": None, "planar": True, "links": None}
         return self._with(tangential_velocity=slip, pair=pair, **alone)
 
-    def _with(self, **entries: object) -> Self:
-        """Return this scene with other entries, of numbers that were checked before."""
-        return batch.change_entries(
-            self, **{name: batch.lock_arrays(each) for name, each in entries.items()}
-        )
+    #: Return this scene with other entries, which were checked before; arrays are read-only.
+    _with = batch.change_entries
 
     def _ways(self) -> Real:
         """Return the way in which each impact is solved."""
@@ -189,6 +195,7 @@ class Motions:
             self.pair, tangential_mass=batch.lock_arrays(1.0 / entry(W, 1, 1))
         )
         slip = batch.spread(np.asarray(self.slip_velocity)[..., 0], self.shape)
+        slip = batch.lock_arrays(slip)
         return self._with(tangential_velocity=slip, pair=pair, planar=True)
 
     @property
@@ -327,14 +334,15 @@ def free_share(scene: Motions) -> Real:
 
 def sizes(scene: Motions) -> tuple[Real, Real, Real]:
     """Return the magnitudes of lam, eta and psi1, of the batch shape."""
-    if scene.shape or scene.planar:
+    inverse = scene.inverse_mass
+    if scene.shape or inverse is None:
         lam, eta, psi1 = (size_of(scene, each) for each in (scene.lam, scene.eta, scene.psi1))
         return lam, eta, psi1
-    inverse, slip = scene.inverse_mass, scene.slip_velocity
-    assert inverse is not None
-    assert isinstance(slip, np.ndarray)
     # plain numbers are ten times as fast
-    (W, along, across), (x, y) = inverse[0].tolist(), slip.tolist()
+    W, along, across = inverse[0].tolist()
+    _, x, y = scene._components(0.0, scene.slip_velocity)
+    if scene.planar:
+        across = 0.0
     cross, mu, scale = scene.pair.cross_stiffness_ratio, scene.friction_coefficient, scene.psi_scale
     eta = quotient(scene.pair.stiffness_ratio, mu)
     return (
@@ -355,7 +363,7 @@ def coupling(scene: Motions, factor: Real) -> Real:
         return 0.0
     W = scene.inverse_mass
     if scene.planar and not scene.shape:  # plain numbers warn of nothing
-        return factor * entry(W, 0, 1) / entry(W, 0, 0)
+        return factor * W.item(0, 1) / W.item(0, 0)
     with np.errstate(all="ignore"):
         if scene.planar:
             return factor * entry(W, 0, 1) / entry(W, 0, 0)
@@ -436,7 +444,8 @@ def impulse(scene: Motions, rate: Real, change: Real) -> Array:
         drag = -scene.pair.tangential_mass * change
         return join_components((push, drag, 0.0), scene.shape)
     moved = scene._components(rate - scene.normal_speed, change)
-    return join_components(inverse_mass.impulse(scene.inverse_mass, moved), scene.shape)
+    ((p, q, r),) = solve_factored(factor(rows(scene.inverse_mass)), moved)
+    return join_components((-p, -q, -r), scene.shape)
 
 
 def energies(scene: Motions, rate: Real, change: Real) -> tuple[Real, Real, Real]:
@@ -450,16 +459,17 @@ def energies(scene: Motions, rate: Real, change: Real) -> tuple[Real, Real, Real
     speed = scene.normal_speed
     if scene.inverse_mass is None:
         return scene.pair.energies(speed, scene.slip_velocity, rate, change)
-    before = scene._components(speed, scene.slip_velocity)
-    moved = scene._components(rate - speed, change)
-    taken = inverse_mass.impulse(scene.inverse_mass, moved)
-    mean = [one + 0.5 * more for one, more in zip(before, moved, strict=True)]
+    x, y, z = before = scene._components(speed, scene.slip_velocity)
+    u, v, w = moved = scene._components(rate - speed, change)
+    held, gained = solve_factored(factor(rows(scene.inverse_mass)), before, moved)
+    mean = x + 0.5 * u, y + 0.5 * v, z + 0.5 * w
     lost = 0.5 * scene.pair.normal_mass * (speed - rate) * (speed + rate)
-    return energy_at_start(scene), lost, dot(taken, mean) - lost
+    return 0.5 * dot(held, before), lost, -dot(gained, mean) - lost
 
 
 def energy_at_start(scene: Motions) -> Real:
     """Return the energy of approach and slip in J, of bodies whose contact couples them."""
     assert scene.inverse_mass is not None
     before = scene._components(scene.normal_speed, scene.slip_velocity)
-    return -0.5 * dot(inverse_mass.impulse(scene.inverse_mass, before), before)
+    (held,) = solve_factored(factor(rows(scene.inverse_mass)), before)
+    return 0.5 * dot(held, before)

@@ -25,7 +25,7 @@ from contactlab.numeric.checks import (
 from contactlab.numeric.names import state_arguments
 from contactlab.numeric.taken import Taken
 from contactlab.numeric.types import Array, Complex, Either, Index, Mask, Numbers, Real, Vector
-from contactlab.numeric.vectors import components, dot
+from contactlab.numeric.vectors import components, dot, factor, rows
 
 #: Asymmetry of an inertia, and excess of a principal moment over the sum of the other two, that
 #: count as rounding, over the largest moment.
@@ -167,6 +167,8 @@ class RigidBody:
     bending_period: Either = quantity("s", rule=POSITIVE, default=None, unknown=True)
     #: Inertia about the centre of mass, in kg m², shape (..., 3, 3), also from principal moments.
     inertia: Array = attrs.field(init=False, eq=False, repr=False)
+    #: Factors of the inertia.
+    _factors: tuple[Real, ...] = attrs.field(init=False, eq=False, repr=False)
     #: Batch shape of mass, inertia and curvature together.
     shape: tuple[int, ...] = attrs.field(init=False, eq=False, repr=False)
 
@@ -206,6 +208,7 @@ class RigidBody:
         assert inertia is not None  # one of the two was given
         _check_inertia(inertia, "inertia" if self.principal is None else "principal")
         object.__setattr__(self, "inertia", inertia)
+        object.__setattr__(self, "_factors", factor(rows(inertia)))
         shapes = {name: np.shape(getattr(self, name)) for name in ("mass", "curvature_radius")}
         if self.cross_radius is not None:
             shapes["cross_radius"] = np.shape(self.cross_radius)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Generic, Self, overload
 
@@ -12,7 +13,7 @@ import numpy as np
 
 from contactlab.impact import batches, groups, inverse_mass, kinetics
 from contactlab.impact.batches import Batches
-from contactlab.impact.bodies import HalfSpace, Pair, Sphere
+from contactlab.impact.bodies import ROUND, HalfSpace, Pair, Sphere
 from contactlab.impact.material import Material
 from contactlab.impact.of_speed import LawOfSlip, OfSlip, friction, is_law_of_slip, law_of_slip
 from contactlab.numeric import arrays as batch
@@ -306,7 +307,11 @@ class Scene(_SceneArguments, Batches, Generic[Each]):
         object.__setattr__(self, "_index", index)
         if self.inverse_mass is not None:
             self._check_inverse_mass()
-        self._check_scales()
+        if not shape:  # plain numbers warn of nothing
+            self._check_scales()
+            return
+        with np.errstate(all="ignore"):
+            self._check_scales()
 
     def _set_friction(self, shape: tuple[int, ...]) -> None:
         """Set the friction that follows from the slip, unless numbers took its place."""
@@ -389,17 +394,16 @@ class Scene(_SceneArguments, Batches, Generic[Each]):
         """Refuse scenes whose numbers overflow, or lose digits by underflow."""
         friction: Real = self.friction_coefficient
         speed: Real = self.normal_speed
-        with np.errstate(all="ignore"):
-            energy = 0.5 * self.pair.normal_mass * (speed * speed)
-            unit = friction * speed / self.pair.stiffness_ratio
-            slip: Real = kinetics.slip_speed(self)
-            slip_energy = 0.5 * self.pair.tangential_mass * (slip * slip)
-            momentum = friction * self.pair.normal_mass * speed
-            tiny = (unit < LEAST_VELOCITY) & (slip < LEAST_VELOCITY)
-            tiny = tiny | (momentum < LEAST_IMPULSE) & (slip < 1e9 * unit)
-            vast = slip / (unit + (unit == 0.0)) == math.inf
-            unheld = (unit > 0.0) & (slip > 0.0) & (tiny | vast)
-            lost = (friction > 0.0) & (unit == 0.0)
+        energy = 0.5 * self.pair.normal_mass * (speed * speed)
+        unit = friction * speed / self.pair.stiffness_ratio
+        slip: Real = kinetics.slip_speed(self)
+        slip_energy = 0.5 * self.pair.tangential_mass * (slip * slip)
+        momentum = friction * self.pair.normal_mass * speed
+        tiny = (unit < LEAST_VELOCITY) & (slip < LEAST_VELOCITY)
+        tiny = tiny | (momentum < LEAST_IMPULSE) & (slip < 1e9 * unit)
+        vast = slip / (unit + (unit == 0.0)) == math.inf
+        unheld = (unit > 0.0) & (slip > 0.0) & (tiny | vast)
+        lost = (friction > 0.0) & (unit == 0.0)
         if kinetics.turns(self):
             self._check_normal_spin()
         if not batch.every(slip_energy < math.inf):
@@ -692,6 +696,22 @@ class Scene(_SceneArguments, Batches, Generic[Each]):
         if not bodies and {"psi1", "chi", "lam"} & set(entries):
             return cls.nondimensional
         return cls.at_angle if {"speed", "angle_deg"} & set(entries) else cls
+
+
+@cache
+def _unit_scene() -> Scene:
+    """Return an impact whose numbers are 1, without bodies."""
+    pair = Pair.of_numbers(dict.fromkeys(ROUND, 1.0))
+    return Scene(None, None, 1.0, 1.0, pair=pair)
+
+
+def of_contact(entries: Mapping[str, object]) -> Scene:
+    """Return the scene of one contact by entries that follow from an encounter's, checked there."""
+    scene = batch.change_entries(_unit_scene(), **entries)
+    if scene.inverse_mass is not None:
+        inverse_mass.check(scene.inverse_mass)
+    scene._check_scales()
+    return scene
 
 
 #: Numbers of a pair and of a scene.

@@ -132,18 +132,26 @@ def dot(one: Vector, other: Vector) -> Real:
     return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
 
 
-def solve_tensor(tensor: Rows, vector: Vector) -> tuple[Real, Real, Real]:
-    """Return A⁻¹ b, A symmetric (the mean with Aᵀ) and positive definite: L D Lᵀ needs no pivot."""
+def factor(tensor: Rows) -> tuple[Real, ...]:
+    """Return L D Lᵀ of A, symmetric (the mean with Aᵀ) and positive definite: it needs no pivot."""
     (a, p, q), (b, c, r), (d, e, f) = tensor
     b, d, e = 0.5 * (b + p), 0.5 * (d + q), 0.5 * (e + r)
-    x, y, z = vector
     low, last = b / a, d / a
     c, e = c - low * b, e - last * b
     under = e / c
-    y = y - low * x
-    z = (z - last * x - under * y) / (f - last * d - under * e)
-    y = y / c - under * z
-    return x / a - low * y - last * z, y, z
+    return a, c, f - last * d - under * e, low, last, under
+
+
+def solve_factored(factors: tuple[Real, ...], *vectors: Vector) -> list[Vector]:
+    """Return A⁻¹ b of each b, by the factors of A."""
+    a, c, f, low, last, under = factors
+    solved: list[Vector] = []
+    for x, y, z in vectors:
+        y = y - low * x
+        z = (z - last * x - under * y) / f
+        y = y / c - under * z
+        solved.append((x / a - low * y - last * z, y, z))
+    return solved
 
 
 def over(vectors: Array, shape: tuple[int, ...]) -> Array:

@@ -25,6 +25,14 @@ def stand_in(laws: Laws, part: Scene) -> Laws:
     ValueError
         If a law that the user named has no answer; the message names laws that have one.
     """
+    able = laws.capability
+    if (
+        able.coupled is not None
+        and part.planar
+        and part.links is None
+        and "rigid" not in able.tangential_claims
+    ):
+        return laws
     key = part.planar, part.links is None, state()
     if (found := laws.stand_ins.get(key)) is None:
         found = laws.stand_ins[key] = _find_stand_in(laws, part)

@@ -94,9 +94,9 @@ class Coupled(Way):
             errors = laws.integrator.errors(scene, normal, laws.tangential)
         else:  # laws declare errors of one contact
             code, errors = np.full(scene.shape, MARCHED), Errors()
-        judged = judges.judge_errors(laws.tangential, errors, scene.shape)
-        psi2, restitution = (spread(error, scene.shape) for error in judged[:2])
-        return PlanColumns(code, psi2, () if law is None else (WHOLE,), restitution)
+        psi2, rate, *_ = judges.judge_errors(laws.tangential, errors, scene.shape)
+        psi2, rate = spread(psi2, scene.shape), spread(rate, scene.shape)
+        return PlanColumns(code, psi2, () if law is None else (WHOLE,), rate)
 
     def solve(self, prepared: Prepared, recorder: Recorder | None) -> Motion:
         """Return the motion; impacts that fail within a batch are solved again alone."""

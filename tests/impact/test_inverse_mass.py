@@ -1,5 +1,6 @@
 """The inverse mass of bodies at their contact."""
 
+import attrs
 import numpy as np
 import pytest
 
@@ -90,3 +91,36 @@ def test_groups_of_one_impact_are_those_of_its_batch(ratio):
         assert kinetics.sizes(one) == pytest.approx(lengths[:, place], rel=1e-14)
         assert kinetics.free_share(one) == pytest.approx(share[place], rel=1e-12)
         assert kinetics.largest_chi(one) == pytest.approx(kinetics.largest_chi(many)[place])
+
+
+def test_one_encounter_is_refused_or_made_as_a_batch_of_one():
+    """Of absurd scales too: one alone takes a shorter way to its scene."""
+    random = np.random.default_rng(5)
+    steel, made, refused = Material.named("steel"), 0, 0
+    for far in (0, 0, 60, 90, 160, 160) * 20:
+        scale = 10.0 ** random.uniform(-far, far, 3)
+        body = RigidBody(mass=1.0, principal=random.uniform(0.6, 1.0, 3), material=steel,
+                         curvature_radius=0.1)  # fmt: skip
+        given = np.clip(scale[:2, None] * random.normal(size=(2, 3)), -1e100, 1e100)
+        given[0, 2] = abs(given[0, 2])
+        about = {"normal": (0, 0, 1), "contact": random.normal(size=3)}
+        alone, batch = (
+            Encounter(body, HalfSpace(steel), scale[2], velocity=velocity, spin=spin, **about)
+            for velocity, spin in (given, given[:, None])
+        )
+        try:
+            many = batch.scene
+        except ValueError:
+            with pytest.raises(ValueError, match=r"must|cannot|separate"):
+                alone.scene  # noqa: B018
+            refused += 1
+            continue
+        scene = alone.scene
+        assert scene == attrs.evolve(scene)
+        for name, number in scene.numbers().items():
+            assert isinstance(number, float) or not number.flags.writeable
+            other = np.reshape(many.numbers()[name], np.shape(number))
+            assert number == pytest.approx(other, rel=1e-12, abs=1e-300)
+        assert scene.inverse_mass == pytest.approx(many.inverse_mass[0], rel=1e-12, abs=1e-12)
+        made += 1
+    assert min(made, refused) > 20

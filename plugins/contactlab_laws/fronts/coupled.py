@@ -17,7 +17,7 @@ from contactlab.contracts import (
     TangentialMotion,
 )
 from contactlab.contracts.status import Status
-from contactlab.impact.hertz import DURATION_CONSTANT, HertzScales, hertz_scales
+from contactlab.impact.hertz import DURATION_CONSTANT
 from contactlab.numeric.arrays import choose, fill, some, spread_object
 from contactlab.numeric.types import Array, Mask, Real
 from contactlab.numeric.vectors import entry, join_components
@@ -45,7 +45,6 @@ def motion(
 ) -> TangentialMotion:
     """Return the motion of planar impacts."""
     shape, tolerance = scene.shape, error_of_step(accuracy)
-    scales = hertz_scales(normal.scene)
     W = scene.inverse_mass
     assert W is not None
     mu: Real = scene.friction_coefficient
@@ -58,22 +57,24 @@ def motion(
     else:
         left, status, steps = follow_one(numbers[:, 0].tolist(), tolerance, MOST_STEPS)
         found, lost = np.array(left)[:, None], np.array([status])
-        _show(scene, scales, steps, observer)
+        _show(scene, normal, steps, observer)
     ended, detail = spread_object(Status.SUCCESS, shape), spread_object("", shape)
-    if lost.any():
+    if np.count_nonzero(lost):  # takes less than any
         found[:6, lost != 0] = math.nan
         ended, detail = (each[lost].reshape(shape)[()] for each in (ENDED, DETAILS))
     rows = found.reshape(7, *shape) if shape else found[:, 0].tolist()
     rate, psi, work, time, radius, times, counted = rows
     pressed = entry(W, 0, 0)
     unit = mu * speed / kappa
-    change = choose(smooth, -2.0 * speed * entry(W, 0, 1) / pressed, psi * unit)
+    change = psi * unit
+    if some(smooth):
+        change = choose(smooth, -2.0 * speed * entry(W, 0, 1) / pressed, change)
     # over v1²/(2 W_nn): 2.5 rho work (theory §14)
     energy = 1.25 * mu * mu / kappa * speed * speed / pressed
     approach = radius * radius
     ends = (
-        time * scales.approach / speed, rate * speed, radius * scales.radius,
-        approach * scales.approach, radius * approach * scales.force, 0.0 * work,
+        time * normal.maximum_approach / speed, rate * speed, radius * normal.maximum_radius,
+        approach * normal.maximum_approach, radius * approach * normal.maximum_force, 0.0 * work,
         choose(times == times, times, 0.0),
     )  # fmt: skip
     entries = {
@@ -105,7 +106,7 @@ def _follow_sides(numbers: Array, smooth: Mask, tolerance: float) -> tuple[Array
 def solve_impacts(numbers: Array, tolerance: float) -> tuple[Array, NDArray[np.intc]]:
     """Return ends and statuses of impacts, as ``compiled.follow`` does."""
     out, status = compiled.follow(numbers, tolerance)
-    if not status.any():
+    if not np.count_nonzero(status):
         return out, status
     for place in np.flatnonzero(status == MEMORY).tolist():
         impact = Impact(*numbers[:, place].tolist(), tolerance=tolerance, most=MOST_STEPS)
@@ -114,16 +115,16 @@ def solve_impacts(numbers: Array, tolerance: float) -> tuple[Array, NDArray[np.i
     return out, status
 
 
-def _show(scene: Scene, scales: HertzScales, steps: Steps, observer: Observer) -> None:
+def _show(scene: Scene, normal: NormalMotion, steps: Steps, observer: Observer) -> None:
     """Show four instants of each step to an observer in SI."""
     speed, mu = scene.normal_speed, scene.friction_coefficient
     unit: Real = mu * speed / scene.pair.stiffness_ratio
     u, rate, margin, lack, _, time = steps.at(np.multiply.outer(steps.length, INSTANTS))
     sign = steps.sign[:, None]
     columns = (
-        time * scales.approach / speed, u * u * scales.approach, rate * speed, u**3 * scales.force,
-        u * scales.radius, sign * (rate - margin) * unit,
-        sign * (u**3 - 1.5 * lack) * mu * scales.force,
+        time * normal.maximum_approach / speed, u * u * normal.maximum_approach, rate * speed,
+        u**3 * normal.maximum_force, u * normal.maximum_radius, sign * (rate - margin) * unit,
+        sign * (u**3 - 1.5 * lack) * mu * normal.maximum_force,
     )  # fmt: skip
     for time, approach, rate, force, radius, velocity, friction in zip(
         *(column.ravel().tolist() for column in columns), strict=True
