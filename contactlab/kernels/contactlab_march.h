@@ -358,11 +358,13 @@ static inline void contactlab_march_lossy(int axes, int n, const contactlab_marc
       one[k] = now;
     }
   }
-  if (!(total > 0.0)) { /* smaller than a cell: of its edge, or as it was */
-    double norm = 1.0;
-    for (k = 0; k < 2; ++k) one[k] = excess > 0.0 ? lead * (k ? cross : 1.0) * d->slip[k] / excess : s->share[k];
-    if (excess > 0.0) norm = fmax(sqrt(one[0] * one[0] + one[1] * one[1]), 1.0);
-    for (k = 0; k < 2; ++k) one[k] /= norm;
+  if (count < (growth > 0.0 ? 1 : 2)) { /* smaller than a cell: of its edge, of its middle if it leaves, or as it was */
+    const int grew = growth > 0.0, known = (grew ? excess : edge) > 0.0;
+    const double x = grew ? lead * d->slip[0] : w[0] + out->lead[0], y = axes < 2 ? 0.0 : grew ? lead * cross * d->slip[1] : w[row] + out->lead[1];
+    const double b = sqrt(edge), limit = edge + excess, far = sqrt(x * x + y * y), c = sqrt(fmin(fmax(limit - far, 0.0), edge));
+    const double slips = fmin(fmax(far - excess, 0.0), edge) / fmax(b + c, CONTACTLAB_MARCH_TINY), sum = far * c + slips * (limit - (edge + b * c + c * c) / 3.0);
+    const double all = grew ? fmax(far, excess) : far * b * (limit - edge / 3.0) / fmax(sum, CONTACTLAB_MARCH_TINY);
+    for (k = 0; k < 2; ++k) one[k] = !known ? s->share[k] : far > 0.0 ? (k ? y : x) / all : 0.0;
   }
   if (work) {
     const double acted = d->kick * d->drift > 0.0 ? fmin(0.5 * d->kick / d->drift, 1.0) : 0.5;

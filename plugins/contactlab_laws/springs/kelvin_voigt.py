@@ -20,8 +20,16 @@ from contactlab.numeric.types import Array, Real
 from contactlab_laws.jaeger.step import common
 from contactlab_laws.springs.directions import Direction
 from contactlab_laws.springs.doubling import fit_grid, place_springs
-from contactlab_laws.springs.slip_velocity import Slip, share_of_edge, solve_slip
+from contactlab_laws.springs.slip_velocity import (
+    Slip,
+    share_of_edge,
+    share_of_middle,
+    solve_slip,
+)
 from contactlab_laws.springs.turning import TINY, Vectors
+
+#: Springs from which on their sum is the force of a contact that leaves.
+FEW = 2
 
 
 class Contact(NamedTuple):
@@ -155,9 +163,13 @@ def move_springs(
     share, traction, velocity = solve_slip(
         w, last, lead, motion.slip, per_total, direction, out=np.empty_like(w)
     )
-    if not touches.all():
+    few = np.count_nonzero(last, axis=0) < FEW
+    if few.any():
         pull = lead * direction.stretch(motion.slip.velocity)
-        share = np.where(touches, share, share_of_edge(pull, excess, before.share))
+        own = np.where(touches, share, share_of_edge(pull, excess, before.share))
+        pull = w[0] + lead * direction.stretch(velocity)
+        left = share_of_middle(pull, edge, excess, before.share)
+        share = np.where(few, np.where(edge > before.edge, own, left), share)
 
     weight = motion.limit * per_total
     early = (1.0 - motion.acted) * begin.weight * begin.traction

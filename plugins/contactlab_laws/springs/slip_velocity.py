@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from contactlab.numeric.types import Array, Real
 from contactlab_laws.springs.directions import Direction
-from contactlab_laws.springs.turning import Vectors
+from contactlab_laws.springs.turning import TINY, Vectors
 
 #: Turns of Newton's method for the slip velocity where the force acts.
 TURNS = 3
@@ -116,8 +116,24 @@ class Newton(NamedTuple):
 
 
 def share_of_edge(pull: Vectors, excess: Real, share: Vectors) -> Vectors:
-    """Return the share of a contact that is smaller than a cell: of its edge, or as it was."""
+    """Return the share of a growing contact that meets no spring yet: of its edge, or as it was."""
     pressed = excess > 0.0
     ratio = pull / np.where(pressed, excess, 1.0)
     ratio = ratio / np.maximum(np.abs(ratio), 1.0)
     return np.asarray(np.where(pressed, ratio, share))
+
+
+def share_of_middle(pull: Vectors, edge: Real, excess: Real, share: Vectors) -> Vectors:
+    """Return the share of a contact smaller than a cell, whose springs pull alike; or as it was.
+
+    All of them stick inside of c, the root of b² + j - abs(pull): Cattaneo's contact without j.
+    """
+    touches = edge > 0.0
+    far, least = np.abs(pull), np.where(touches, edge, 1.0)
+    limit = least + excess
+    b, c = np.sqrt(least), np.sqrt(np.minimum(np.maximum(limit - far, 0.0), least))
+    slips = np.minimum(np.maximum(far - excess, 0.0), least) / (b + c)  # b - c, without rounding
+    force = far * c + slips * (limit - (least + b * c + c * c) / 3.0)
+    whole = b * (limit - least / 3.0)
+    direction = pull / np.maximum(far, TINY)
+    return np.asarray(np.where(touches, direction * force / whole, share))
