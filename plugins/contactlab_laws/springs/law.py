@@ -174,14 +174,16 @@ class Springs(ProfileLaw, CausalTangentialLaw, ResolvingTangentialLaw):
         if not measured:
             return Errors()
         if scene.inverse_mass is not None:
-            return errors.of_bodies(scene, self.even_springs(), steps, shared=shared)
-        doubling = self.grid == "doubling"
-        restitution = None
-        if shared and "kelvin_voigt" in normal.claims:
-            restitution = -normal.final_rate / scene.normal_speed
-        return errors.of_spheres(
-            scene, self.number, steps, shared=shared, doubling=doubling, restitution=restitution
-        )
+            found = errors.of_bodies(scene, self.even_springs(), steps, shared=shared)
+        else:
+            restitution = None
+            if shared and "kelvin_voigt" in normal.claims:
+                restitution = -normal.final_rate / scene.normal_speed
+            doubling = self.grid == "doubling"
+            found = errors.of_spheres(
+                scene, self.number, steps, shared=shared, doubling=doubling, restitution=restitution
+            )
+        return errors.where_measured(found, scene, normal) if shared else found
 
     def cautions(self, scene: Scene, normal: NormalMotion) -> tuple[str, ...]:
         """Return the cautions of springs, or those of their shared loss."""
