@@ -58,7 +58,7 @@ def blame(law: Law, error: BaseException, step: int = 1) -> None:
     if isinstance(error, KeyboardInterrupt | LawFaultError):
         return
     # SystemExit too: a plug-in must not end the process
-    raise LawFaultError(Status.LAW_RAISED, sentence(law, tell_error(error), step)) from error
+    raise LawFaultError(Status.LAW_RAISED, sentence(law, tell_error(error, law), step)) from error
 
 
 def is_malformed(value: object, shape: tuple[int, ...]) -> bool:
@@ -96,12 +96,21 @@ def sentence(law: Law, what: str, step: int, time: Real | None = None) -> str:
     return f"At step {step}{when}: {what}, from {type(law).__name__} in {type(law).__module__}."
 
 
-def tell_error(error: BaseException) -> str:
-    """Return the type, message and place of an error as a sentence."""
+def tell_error(error: BaseException, law: Law | None = None) -> str:
+    """Return the type, message and place of an error as a sentence.
+
+    Where ``law`` was asked and no frame of the error is its own, its answer could not be taken
+    apart, and the sentence says what it must be.
+    """
     import traceback  # only failed runs need it
 
     where = traceback.extract_tb(error.__traceback__)[-1]
-    return f"{type(error).__name__}: {error} ({where.name}, line {where.lineno})"
+    told = f"{type(error).__name__}: {error} ({where.name}, line {where.lineno})"
+    frames = (frame for frame, _ in traceback.walk_tb(error.__traceback__))
+    shapeless = isinstance(error, TypeError | ValueError)
+    if law is None or not shapeless or any(frame.f_locals.get("self") is law for frame in frames):
+        return told
+    return f"the answer must be a pair, response or contact and the next state; {told}"
 
 
 def _broadcasts(answered: tuple[int, ...], shape: tuple[int, ...]) -> bool:

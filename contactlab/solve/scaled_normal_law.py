@@ -97,12 +97,13 @@ class ScaledNormalLaw:
         try:
             with np.errstate(all="ignore"):  # restores the settings if the law changes them
                 contact, state = self.law.respond(self.state, approach, rate)
-            if not isinstance(contact, NormalContact):
-                raise TypeError(f"respond gave {quote(contact)}, not a NormalContact")
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # a plug-in may not end the process
-            raise self.fault(Status.LAW_RAISED, faults.tell_error(error)) from error
+            raise self.fault(Status.LAW_RAISED, faults.tell_error(error, self.law)) from error
+        if not isinstance(contact, NormalContact):
+            what = f"respond gave {quote(contact)}, not a NormalContact"
+            raise self.fault(Status.LAW_RAISED, what)
         for entry in contact:
             if type(entry) not in PLAIN and faults.is_malformed(entry, self.shape):
                 raise self.fault(Status.MALFORMED, f"the answer {quote(entry)}")

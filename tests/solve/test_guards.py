@@ -255,6 +255,36 @@ class AnswersInTuples(LinearSpring):
         return self.answer, state
 
 
+class ForgetsState(SteppedTangentialLaw):
+    """A friction law that answers without its next state."""
+
+    api_version = 2
+
+    def start(self, scene, normal):
+        return None
+
+    def advance(self, state, increment, before, after):
+        return TangentialResponse(0.0 * increment.friction_load, 0.0 * increment.friction_load)
+
+
+class ForgetsItsState(LinearSpring):
+    """A normal law that does."""
+
+    def respond(self, state, approach, rate):
+        return super().respond(state, approach, rate)[0]
+
+
+@pytest.mark.parametrize(
+    "laws",
+    [{"tangential": ForgetsState()}, {"normal": ForgetsItsState(), "tangential": "coulomb"}],
+)
+def test_a_law_that_forgets_the_next_state_is_told_so(laws):
+    result = Simulation(**laws).run(in_si(Scene.nondimensional(psi1=1.2, chi=1.44)))
+    assert result.status is Status.LAW_RAISED
+    assert "must be a pair, response or contact and the next state" in result.failures[0]
+    assert type(next(iter(laws.values()))).__name__ in result.failures[0]
+
+
 @pytest.mark.parametrize("answer", [None, (1.0, 1e-3, 1e-6, 1.0)])
 def test_a_normal_law_that_gives_no_contact_is_a_status(answer):
     law = AnswersInTuples(answer=answer)

@@ -150,7 +150,7 @@ class _March:
         except faults.LawFaultError as fault:
             self.fail(fault.status, fault.detail, self.alive)
         except BaseException as error:  # a plug-in may not end the process
-            sentence = faults.sentence(self.law, faults.tell_error(error), self.steps)
+            sentence = faults.sentence(self.law, faults.tell_error(error, self.law), self.steps)
             self.fail(Status.LAW_RAISED, sentence, self.alive)
         return self._motion()
 

@@ -185,7 +185,7 @@ def _one_by_one(
         sentence = faults.sentence(law, raised.detail, count, time)
         fault = faults.LawFaultError(raised.status, sentence)
     except BaseException as error:  # a plug-in may not end the process
-        sentence = faults.sentence(law, faults.tell_error(error), count, time)
+        sentence = faults.sentence(law, faults.tell_error(error, law), count, time)
         fault = faults.LawFaultError(Status.LAW_RAISED, sentence)
     return _end(normal, law, change, work, count, fault, shear)
 
