@@ -28,6 +28,9 @@ RESTITUTION = Rule(
 )
 #: Difference of normals, and distance of contacts over the arms, up to which two contacts are one.
 SAME = 1e-9
+#: Gap over the sum of radii by which positions may differ from what is given: gaps count in
+#: micrometres, and positions are rounded.
+ROUGHLY = 0.1
 
 
 @state_arguments
@@ -45,7 +48,7 @@ class Body:
     force : vector
         A constant force at the centre of mass in N, such as the weight; none by default.
     position : vector, optional
-        Centre of mass in m. Normals are checked by it; ``Gathering.of_spheres`` needs it.
+        Centre of mass in m. Normals and gaps are checked by it; ``Gathering.of_spheres`` needs it.
 
     Raises
     ------
@@ -291,18 +294,26 @@ class Gathering:
                     raise refuse(f"touches[{k}]", (touch.first, touch.second), rule, "leave it out")
 
     def _check_normal(self, contact: int, first: int, second: int) -> None:
-        """Refuse a normal that points from the second sphere to the first by their positions."""
+        """Refuse a normal from the second sphere to the first, or a gap, against positions."""
         one, other = self.bodies[first], self.bodies[second]
         if one.position is None or other.position is None:
             return
         if not (isinstance(one.shape, Sphere) and isinstance(other.shape, Sphere)):
             return
-        touch = self.touches[contact]
-        if not np.all(((other.position - one.position) * touch.normal).sum(axis=-1) > 0.0):
+        touch, apart = self.touches[contact], other.position - one.position
+        if not np.all((apart * touch.normal).sum(axis=-1) > 0.0):
             rule = (
                 f"must point from {touch.first!r} to {touch.second!r}, and their positions do not"
             )
             raise refuse(f"touches[{contact}].normal", touch.normal.tolist(), rule, "turn it")
+        radii: Real = one.shape.radius + other.shape.radius
+        gap = np.linalg.norm(apart, axis=-1) - radii
+        if not np.all(np.abs(gap - touch.gap) <= ROUGHLY * radii):
+            rule = (
+                f"must be that of the positions, {np.ravel(gap)[0]:.3g} m, to a tenth of the radii"
+            )
+            remedy = "positions are of centres, in m; or leave positions out"
+            raise refuse(f"touches[{contact}].gap", touch.gap, rule, remedy)
 
     def _is_same(self, one: int, other: int) -> bool:
         """Return whether two contacts are one: of the same bodies, at one point."""

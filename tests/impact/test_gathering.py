@@ -72,6 +72,12 @@ REFUSED = {
                             Body(BALL, position=[0, 0, 0]))),
         "positions",
     ),
+    "apart by positions": (
+        lambda: two(Touch(0, 1, 0.1, normal=X),
+                    bodies=(Body(BALL, velocity=X, position=[0, 0, 0]),
+                            Body(BALL, position=[0.05, 0, 0]))),
+        "touches[0].gap",
+    ),
     "negative gap": (lambda: Touch(0, 1, 0.1, normal=X, gap=-1e-6), "gap"),
     "negative friction": (lambda: Touch(0, 1, -0.1, normal=X), "friction_coefficient"),
     "a normal of length zero": (lambda: two(Touch(0, 1, 0.1, normal=[0, 0, 0])), "touches[0]"),
