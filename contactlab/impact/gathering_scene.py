@@ -23,7 +23,7 @@ from contactlab.impact.body_contact import (
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.links import Inverse, Links, energy_of
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import change_entries
+from contactlab.numeric.arrays import change_entries, lock_arrays
 from contactlab.numeric.checks import first_of, refuse
 from contactlab.numeric.types import Array, Real
 from contactlab.numeric.vectors import components, dot, join_components, moving
@@ -155,6 +155,7 @@ class Assembly:
             "_index": np.arange(math.prod(shape)).reshape(shape),
         }
         pair = Pair.of_numbers(masses | self._numbers())
+        arrays = {name: lock_arrays(each) for name, each in arrays.items()}
         scene = _unit_scene()._with(**arrays, pair=pair, planar=False, links=links, shape=shape)
         scene._check_scales()
         return scene
