@@ -20,7 +20,7 @@ from contactlab.impact.bodies import (
 )
 from contactlab.impact.of_speed import OfSlip
 from contactlab.impact.rigid_body import RigidBody
-from contactlab.impact.scene import Scene, of_contact
+from contactlab.impact.scene import Scene, of_bodies
 from contactlab.numeric.arrays import choose, every, lock_arrays, magnitude, some
 from contactlab.numeric.checks import refuse
 from contactlab.numeric.types import AnyArray, Array, Complex, Mask, Real, Rows, Vector
@@ -467,7 +467,9 @@ def scene_of_bodies(encounter: _Meeting, normal: Vector) -> Scene:
         entries["pair"] = Pair.of_numbers(contact)
         if shape or encounter.of_slip is not None:
             return Scene(None, None, **entries, of_slip=encounter.of_slip)
-        return of_contact(entries)
+        if not every(central):
+            inverse_mass.check(entries["inverse_mass"])
+        return of_bodies(entries)
     except (ValueError, ZeroDivisionError):
         try:
             inverse_mass.check(join_components(W, shape))

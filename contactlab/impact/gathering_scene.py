@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from functools import cache
 from itertools import combinations
 from typing import Any, Protocol
 
 import numpy as np
 
 from contactlab.impact import inverse_mass
-from contactlab.impact.bodies import ROUND, Pair
+from contactlab.impact.bodies import Pair
 from contactlab.impact.body_contact import (
     Frame,
     Side,
@@ -22,7 +21,7 @@ from contactlab.impact.body_contact import (
 )
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.links import Inverse, Links, energy_of
-from contactlab.impact.scene import Scene
+from contactlab.impact.scene import Scene, of_bodies
 from contactlab.numeric.arrays import change_entries, lock_arrays
 from contactlab.numeric.checks import first_of, refuse
 from contactlab.numeric.types import Array, Real
@@ -155,10 +154,8 @@ class Assembly:
             "_index": np.arange(math.prod(shape)).reshape(shape),
         }
         pair = Pair.of_numbers(masses | self._numbers())
-        arrays = {name: lock_arrays(each) for name, each in arrays.items()}
-        scene = _unit_scene()._with(**arrays, pair=pair, planar=False, links=links, shape=shape)
-        scene._check_scales()
-        return scene
+        entries: dict[str, object] = {"pair": pair, "planar": False, "links": links, "shape": shape}
+        return of_bodies(entries | {name: lock_arrays(each) for name, each in arrays.items()})
 
     def _fastest(self, velocity: Array) -> Array:
         """Return v1, the largest rate of approach, shape (count, 1)."""
@@ -260,12 +257,6 @@ class Assembly:
                 for entry, change in changes.items():
                     after[entry][:, moved] += join_components(change, (self.count,))
         return after["velocity"], after["spin"]
-
-
-@cache
-def _unit_scene() -> Scene:
-    """Return an impact whose numbers are 1, without bodies."""
-    return Scene(None, None, 1.0, 1.0, pair=Pair.of_numbers(dict.fromkeys(ROUND, 1.0)))
 
 
 def _sparse(blocks: dict[tuple[int, int], Array], contacts: int) -> Any:

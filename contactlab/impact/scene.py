@@ -307,11 +307,7 @@ class Scene(_SceneArguments, Batches, Generic[Each]):
         object.__setattr__(self, "_index", index)
         if self.inverse_mass is not None:
             self._check_inverse_mass()
-        if not shape:  # plain numbers warn of nothing
-            self._check_scales()
-            return
-        with np.errstate(all="ignore"):
-            self._check_scales()
+        self._check_scales()
 
     def _set_friction(self, shape: tuple[int, ...]) -> None:
         """Set the friction that follows from the slip, unless numbers took its place."""
@@ -392,6 +388,14 @@ class Scene(_SceneArguments, Batches, Generic[Each]):
 
     def _check_scales(self) -> None:
         """Refuse scenes whose numbers overflow, or lose digits by underflow."""
+        if not self.shape:  # plain numbers warn of nothing
+            self._judge_scales()
+            return
+        with np.errstate(all="ignore"):
+            self._judge_scales()
+
+    def _judge_scales(self) -> None:
+        """Do what ``_check_scales`` says, whatever NumPy does about numbers out of range."""
         friction: Real = self.friction_coefficient
         speed: Real = self.normal_speed
         energy = 0.5 * self.pair.normal_mass * (speed * speed)
@@ -705,11 +709,9 @@ def _unit_scene() -> Scene:
     return Scene(None, None, 1.0, 1.0, pair=pair)
 
 
-def of_contact(entries: Mapping[str, object]) -> Scene:
-    """Return the scene of one contact by entries that follow from an encounter's, checked there."""
+def of_bodies(entries: Mapping[str, object]) -> Scene:
+    """Return a scene by entries that follow from bodies, checked with them but for the scales."""
     scene = batch.change_entries(_unit_scene(), **entries)
-    if scene.inverse_mass is not None:
-        inverse_mass.check(scene.inverse_mass)
     scene._check_scales()
     return scene
 
