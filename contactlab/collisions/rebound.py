@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts.restitution import RESTITUTIONS
-from contactlab.numeric.checks import FINITE, POSITIVE, Rule, pair_up, real, refuse
+from contactlab.numeric.checks import FINITE, POSITIVE, Rule, pair_up, real, refuse, yes_or_no
 from contactlab.numeric.labels import library_of
 from contactlab.numeric.types import Array, Labelled, Many, Number, Plain, Real
 
@@ -245,7 +245,7 @@ def rebound(
     """
     if type(restitution) is int:
         restitution = float(restitution)  # 1 is as fast as 1.0
-    if isinstance(tolerance, float) and TABULATED < tolerance < 1.0 and not derivatives:
+    if isinstance(tolerance, float) and TABULATED < tolerance < 1.0 and derivatives is False:
         if restitution is None or (type(restitution) is float and restitution == 1.0):
             table, span = _table("tangential")
             if _within(psi1, chi, span):
@@ -254,6 +254,7 @@ def rebound(
             table, span = _table("normal")
             if _within(psi1, chi, span):
                 return _by_table(table, psi1, chi, restitution)
+    derivatives = yes_or_no("derivatives", derivatives)
     if library_of(psi1) or library_of(chi) or library_of(restitution):
         return _rebound_with_labels(psi1, chi, tolerance, derivatives, restitution)
     incidence = real(

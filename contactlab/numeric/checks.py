@@ -45,6 +45,8 @@ class Combination(Protocol):
 
 #: Classes whose objects have no labels: ``real`` does not look for any.
 UNLABELLED = frozenset({np.ndarray, list, tuple, int, float, np.float64})
+#: The rule for an option that is on or off.
+YES_OR_NO = "must be True or False"
 #: Number of entries of a list that are searched for labels: all rows are mostly of one class.
 FEW_ENTRIES = 8
 
@@ -182,6 +184,13 @@ def pair_up(first: str, second: str, values: tuple[Real, Real]) -> tuple[Any, An
         rule = "must broadcast to one"
         raise refuse(f"shapes of {first} and {second}", shapes, rule, remedy) from None
     return broadcast[0], broadcast[1]
+
+
+def yes_or_no(argument: str, value: object, *, remedy: str = "") -> bool:
+    """Return True or False, or refuse any other value: the text "no" would be taken for yes."""
+    if isinstance(value, bool | np.bool_):
+        return bool(value)
+    raise refuse(argument, value, YES_OR_NO, remedy)
 
 
 def whole(argument: str, value: object, *, least: int = 1, most: int = 10_000_000) -> int:
@@ -389,16 +398,11 @@ def flag(*, default: object) -> Any:
     default : bool or None
         The value used if none is given. None may be given where it is the default.
     """
-    rule = "must be True or False"
 
     def check_value(name: str, value: object) -> bool | None:
-        if value is None and default is None:
-            return None
-        if not isinstance(value, bool):
-            raise refuse(name, value, rule)
-        return value
+        return None if value is None and default is None else yes_or_no(name, value)
 
-    return _option(bool, check_value, default, range=rule)
+    return _option(bool, check_value, default, range=YES_OR_NO)
 
 
 def count(

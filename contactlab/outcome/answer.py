@@ -11,6 +11,7 @@ from typing import Self
 import numpy as np
 
 from contactlab.contracts.status import Details, Status, Statuses, succeeded
+from contactlab.numeric.checks import yes_or_no
 from contactlab.outcome.tabled import Plotted
 
 
@@ -75,12 +76,13 @@ class Checked(Plotted):
             With the sentence of the first impact that failed, of those that are missing in a
             folder, or of the first caution.
         """
+        told = self.cautions if yes_or_no("cautions", cautions) else ()
         for index, sentence in self._iterate_failures():
             where = f"impact {index}: " if self._of_many else ""
             raise ImpactError(where + sentence, self._status_at(index))
         if missing := self._tell_missing():
             raise ImpactError(missing, Status.INTERRUPTED)
-        for sentence in self.cautions if cautions else ():
+        for sentence in told:
             raise ImpactError(f"caution: {sentence}", Status.SUCCESS)
         return self
 

@@ -17,7 +17,7 @@ from contactlab.contracts.status import Status, succeeded
 from contactlab.contracts.tangential import TangentialLaw
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import fill, take
-from contactlab.numeric.checks import of_kind, refuse
+from contactlab.numeric.checks import of_kind, refuse, yes_or_no
 from contactlab.numeric.names import tell_arguments
 from contactlab.numeric.types import Array, Each, Numbers
 from contactlab.outcome.history import NO_HISTORY, History, NoHistory, Recorder
@@ -202,6 +202,8 @@ class Simulation:
         started, recorder, laws = time.perf_counter(), None, self.laws
         if type(scene) is not Scene:
             scene = _scene(scene)
+        if estimate_error is not False:
+            estimate_error = yes_or_no("estimate_error", estimate_error)
         if laws.capability.reads:
             laws, scene = bind(laws, scene)
         if history is not False and _history(history):
@@ -341,7 +343,8 @@ class Simulation:
 
         started = time.perf_counter()
         options: SweepOptions = {
-            "chunk": chunk, "executor": executor, "return_partial": return_partial
+            "chunk": chunk, "executor": executor,
+            "return_partial": yes_or_no("return_partial", return_partial),
         }  # fmt: skip
         if isinstance(scenes, str | Path) or hasattr(scenes, "scene"):
             remedy = "give its .scene" if hasattr(scenes, "scene") else FOR_FILES

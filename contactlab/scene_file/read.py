@@ -16,7 +16,7 @@ from contactlab.impact import batches
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.gathering import Gathering
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import real, refuse
+from contactlab.numeric.checks import real, refuse, yes_or_no
 from contactlab.numeric.types import Numbers, Real
 from contactlab.outcome.files import content
 from contactlab.scene_file.build import build_scene
@@ -148,6 +148,7 @@ def read_scene(
     """
     if not isinstance(path, str | os.PathLike) or not isinstance(os.fspath(path), str):
         raise refuse("path", path, "must be the path of a scene file", "such as 'scene.toml'")
+    allow_code = yes_or_no("allow_code", allow_code)
     file = Path(path)
     if "\0" in str(path):
         raise refuse("path", path, "must not hold a null character")

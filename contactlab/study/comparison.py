@@ -10,7 +10,7 @@ import numpy as np
 
 from contactlab.impact import kinetics
 from contactlab.impact.scene import Scene
-from contactlab.numeric.checks import of_kind, refuse
+from contactlab.numeric.checks import of_kind, refuse, yes_or_no
 from contactlab.numeric.names import nearest, tell_attributes
 from contactlab.numeric.progress import Count, follow
 from contactlab.numeric.types import AnyArray, Array, Json, Real
@@ -238,6 +238,8 @@ def compare(
     if not isinstance(single, Scene):
         raise refuse("scene", scene, "must be a Scene or a SceneFile")
     _check_simulations(simulations)
+    history = yes_or_no("history", history)
+    estimate_error = yes_or_no("estimate_error", estimate_error)
     series = file.measured if file else ()
     total, done = len(simulations) * (1 + len(series)), 0
     runs: list[LawRun] = []

@@ -10,6 +10,7 @@ import numpy as np
 from contactlab.contracts import TangentialLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.scene import Scene
+from contactlab.numeric.checks import yes_or_no
 from contactlab.numeric.types import Array
 from contactlab.registry import composition
 from contactlab.registry.composition import DEFAULT_NORMAL, STEPPED, exact, fixed_steps
@@ -77,7 +78,7 @@ def error_map(method: Method, *, quick: bool = False) -> ErrorMap:
     quick : bool
         Fewer cells.
     """
-    steps, chis = (QUICK_STEPS, QUICK_CHIS) if quick else (STEPS, CHIS)
+    steps, chis = (QUICK_STEPS, QUICK_CHIS) if yes_or_no("quick", quick) else (STEPS, CHIS)
     psi1, chi = (each.ravel() for each in np.meshgrid(INCIDENCES, chis, indexing="ij"))
     law = composition.law("tangential", method.tangential)
     scene = pose(Scene.nondimensional(psi1=psi1, chi=chi), (law,))

@@ -13,6 +13,7 @@ import attrs
 import numpy as np
 
 from contactlab.impact.error_model import COARSE
+from contactlab.numeric.checks import yes_or_no
 from contactlab.registry.composition import DEFAULT_NORMAL
 from contactlab.study.bench_methods import Method
 from contactlab.study.model_error import ModelError, model_error
@@ -135,6 +136,7 @@ def stability(
         Ctrl-C keeps the outcomes that there are.
     """
     until = end_of(time_limit)
+    quick = yes_or_no("quick", quick)
     listed = list_cases(methods, quick=quick)
     elastic = [method for method in methods if method.normal == DEFAULT_NORMAL]
     largest = QUICK_LARGEST if quick else LARGEST

@@ -14,6 +14,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from contactlab.numeric.checks import yes_or_no
 from contactlab.numeric.types import Array
 from contactlab.study.benchmark import ALIKE, ROUNDING, Benchmark, Row
 from contactlab.study.doors import Answer, Call, Door
@@ -56,6 +57,7 @@ def bench(
     Benchmark
         Ctrl-C keeps the doors that are done.
     """
+    quick = yes_or_no("quick", quick)
     until = end_of(time_limit)
     rows: list[Row] = []
     interrupted = complete = False

@@ -16,7 +16,7 @@ from contactlab.impact import shapes
 from contactlab.impact.bodies import HalfSpace
 from contactlab.impact.encounter import Encounter
 from contactlab.impact.material import Material, entry, names
-from contactlab.numeric.checks import refuse
+from contactlab.numeric.checks import refuse, yes_or_no
 from contactlab.runs.simulation import Simulation
 
 #: Springs and steps of the contact that the page draws; velocities after it come from the table.
@@ -114,7 +114,7 @@ def explore_page(
                 f"must lie in [{least:g}, {most:g}], the range of the slider",
             )
     first |= {"material": entry(material).name, "block": entry(block).name if block else ""}
-    first |= {"predict": predict, "guess": 0}
+    first |= {"predict": yes_or_no("predict", predict), "guess": 0}
     page = resources.files("contactlab_pages").joinpath("explore.html").read_text("utf-8")
     for part, file in PARTS.items():
         package, _, name = file.partition("/")

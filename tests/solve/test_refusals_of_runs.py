@@ -8,9 +8,22 @@ import numpy as np
 import pytest
 
 import contactlab
-from contactlab import HalfSpace, Material, Scene, Simulation, Sphere, collide, load_path, rebound
+from contactlab import (
+    HalfSpace,
+    Material,
+    Scene,
+    Simulation,
+    Sphere,
+    collide,
+    compare,
+    load_path,
+    rebound,
+)
 from contactlab.contracts import SteppedTangentialLaw, TangentialResponse
 from contactlab.registry.composition import law
+from contactlab.scene_file import read_scene
+from contactlab.study.stability import stability
+from contactlab.study.work_precision import bench
 from tests.collisions.test_collision import meeting
 from tests.laws.normal_laws import LinearSpring
 from tests.solve.any_scene import BATCHES, EXACT, WITH_BODIES, one_scene
@@ -204,6 +217,38 @@ def test_a_refusal_names_value_rule_and_remedy(make, words):
     with pytest.raises(ValueError, match=" ") as caught:
         make()
     assert str(caught.value) == words
+
+
+YES_OR_NO = [  # an option, and a call that takes it
+    ("history", lambda given: compare(BARE, {"exact": EXACT}, history=given)),
+    ("estimate_error", lambda given: compare(BARE, {"exact": EXACT}, estimate_error=given)),
+    ("estimate_error", lambda given: EXACT.run(BARE, estimate_error=given)),
+    ("return_partial", lambda given: EXACT.sweep([BARE], return_partial=given)),
+    ("return_partial", lambda given: EXACT.sweep([BARE], into="no", return_partial=given)),
+    ("derivatives", lambda given: rebound(1.0, 1.4, derivatives=given)),
+    ("derivatives", lambda given: rebound([1.0, 2.0], 1.4, derivatives=given)),
+    ("derivatives", lambda given: rebound(1.0, 1.4, restitution=0.5, derivatives=given)),
+    ("cautions", lambda given: EXACT.run(BARE).check(cautions=given)),
+    ("allow_code", lambda given: read_scene("none.toml", allow_code=given)),
+    ("quick", lambda given: stability([], quick=given)),
+    ("quick", lambda given: bench([], quick=given)),
+    ("table", lambda given: law("tangential", "fronts", table=given)),
+]
+
+
+@pytest.mark.parametrize("given", ["no", "", 0, 1, None, [True]])
+@pytest.mark.parametrize(("name", "call"), YES_OR_NO, ids=[name for name, _ in YES_OR_NO])
+def test_an_option_is_on_or_off_and_nothing_is_taken_for_either(name, call, given):
+    with pytest.raises(ValueError, match="True or False") as caught:
+        call(given)
+    assert str(caught.value).endswith(f"{name} = {given!r}: must be True or False")
+
+
+def test_numpys_true_and_false_are_on_and_off():
+    assert len(rebound(1.0, 1.4, derivatives=np.True_)) == 3
+    assert rebound(1.0, 1.4, derivatives=np.False_) == rebound(1.0, 1.4)
+    assert np.isfinite(EXACT.run(BARE, estimate_error=np.True_).psi2_error_estimate)
+    assert law("tangential", "fronts", table=np.False_).table is False
 
 
 def test_other_things_in_place_of_a_scene_have_a_remedy_of_their_own():
