@@ -6,7 +6,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import contactlab
-from contactlab import Encounter, HalfSpace, Material, Simulation, shapes
+from contactlab import Encounter, HalfSpace, Material, Simulation, load_path, shapes
 from contactlab.solve.normal_motion import normal_motion
 from tests.laws.normal_impacts import restitution, scene
 
@@ -169,6 +169,22 @@ def test_tabor_says_which_theory():
     assert any("Tabor" in str(said) and "normal.dmt" in str(said) for said in jkr_plan.cautions)
     assert any("Tabor" in str(said) and "normal.jkr" in str(said) for said in dmt_plan.cautions)
     assert "Tabor" not in str(Simulation(normal=jkr(1.0), tangential="springs").plan(scene()))
+
+
+def test_a_history_ends_where_jkrs_contact_breaks():
+    """The pull ends at negative approach, later than the last step's force is sampled."""
+    given = scene(0.3)
+    result = Simulation(normal=jkr(2.0), tangential="springs").run(given, history=True).check()
+    history = result.history
+    assert (np.diff(history.time) > 0.0).all()
+    assert history.time[-1] == pytest.approx(result.motion.duration, rel=1e-12)
+    assert history.approach[-1] == pytest.approx(least_approach(given, 2.0), rel=1e-6)
+    assert history.normal_velocity[-1] == pytest.approx(result.rebound_normal_velocity, rel=1e-9)
+    again = load_path(given, history.approach, 0.0 * history.time, normal=jkr(2.0),
+                      time=history.time)  # fmt: skip
+    largest = history.normal_force.max()
+    np.testing.assert_allclose(again.normal_force[:-1], history.normal_force[:-1], rtol=0.0,
+                               atol=1e-5 * largest)  # fmt: skip
 
 
 def test_bad_options_are_refused_by_name():

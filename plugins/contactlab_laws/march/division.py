@@ -172,7 +172,10 @@ def _cut_at_parting(steps: Steps, ends: NormalSample) -> Steps:
         np.concatenate((entry, factor * entry[-1:]))
         for entry, factor in zip(steps.contact, factors, strict=True)
     ]
-    last = [np.concatenate((column, column[-1:])) for column in steps[4:]]
+    last = [  # time, approach and rate where contact breaks: the last step may have its middle
+        np.concatenate((column, np.broadcast_to(np.asarray(end)[-1:], column[-1:].shape)))
+        for column, end in zip(steps[4:], ends[:3], strict=True)
+    ]
     still = [np.concatenate((column, 0.0 * column[-1:])) for column in steps[1:4]]
     for column in (*contact, *still, *last):
         column.flags.writeable = False
