@@ -87,7 +87,8 @@ def setting(text: str) -> tuple[str, Any]:
     except tomllib.TOMLDecodeError:
         with contextlib.suppress(ValueError):
             return path.strip(), float(value)  # .5 is a number, though not in TOML
-        return path.strip(), value.strip()  # words need no quotes
+        word = value.strip()  # words need no quotes, and refusals say True or False
+        return path.strip(), {"True": True, "False": False}.get(word, word)
     except (RecursionError, ValueError) as error:  # nested too deep, or too many digits
         raise argparse.ArgumentTypeError(f"{path.strip()}: {error}") from None
 

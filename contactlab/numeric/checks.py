@@ -400,7 +400,10 @@ def flag(*, default: object) -> Any:
     """
 
     def check_value(name: str, value: object) -> bool | None:
-        return None if value is None and default is None else yes_or_no(name, value)
+        if value is None and default is None:
+            return None
+        remedy = "without quotes; in a scene file true or false" if isinstance(value, str) else ""
+        return yes_or_no(name, value, remedy=remedy)
 
     return _option(bool, check_value, default, range=YES_OR_NO)
 

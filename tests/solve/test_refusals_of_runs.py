@@ -241,7 +241,7 @@ YES_OR_NO = [  # an option, and a call that takes it
 def test_an_option_is_on_or_off_and_nothing_is_taken_for_either(name, call, given):
     with pytest.raises(ValueError, match="True or False") as caught:
         call(given)
-    assert str(caught.value).endswith(f"{name} = {given!r}: must be True or False")
+    assert f"{name} = {given!r}: must be True or False" in str(caught.value)
 
 
 def test_numpys_true_and_false_are_on_and_off():
