@@ -354,18 +354,25 @@ class Collision(Answer, Generic[Each]):
         return lines
 
     def _statuses(self) -> tuple[Statuses, Details]:
-        return (Status.SUCCESS, "") if self.known is None else self.known._statuses()
+        if self.known is None:
+            return Status.SUCCESS, ""
+        statuses, details = self.known._statuses()
+        return self._of_encounters(Status.SUCCESS, statuses), self._of_encounters("", details)
+
+    def _of_encounters(self, passed: Any, collided: Any) -> Any:
+        """Return words of each encounter: ``collided`` in order, ``passed`` of the others."""
+        if np.all(self.collided):
+            return collided
+        each: Any = spread_object(passed, self.encounter.shape)
+        each[self.collided] = collided  # one encounter collides or does not
+        return each
 
     @property
     def status(self) -> Statuses:
         """A ``Status``, or an array of statuses; ``SUCCESS`` if the bodies passed through."""
-        if self.known is not None and np.all(self.collided):
-            own: Statuses = self.known.status
-            return own
-        status: Statuses = spread_object(Status.SUCCESS, self.encounter.shape)
-        if self.known is not None:
-            assert not isinstance(status, Status)  # one encounter collides or does not
-            status[self.collided] = self.known.status
+        if self.known is None:
+            return spread_object(Status.SUCCESS, self.encounter.shape)
+        status: Statuses = self._statuses()[0]
         return status
 
     @property
@@ -382,6 +389,7 @@ class Collision(Answer, Generic[Each]):
         numbers = {name: json_value(getattr(self, name)) for name, _ in NUMBERS_AFTER}
         told = {
             "status": json_value(self.status),
+            "detail": json_value(self._statuses()[1]),
             "energy": self.energy.to_dict(),
             "laws": self._laws(),
             "plan": self.plan.to_dict(),

@@ -301,7 +301,8 @@ class GatheringResult(Answer):
         told: dict[str, Any] = {name: json_value(getattr(self, name)) for name, _ in names}
         if self.gathering.names:
             told["bodies"] = [*self.gathering.names]
-        told |= {"status": json_value(self.status), "laws": dict(self.laws)}
+        status, detail = map(json_value, self._statuses())
+        told |= {"status": status, "detail": detail, "laws": dict(self.laws)}
         return told | {"energy": self.energy.to_dict(), "plan": self.plan.to_dict()}
 
     def _sheet(self, rows: str = "bodies") -> Sheet:

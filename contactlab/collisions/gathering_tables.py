@@ -47,6 +47,7 @@ def to_dict(hit: GatheringResult) -> dict[str, Any]:
         for keys in ([each.split(" ")[0] for each in headings],)
     }
     return told | {
+        "detail": json_value(hit._statuses()[1]),
         "energy": hit.energy.to_dict(),
         "plan": hit.plan.to_dict(),
         "laws": dict(hit.laws),

@@ -327,6 +327,26 @@ def test_a_failure_is_a_status():
         made.check()
 
 
+def test_a_failure_has_the_index_of_its_encounter_where_others_pass():
+    """The bodies of encounters 0 and 2 part; a soft ball sticks in 1 and bounces off in 3."""
+    soft = Material(young_modulus=1e6, poisson_ratio=0.45, density=1000.0)
+    met = Encounter(
+        Sphere(1e-4, soft), HalfSpace(soft), 0.3, normal=DOWN,
+        velocity=[(1.0, 0, 1.0), (0.1, 0, -1e-3), (0, 0, 1.0), (1.0, 0, -10.0)],
+    )  # fmt: skip
+    made = collide(met, Simulation(normal="jkr", tangential="springs"), separating="pass")
+    names = ["SUCCESS", "NOT_SEPARATED", "SUCCESS", "SUCCESS"]
+    assert [status.name for status in made.status] == names
+    assert [*made.failures] == [1]
+    told = made.to_dict()
+    assert told["status"] == names
+    assert [bool(detail) for detail in told["detail"]] == [False, True, False, False]
+    assert told["detail"][1] in made.failures[1]
+    with pytest.raises(ImpactError, match="impact 1: ") as caught:
+        made.check()
+    assert caught.value.status is Status.NOT_SEPARATED
+
+
 def test_a_collision_is_read_only_and_says_what_it_is():
     made = collide(meeting(velocity=[(0.5, 0, -1)] * 3))
     with pytest.raises(ValueError, match="read-only"):

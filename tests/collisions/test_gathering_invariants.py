@@ -190,6 +190,7 @@ def _judge(found, books, simulation=None):
         if hit.status is not Status.SUCCESS:
             assert hit.status is Status.NOT_SEPARATED
             assert "touches: [" in hit.failures[0]
+            assert hit.to_dict()["detail"] in hit.failures[0]
             assert np.isnan(hit.velocity).all()
             endless += 1
             continue
