@@ -15,7 +15,7 @@ from contactlab.collisions import impulses
 from contactlab.collisions.collision_plan import collision_plan
 from contactlab.collisions.restituted import plan_rebounds, run_by_restitution
 from contactlab.collisions.velocities import Velocities, velocities
-from contactlab.contracts.status import Details, Status, Statuses
+from contactlab.contracts.status import Details, Status, Statuses, Word
 from contactlab.impact import kinetics
 from contactlab.impact.bodies import HalfSpace, Sphere
 from contactlab.impact.body_contact import in_space, push_bodies
@@ -44,6 +44,7 @@ from contactlab.runs.simulation import Simulation
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from numpy.typing import NDArray
 
     from contactlab.outcome.style import Width
 
@@ -359,12 +360,14 @@ class Collision(Answer, Generic[Each]):
         statuses, details = self.known._statuses()
         return self._of_encounters(Status.SUCCESS, statuses), self._of_encounters("", details)
 
-    def _of_encounters(self, passed: Any, collided: Any) -> Any:
+    def _of_encounters(
+        self, passed: Word, collided: Word | NDArray[np.object_]
+    ) -> Word | NDArray[np.object_]:
         """Return words of each encounter: ``collided`` in order, ``passed`` of the others."""
         if np.all(self.collided):
             return collided
-        each: Any = spread_object(passed, self.encounter.shape)
-        each[self.collided] = collided  # one encounter collides or does not
+        each = np.full(self.encounter.shape, passed, dtype=object)
+        each[self.collided] = collided
         return each
 
     @property
@@ -372,8 +375,7 @@ class Collision(Answer, Generic[Each]):
         """A ``Status``, or an array of statuses; ``SUCCESS`` if the bodies passed through."""
         if self.known is None:
             return spread_object(Status.SUCCESS, self.encounter.shape)
-        status: Statuses = self._statuses()[0]
-        return status
+        return self._statuses()[0]
 
     @property
     def cautions(self) -> list[str]:

@@ -6,14 +6,14 @@ import math
 import time
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlab.contracts.contact import NormalContact
-from contactlab.contracts.status import Details, Status, Statuses, succeeded
+from contactlab.contracts.status import Details, Status, Statuses, Word, succeeded
 from contactlab.contracts.tangential_motion import Sample
 from contactlab.impact.gathering import Body, Gathering
 from contactlab.impact.scene import Scene
@@ -47,8 +47,6 @@ if TYPE_CHECKING:
 
     from contactlab.outcome.style import Width
 
-#: A status or a sentence.
-Word = TypeVar("Word", Status, str)
 #: Numbers of a result for each contact, by name and unit.
 OF_CONTACTS = (
     ("normal_velocity", "m/s"), ("first_touch", "s"), ("last_touch", "s"), ("touches", "1"),

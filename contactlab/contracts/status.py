@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from enum import Enum
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 if TYPE_CHECKING:
     import numpy as np
@@ -34,6 +34,8 @@ class Status(Enum):
 Statuses: TypeAlias = "Status | NDArray[np.object_]"
 #: A sentence on the failure of one impact, or of each of a batch; empty for a success.
 Details: TypeAlias = "str | NDArray[np.object_]"
+#: A status or a sentence.
+Word = TypeVar("Word", Status, str)
 
 
 def succeeded(statuses: Statuses) -> bool:

@@ -83,10 +83,10 @@ class EnergyLedger(Generic[Each]):
 
     @property
     def relative_imbalance(self) -> Each:
-        """Imbalance over the energy at the start, unit 1."""
+        """Imbalance over the energy at the start, unit 1; 0 of bodies that passed through."""
         with np.errstate(under="ignore"):
             imbalance: Any = self.imbalance
-            return imbalance / self.start
+            return imbalance / (self.start + (self.start == 0.0))  # passed: 0 over 0
 
     def to_dict(self) -> dict[str, Json]:
         """Return the entries and the relative imbalance as plain numbers or lists."""

@@ -49,10 +49,15 @@ def test_a_single_encounter_that_does_not_approach_passes(met, options):
     assert made.impulse.tolist() == [0.0, 0.0, 0.0]
     assert made.status is Status.SUCCESS
     assert made.energy.friction_work == 0.0
+    assert made.to_dict()["energy"]["relative_imbalance"] == 0.0
     assert made.normal_velocity == pytest.approx(away.meeting().approach)
     assert "pass through untouched" in str(made.plan)
     assert "passed through" in repr(made)
     assert made.cautions == []
+    both = attrs.evolve(met, velocity=[(0.5, 0.0, 1.0), (0.5, 0.0, -1.0)])
+    books = collide(both, separating="pass", **options).energy
+    assert books.relative_imbalance[0] == 0.0
+    assert books.start[1] > 0.0
 
 
 @pytest.mark.parametrize("target", [FLOOR, Sphere(0.1, STEEL)], ids=["floor", "ball"])
