@@ -11,15 +11,17 @@ import numpy as np
 from contactlab.contracts.contact import NormalContact
 from contactlab.contracts.law import Law
 from contactlab.contracts.motion import NormalMotion, NormalSample
+from contactlab.impact.hertz import hertz_scales
 from contactlab.impact.scene import Scene
-from contactlab.numeric.arrays import merge_parts, spread
+from contactlab.numeric.arrays import choose, merge_parts, some, spread
 from contactlab.numeric.types import Array, Index, Mask, Real
 
 
 class SampledMotion(NormalMotion):
     """A normal motion through samples, linear between them; its phase is proportional to time.
 
-    Maxima are those of the samples; the load impulse is their sum by the trapezium rule.
+    Maxima are those of the samples, and of Hertz's impact where no sample is in contact; the load
+    impulse is the sum by the trapezium rule.
 
     Parameters
     ----------
@@ -66,9 +68,13 @@ class SampledMotion(NormalMotion):
         self.final_rate, self.total_load_impulse = (
             spread(column[-1], shape) for column in (speed, impulse)
         )
-        self.maximum_radius, self.maximum_approach, self.maximum_force = (
-            spread(column.max(axis=0), shape) for column in (radius, depth, force)
-        )
+        largest = [spread(column.max(axis=0), shape) for column in (radius, depth, force)]
+        if any(some(own == 0.0) for own in largest):  # laws divide by maxima as they start
+            usual = hertz_scales(scene)
+            scales = usual.radius, usual.approach, usual.force
+            pairs = zip(largest, scales, strict=True)
+            largest = [choose(own == 0.0, scale, own) for own, scale in pairs]
+        self.maximum_radius, self.maximum_approach, self.maximum_force = largest
 
     def at(self, phase: Real) -> NormalSample:
         """Return the motion at ``phase``, by linear interpolation."""

@@ -240,6 +240,22 @@ def test_bad_input_is_refused(arguments, options, words):
         load_path(*arguments, **options)
 
 
+@pytest.mark.parametrize(
+    "law", ["springs", "annulus", "linear_spring", "mindlin_deresiewicz", "thornton_yin"]
+)
+@pytest.mark.parametrize("normal", ["hertz", "thornton", "jkr"])
+def test_bodies_that_never_touch_have_no_forces(normal, law):
+    moved = np.linspace(0.0, 2.0 * FULL, 9)
+    laws = {"normal": normal, "tangential": law}
+    apart = np.full(9, -DEEP)
+    alone = load_path(SCENE, apart, moved, **laws).check()
+    both = load_path(SCENE, np.transpose([apart, -apart]), moved, **laws).check()
+    for name in ("normal_force", "friction_force", "friction_work", "work"):
+        assert np.all(getattr(alone, name) == 0.0)
+        assert np.all(getattr(both, name)[:, 0] == 0.0)
+    assert np.all(both.friction_force[1:, 1] > 0.0)
+
+
 def test_a_path_may_have_one_point():
     path = load_path(SCENE, [DEEP], [1.0]).check()
     assert path.friction_force == 0.0
