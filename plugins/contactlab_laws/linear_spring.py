@@ -13,6 +13,7 @@ from contactlab.contracts import (
     NormalMotion,
     TangentialResponse,
 )
+from contactlab.contracts.sampled_motion import SampledMotion
 from contactlab.impact.scene import Scene
 from contactlab.numeric.arrays import spread
 from contactlab.numeric.checks import NON_NEGATIVE, POSITIVE, quantity
@@ -33,8 +34,8 @@ from contactlab_laws.one_spring import (
 COARSEST_BOOKS = 0.05
 
 PATH = (
-    "model: one spring, as stiff as an impact at the scene's speed. Along random paths the force "
-    "is off by up to 2 mu N."
+    "model: one spring, as stiff as an impact as deep as the path. Along random paths the "
+    "force is off by up to 2 mu N."
 )
 
 
@@ -55,7 +56,8 @@ class LinearSpring(OneSpring):
 
     The stiffness is the same from first touch to separation, k_t = ``stiffness_ratio`` times
     k_n = M_n v1²/z², the stiffness of the linear spring that is compressed as far as this
-    contact, z (Di Renzo & Di Maio 2004). So the law needs no contact radius.
+    contact, z (Di Renzo & Di Maio 2004). So the law needs no contact radius. Along a given path,
+    which has no speed, k_n is 2 W/z², W the work of P up to the greatest approach: the same.
 
     Parameters
     ----------
@@ -83,6 +85,9 @@ class LinearSpring(OneSpring):
         """Return k_t in N/m."""
         pair = scene.pair
         ratio = pair.stiffness_ratio if self.stiffness_ratio is None else self.stiffness_ratio
+        if isinstance(normal, SampledMotion):  # a path has no speed; an impact: 2 W = M_n v1²
+            deepest = normal.maximum_approach
+            return 2.0 * ratio * normal.compression_work / (deepest * deepest)
         frequency = scene.normal_speed / normal.maximum_approach
         return ratio * pair.normal_mass * frequency * frequency
 

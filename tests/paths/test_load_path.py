@@ -14,6 +14,7 @@ from contactlab import (
     Material,
     RigidBody,
     Scene,
+    Simulation,
     Sphere,
     Status,
     load_path,
@@ -238,6 +239,36 @@ PATH = np.full(4, DEEP)
 def test_bad_input_is_refused(arguments, options, words):
     with pytest.raises(ValueError, match=words):
         load_path(*arguments, **options)
+
+
+@pytest.mark.parametrize("deep", [1e-8, DEEP])
+@pytest.mark.parametrize("speed", [1e-3, 1.0])
+def test_one_spring_is_as_stiff_as_an_impact_as_deep_as_the_path(speed, deep):
+    """k_n = M v²/z², where ½ M v² = (8/15) E* sqrt(R) z^2.5, whatever the scene's speed."""
+    pair = SCENE.pair
+    moved = [0.0, 1e-6 * deep]
+    scene = Scene(BALL, BALL, MU, normal_speed=speed)
+    path = load_path(scene, [deep, deep], moved, tangential="linear_spring").check()
+    stiffness = 16.0 / 15.0 * pair.effective_modulus * np.sqrt(pair.radius * deep)
+    expected = pair.stiffness_ratio * stiffness * moved[1]
+    assert path.friction_force[1] == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("law", ["springs", "annulus", "linear_spring"])
+@pytest.mark.parametrize("normal", ["hertz", "tsuji", "walton_braun", "jkr"])
+def test_the_path_of_an_impact_has_its_forces(normal, law):
+    """The slip is integrated here from the history of a run, by the trapezium rule."""
+    scene = Scene(BALL, BALL, MU, normal_speed=0.5, tangential_velocity=0.2)
+    history = Simulation(normal=normal, tangential=law).run(scene, history=True).check().history
+    slips = history.slip_velocity
+    steps = np.diff(history.time) * 0.5 * (slips[1:] + slips[:-1])
+    moved = np.concatenate(([0.0], np.cumsum(steps)))
+    path = load_path(
+        scene, history.approach, moved, normal=normal, tangential=law, time=history.time
+    ).check()
+    largest = np.abs(history.tangential_force).max()
+    off = path.friction_force - history.tangential_force
+    assert np.abs(off[:-1]).max() < 0.03 * largest
 
 
 @pytest.mark.parametrize(
