@@ -261,14 +261,16 @@ def _path(
     scene: Scene, approach: Numbers, displacement: Numbers, time: Numbers | None
 ) -> tuple[Points, Array, Scene]:
     """Return the points of a path, the time of first touch, and the scene of the paths' shape."""
-    given = {"approach": real("approach", approach)}
-    given["displacement"] = real("displacement", displacement)
+    remedy = "give the path in m, a number for each point"
+    given = {"approach": real("approach", approach, remedy=remedy)}
+    given["displacement"] = real("displacement", displacement, remedy=remedy)
     if time is not None:
         given["time"] = real("time", time, rule=GROWING, remedy="in s")
     entries = {name: np.asarray(entry) for name, entry in given.items()}
     for name, entry in entries.items():
         if not entry.ndim:
-            raise refuse(name, given[name], "must be an array, shape (K,) or (K, ...)")
+            rule = "must be an array, shape (K,) or (K, ...)"
+            raise refuse(name, given[name], rule, f"for one point give [{given[name]}]")
     told = ", ".join(f"{name} {entry.shape}" for name, entry in entries.items())
     count = len(entries["approach"])
     if any(len(entry) != count for entry in entries.values()):

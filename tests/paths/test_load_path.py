@@ -227,7 +227,9 @@ PATH = np.full(4, DEEP)
     ("arguments", "options", "words"),
     [
         ((SCENE, PATH, np.zeros(5)), {}, "same number of points"),
-        ((SCENE, DEEP, np.zeros(4)), {}, "approach = "),
+        ((SCENE, DEEP, np.zeros(4)), {}, r"approach = .*for one point give \[1e-06\]"),
+        ((SCENE, None, None), {}, "approach = None: .*; give the path in m"),
+        ((SCENE, PATH, None), {}, "displacement = None: .*; give the path in m"),
         ((SCENE, PATH, [0.0, 0.0, np.nan, 0.0]), {}, "displacement = "),
         ((SCENE, np.zeros((4, 2)), np.zeros((4, 3))), {}, "must broadcast"),
         ((SCENE, PATH, PATH), {"time": [0.0, 1.0, 1.0, 2.0]}, "must grow"),

@@ -135,7 +135,7 @@ REFUSED = [
     (lambda: load_path(3, PATH, PATH), "scene = 3: must be a Scene; make one: Scene(...)"),
     (
         lambda: load_path(BALL, 1.0, PATH),
-        "approach = 1.0: must be an array, shape (K,) or (K, ...)",
+        "approach = 1.0: must be an array, shape (K,) or (K, ...); for one point give [1.0]",
     ),
     (
         lambda: load_path(BALL, PATH, [0.0]),
