@@ -163,6 +163,24 @@ def test_friction_that_makes_energy_is_told_of_a_gathering_as_of_an_encounter():
 
 
 @attrs.frozen(kw_only=True)
+class Counted(TwoSprings):
+    """The same springs, whose friction work is told as half as much again."""
+
+    def advance(self, state, increment, before, after):
+        told, state = super().advance(state, increment, before, after)
+        return TangentialResponse(told.force, 1.5 * told.friction_work), state
+
+
+@pytest.mark.parametrize("count", [2, 3])
+def test_books_of_a_gathering_that_nobody_declared_are_told_with_their_size(count):
+    given = row(count, mu=0.2, spin=80.0)
+    true = collide(given, _simulation(TwoSprings())).energy
+    cautions = collide(given, _simulation(Counted())).cautions
+    (told,) = [text for text in cautions if "energy balance" in text]
+    assert f"off by {0.5 * true.friction_work / true.start:.2g} of the energy at the start" in told
+
+
+@attrs.frozen(kw_only=True)
 class Eager(Foam):
     """Foam without loss; from its second touch on it pushes harder as it parts."""
 
