@@ -42,6 +42,7 @@ def test_a_round_contact_needs_no_radius(e):
     (sentence,) = told(taken, "curvature_radius")
     ball = Sphere(0.0312, STEEL)
     assert "using 0.0312 m, that of a solid ball of this mass" in sentence
+    assert "and velocities under laws of a rate or of yield" in sentence
     assert ball.mass == pytest.approx(1.0, rel=2e-3)
     assert not told(given, "curvature_radius")
 
