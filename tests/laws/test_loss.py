@@ -1,5 +1,7 @@
 """One loss for pressure and shear (theory §15): against other programs, closed forms and rings."""
 
+import re
+
 import attrs
 import numpy as np
 import pytest
@@ -312,6 +314,19 @@ def test_the_caution_has_the_size_of_the_evidence():
     alone = Simulation(normal=viscoelastic(0.8), tangential="annulus").plan(PLANAR(psi1=1.0, chi=1))
     assert "loss in shear: annulus has none" in map(str, alone.left_out)
     assert not any("loss in shear" in t for t in map(str, springs("hertz").plan(ball).left_out))
+
+
+@pytest.mark.parametrize("e", [0.95, 0.98])
+def test_the_caution_of_little_loss_has_the_size_of_what_half_and_twice_the_loss_move(e):
+    """Of solid spheres, rounded up to a hundredth."""
+    batch = PLANAR(psi1=np.linspace(0.2, 2.0, 10), chi=CHI)
+    losses = (0.5, 1.0, 2.0)
+    simulations = [springs(viscoelastic(e), 20, 200, shear_loss=loss) for loss in losses]
+    less, usual, more = (-each.run(batch).check().psi2 / batch.psi1 for each in simulations)
+    moved = max(np.abs(less - usual).max(), np.abs(more - usual).max())
+    cautions = map(str, springs(viscoelastic(e), 20, 200).plan(batch).cautions)
+    (size,) = re.findall(r"beta0 is right within (\S+), by", " ".join(cautions))
+    assert moved <= float(size) < moved + 0.01
 
 
 @pytest.mark.parametrize("loss", [-0.1, 8.5, "much", None, [1.0, 2.0]])
