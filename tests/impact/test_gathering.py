@@ -37,6 +37,12 @@ def two(*touches, bodies=(MOVES, RESTS)):
     return Gathering(list(bodies), list(touches))
 
 
+def placed(distance):
+    """Return two balls that touch, and whose centres stand so far apart."""
+    bodies = Body(BALL, velocity=X, position=[0, 0, 0]), Body(BALL, position=[distance, 0, 0])
+    return two(Touch(0, 1, 0.1, normal=X), bodies=bodies)
+
+
 def lies(force, **first):
     """Return a ball that rolls into a wall on its cloth."""
     body = Body(BALL, velocity=[1, 0, 0], force=force)
@@ -72,12 +78,8 @@ REFUSED = {
                             Body(BALL, position=[0, 0, 0]))),
         "positions",
     ),
-    "apart by positions": (
-        lambda: two(Touch(0, 1, 0.1, normal=X),
-                    bodies=(Body(BALL, velocity=X, position=[0, 0, 0]),
-                            Body(BALL, position=[0.05, 0, 0]))),
-        "touches[0].gap",
-    ),
+    "apart by positions": (lambda: placed(0.0221), "touches[0].gap"),
+    "one in the other by positions": (lambda: placed(0.0179), "touches[0].gap"),
     "negative gap": (lambda: Touch(0, 1, 0.1, normal=X, gap=-1e-6), "gap"),
     "negative friction": (lambda: Touch(0, 1, -0.1, normal=X), "friction_coefficient"),
     "a normal of length zero": (lambda: two(Touch(0, 1, 0.1, normal=[0, 0, 0])), "touches[0]"),
@@ -222,6 +224,11 @@ def test_spheres_by_their_positions_are_those_that_are_written():
     np.testing.assert_allclose([np.max(each.gap) for each in found.touches], 0.0, atol=1e-16)
     hit, other = collide(found, laws(12, 50)), collide(given, laws(12, 50))
     np.testing.assert_allclose(hit.velocity, other.velocity, atol=1e-12)
+
+
+@pytest.mark.parametrize("distance", [0.0181, 0.0219])
+def test_positions_are_rounded_to_a_tenth_of_the_radii(distance):
+    assert placed(distance).touches[0].gap == 0.0
 
 
 def test_gaps_follow_from_the_positions():
