@@ -73,7 +73,7 @@ def test_no_friction_makes_psi_infinite_but_not_nan():
     assert scene(friction_coefficient=0, tangential_velocity=0).psi1 == 0.0
 
 
-@pytest.mark.parametrize("bad", [math.nan, math.inf, -0.1, "0.1", None, 1j])
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -0.1, "0.1", None, 1j, []])
 @pytest.mark.parametrize("name", ["friction_coefficient", "normal_speed"])
 def test_bad_number_is_refused_by_name(name, bad):
     with pytest.raises(ValueError, match=name):
