@@ -62,6 +62,7 @@ def test_validate_keeps_checks_and_sources(run, monkeypatch, done, sources):
     assert ran.out.endswith("not complete: interrupted\n")
     assert ran.out.count("coulomb: psi2") == done
     assert ran.out.count("(experiment)") == sources
+    assert json.loads(run("validate", "--json").out)["complete"] is False
 
 
 @pytest.mark.slow

@@ -176,8 +176,9 @@ def test_a_law_that_misses_an_experiment_fails(run, short, monkeypatch):
     monkeypatch.setattr(bring, "_KEPT", {})
     monkeypatch.setattr(evidence, "SOURCES", (attrs.evolve(source, bounds=bounds),))
     ran = run("validate", "--json")
-    told = {row["what"]: row["ok"] for row in json.loads(ran.out)["checks"]}
-    assert ran.status == 1
+    content = json.loads(ran.out)
+    told = {row["what"]: row["ok"] for row in content["checks"]}
+    assert (ran.status, content["complete"]) == (1, True)
     assert told[f"mindlin_cap: {quantity}, rms"]
     assert not told[f"coulomb: {quantity}, rms"]
 

@@ -158,6 +158,7 @@ def test_names_follow_the_rule_of_distributions(install, monkeypatch):
     assert Material.named("lab-b:goo").young_modulus == pytest.approx(2e6)
     monkeypatch.setenv("CONTACTLAB_BLOCK_PLUGINS", "lab-a")
     assert Material.named("goo").young_modulus == pytest.approx(2e6)
+    assert Material.named("steel").young_modulus > 1e11
 
 
 def test_a_broken_plugin_is_told_once_and_takes_nothing_from_others(install):
