@@ -1,10 +1,12 @@
 """`contactlab bench`: errors, orders, gaps, the front."""
 
+import itertools
 import json
 import shutil
 from importlib.util import find_spec
 from types import SimpleNamespace
 
+import attrs
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -19,6 +21,7 @@ from contactlab.registry import composition
 from contactlab.study import work_precision
 from contactlab.study.bench_methods import methods, scenes
 from contactlab.study.benchmark import Benchmark, Row
+from contactlab.study.doors import limits
 from contactlab.study.questions import questions
 from contactlab.study.work_precision import bench
 from tests.longer import longer
@@ -66,6 +69,17 @@ def test_errors_fall_with_the_steps_and_the_order_is_seen():
     assert found.orders["springs / symplectic"] == pytest.approx(2.0, abs=0.4)
     assert all(entry.time_s > 0 for entry in found.rows)
     assert all(entry.sweep_time_s < entry.time_s for entry in found.rows)
+
+
+def test_a_limit_takes_no_longer_than_a_tick_of_the_clock(monkeypatch):
+    """The clock ticks once a reading; a limit may answer nothing."""
+    clock = SimpleNamespace(process_time=itertools.count(0.0, 1e-3).__next__)
+    monkeypatch.setattr(work_precision, "time", clock)
+    (question,) = asked("tangential.coulomb")
+    posed = attrs.evolve(question.pose(True), doors=limits(formula=True))
+    found = bench([attrs.evolve(question, pose=lambda _: posed)], quick=True)
+    assert [entry.limit for entry in found.rows] == [True, True]
+    assert all(0.0 < entry.time_s <= 1.1e-3 for entry in found.rows)
 
 
 @pytest.mark.slow
