@@ -365,6 +365,15 @@ def test_contacts_that_are_near_are_told():
     assert any("feel one another through the body" in text for text in hit.cautions)
 
 
+def test_one_contact_alone_has_no_gap_that_counts():
+    """It begins where the bodies touch, however far they are drawn by a force."""
+    ball = Body(Sphere(0.01, STEEL), velocity=[0, 0, -1e-3], force=[0, 0, -0.3])
+    given = Gathering([ball], [Touch(0, HalfSpace(STEEL), 0.2, normal=[0, 0, -1])])
+    told = [str(each) for each in laws(12, 50).plan(given).cautions]
+    assert any("force on bodies[0]" in text for text in told)
+    assert not any("gaps" in text for text in told)
+
+
 LIGHT = attrs.evolve(STEEL, density=7.8)
 FLAT = RigidBody(mass=1.0, inertia=np.eye(3) * 1e-3, material=STEEL, curvature_radius=0.01)
 
