@@ -40,6 +40,7 @@ enum {
 #define CONTACTLAB_MARCH_WEIGHT 2.414213562373095   /* what that cut weighs at the end */
 #define CONTACTLAB_MARCH_TINY 1e-300
 #define CONTACTLAB_MARCH_TOUCH 1e-30
+#define CONTACTLAB_MARCH_PRESSED 1e-12 /* viscous excess over the square of the edge up to which it is a rounding */
 #define CONTACTLAB_MARCH_SLOWEST 1e-3  /* least rate at which a lossy contact is asked for its relaxation time */
 #define CONTACTLAB_MARCH_STIFF 0.05    /* feedback of friction on the slip velocity from which it is solved for */
 #define CONTACTLAB_MARCH_CLOSING 1e-6  /* rate over the largest approach below which surfaces do not near */
@@ -359,7 +360,7 @@ static inline void contactlab_march_lossy(int axes, int n, const contactlab_marc
     }
   }
   if (count < (growth > 0.0 ? 1 : 2)) { /* smaller than a cell: of its edge, of its middle if it leaves, or as it was */
-    const int grew = growth > 0.0, known = (grew ? excess : edge) > 0.0;
+    const int grew = growth > 0.0, known = grew ? excess > CONTACTLAB_MARCH_PRESSED * edge : edge > 0.0;
     const double x = grew ? lead * d->slip[0] : w[0] + out->lead[0], y = axes < 2 ? 0.0 : grew ? lead * cross * d->slip[1] : w[row] + out->lead[1];
     const double b = sqrt(edge), limit = edge + excess, far = sqrt(x * x + y * y), c = sqrt(fmin(fmax(limit - far, 0.0), edge));
     const double slips = fmin(fmax(far - excess, 0.0), edge) / fmax(b + c, CONTACTLAB_MARCH_TINY), sum = far * c + slips * (limit - (edge + b * c + c * c) / 3.0);

@@ -166,7 +166,7 @@ def move_springs(
     few = np.count_nonzero(last, axis=0) < FEW
     if few.any():
         pull = lead * direction.stretch(motion.slip.velocity)
-        own = np.where(touches, share, share_of_edge(pull, excess, before.share))
+        own = np.where(touches, share, share_of_edge(pull, edge, excess, before.share))
         pull = w[0] + lead * direction.stretch(velocity)
         left = share_of_middle(pull, edge, excess, before.share)
         share = np.where(few, np.where(edge > before.edge, own, left), share)

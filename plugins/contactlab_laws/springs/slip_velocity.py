@@ -13,6 +13,8 @@ from contactlab_laws.springs.turning import TINY, Vectors
 
 #: Turns of Newton's method for the slip velocity where the force acts.
 TURNS = 3
+#: Viscous excess over the square of the edge up to which it is a rounding.
+PRESSED = 1e-12
 #: Feedback of the force on the slip velocity in a step, over the force, from which turns are taken.
 STIFF = 0.05
 
@@ -115,9 +117,9 @@ class Newton(NamedTuple):
         return share, traction, velocity
 
 
-def share_of_edge(pull: Vectors, excess: Real, share: Vectors) -> Vectors:
+def share_of_edge(pull: Vectors, edge: Real, excess: Real, share: Vectors) -> Vectors:
     """Return the share of a growing contact that meets no spring yet: of its edge, or as it was."""
-    pressed = excess > 0.0
+    pressed = excess > PRESSED * edge  # that of an elastic contact is a rounding
     ratio = pull / np.where(pressed, excess, 1.0)
     ratio = ratio / np.maximum(np.abs(ratio), 1.0)
     return np.asarray(np.where(pressed, ratio, share))
