@@ -41,9 +41,7 @@ def test_a_second_sweep_in_a_folder_is_told(tmp_path, argument):
     folder, told = tmp_path / "swept", []
 
     def again(done, total):
-        with pytest.raises(
-            ValueError, match=rf"{argument} = .*swept': is in use .*; wait"
-        ) as error:
+        with pytest.raises(ValueError, match=rf"{argument} = .*: is in use .*; wait") as error:
             sweep(argument, folder)
         told.append(str(error.value))
 
