@@ -28,7 +28,7 @@ REPEATS, LEAST_TIME = 5, 5e-4
 #: answers in this time one by one; of fewer it is not timed.
 LONG, LONG_QUICK, FEWEST = 2.0, 0.08, 3
 #: Processor time of one impact, in s, from which on a door is not refined further.
-SLOW, SLOW_QUICK = 0.1, 0.05
+SLOW, SLOW_QUICK = 0.1, 0.08
 #: A method whose log error falls by less than this over its resolutions has no order.
 LEAST_GAIN = 0.5
 
