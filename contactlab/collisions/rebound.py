@@ -473,7 +473,7 @@ def laws_of(restitution: float) -> Simulation:
 
     tangential = composition.law("tangential", composition.RESTITUTION["tangential"])
     laws = composition.compose(
-        composition.law("normal", composition.RESTITUTION["normal"], restitution=restitution),
+        composition.viscous(restitution),
         attrs.evolve(  # type: ignore[misc]  # a law with options is a class of attrs
             tangential, table=True, **{str(tangential.resolution): SPRINGS}
         ),

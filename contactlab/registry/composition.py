@@ -19,6 +19,7 @@ from contactlab.contracts.tangential import (
     WholeImpactTangentialLaw,
 )
 from contactlab.numeric.checks import refuse
+from contactlab.numeric.types import Real
 from contactlab.registration.bring import state
 from contactlab.registration.names import KINDS, full_name, is_place, short_name
 from contactlab.registry.capability import Capability
@@ -150,6 +151,11 @@ def exact(tolerance: float) -> dict[str, Any]:
         "tangential": law("tangential", EXACT["tangential"], **FOLLOWED),
         "integrator": law("integrator", EXACT["integrator"], tolerance=tolerance),
     }
+
+
+def viscous(restitution: Real) -> NormalLaw:
+    """Return the normal law of a coefficient of restitution: one loss for pressure and shear."""
+    return law("normal", RESTITUTION["normal"], restitution=restitution)
 
 
 def fixed_steps(steps: int) -> Integrator:

@@ -25,13 +25,7 @@ def stand_in(laws: Laws, part: Scene) -> Laws:
     ValueError
         If a law that the user named has no answer; the message names laws that have one.
     """
-    able = laws.capability
-    if (
-        able.coupled is not None
-        and part.planar
-        and part.links is None
-        and "rigid" not in able.tangential_claims
-    ):
+    if "rigid" not in laws.capability.tangential_claims and _no_answer(laws, part) is None:
         return laws
     key = part.planar, part.links is None, state()
     if (found := laws.stand_ins.get(key)) is None:

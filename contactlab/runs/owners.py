@@ -100,10 +100,9 @@ def normal_of_restitution(normal: object, restitution: object) -> NormalLaw | No
         If the restitution is out of range, or the named law does not take it.
     """
     e = real("restitution", restitution, rule=RESTITUTIONS)
-    own = composition.RESTITUTION["normal"]
     if normal is None:
         elastic = isinstance(e, float) and e == 1.0
-        return None if elastic else composition.law("normal", own, restitution=e)
+        return None if elastic else composition.viscous(e)
     found = composition.law("normal", normal)
     if takes_restitution(type(found)):
         if isinstance(normal, str):
@@ -115,7 +114,8 @@ def normal_of_restitution(normal: object, restitution: object) -> NormalLaw | No
             return attrs.evolve(found, restitution=e)  # type: ignore[misc]
     rule = f"stands beside normal = {REGISTRY.short_name(found)}, which "
     rule += "has one" if takes_restitution(type(found)) else "does not take it"
-    raise refuse("restitution", restitution, rule, f"leave out one of them; {own} takes it")
+    remedy = f"leave out one of them; {RESTITUTION['normal']} takes it"
+    raise refuse("restitution", restitution, rule, remedy)
 
 
 def takes_restitution(law: type[Law]) -> bool:

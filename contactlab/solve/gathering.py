@@ -7,13 +7,12 @@ from functools import lru_cache
 import attrs
 import numpy as np
 
-from contactlab.contracts.normal import NormalLaw
 from contactlab.contracts.status import Status
 from contactlab.impact.gathering import Gathering
 from contactlab.impact.gathering_scene import SPARSE
 from contactlab.impact.scene import Scene
 from contactlab.numeric.checks import refuse
-from contactlab.numeric.types import Array, Real
+from contactlab.numeric.types import Array
 from contactlab.outcome.motion import Motion
 from contactlab.registration.bring import state
 from contactlab.registration.names import KINDS
@@ -118,19 +117,14 @@ def _laws_of(gathering: Gathering, laws: Laws | None) -> Laws:
         alike = bool(np.all(e == one))
         if alike and not named:
             return _of_restitution(one, state())
-        named["normal"] = _viscous(one if alike else e)
+        named["normal"] = composition.viscous(one if alike else e)
     return composition.compose(*(named.get(kind) for kind in KINDS))
-
-
-def _viscous(restitution: Real) -> NormalLaw:
-    """Return the normal law that stands for restitutions."""
-    return composition.law("normal", composition.RESTITUTION["normal"], restitution=restitution)
 
 
 @lru_cache(maxsize=16)
 def _of_restitution(restitution: float, _: object) -> Laws:
     """Return the usual laws of one restitution; the plug-ins at hand are part of the key."""
-    return composition.compose(_viscous(restitution), None, None)
+    return composition.compose(composition.viscous(restitution), None, None)
 
 
 def _bind(gathering: Gathering, laws: Laws) -> tuple[Laws, Scene]:

@@ -162,9 +162,7 @@ def springs_of(springs: int, restitution: float = 1.0) -> Simulation:
     """Return springs and four times as many steps, none from a table."""
     normal: str | NormalLaw = composition.DEFAULT_NORMAL
     if restitution < 1.0:
-        normal = composition.law(
-            "normal", composition.RESTITUTION["normal"], restitution=restitution
-        )
+        normal = composition.viscous(restitution)
     tangential = composition.law("tangential", composition.ON_A_PATH, springs=springs)
     return Simulation(
         normal=normal, tangential=tangential, integrator=composition.fixed_steps(4 * springs)
