@@ -21,8 +21,7 @@ class SampledMotion(NormalMotion):
     """A normal motion through samples, linear between them; its phase is proportional to time.
 
     Maxima are those of the samples, and of Hertz's impact where no sample is in contact; the load
-    impulse is the sum by the trapezium rule. ``compression_work`` is that of the normal force up to
-    the greatest approach, in J: of an impact ½ M v1².
+    impulse is the sum by the trapezium rule.
 
     Parameters
     ----------
@@ -76,12 +75,18 @@ class SampledMotion(NormalMotion):
             pairs = zip(largest, scales, strict=True)
             largest = [choose(own == 0.0, scale, own) for own, scale in pairs]
         self.maximum_radius, self.maximum_approach, self.maximum_force = largest
+
+    @property
+    def compression_work(self) -> Real:
+        """Work of the normal force up to the greatest approach, in J: of an impact ½ M v1²."""
+        depth, _, force, *_ = self._columns
         steps = 0.5 * (force[1:] + force[:-1]) * np.diff(depth, axis=0)
         steps[0] = 0.4 * force[1] * depth[1]  # a path may press in one step: Hertz's work
         place = depth[1:].argmax(axis=0)[np.newaxis]
         pressed = np.take_along_axis(np.cumsum(steps, axis=0), place, axis=0)[0]
         hertzian = 0.4 * self.maximum_force * self.maximum_approach
-        self.compression_work: Real = choose(pressed > 0.0, spread(pressed, shape), hertzian)
+        work: Real = choose(pressed > 0.0, spread(pressed, self.scene.shape), hertzian)
+        return work
 
     def at(self, phase: Real) -> NormalSample:
         """Return the motion at ``phase``, by linear interpolation."""
