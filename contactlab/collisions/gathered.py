@@ -92,7 +92,7 @@ class GatheringResult(Answer):
 
     @cached_property
     def plan(self) -> GatheringPlan:
-        """What is computed and left out, and cautions; reading ``per_micron`` computes it."""
+        """The plan: statements and cautions; its ``per_micron`` is computed when it is read."""
         laws = None if self.simulation is None else self.simulation.laws
         told = bool(self.history)
         return plan_of_gathering(self.gathering, laws, self._way, self._motion, history=told)

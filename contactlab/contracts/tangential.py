@@ -103,9 +103,9 @@ class Errors(NamedTuple):
     Attributes
     ----------
     psi2 : float or array
-        Of psi2; in space the length of its error.
+        Bound of psi2; in space of the length of its error.
     restitution : float or array
-        Of V2/v1, the normal restitution.
+        Bound of V2/v1, the normal restitution.
     resolution : float or array
         The integrator's, where it takes another than its option says; estimates refine it.
     """
@@ -121,7 +121,7 @@ class Resolutions(NamedTuple):
     Attributes
     ----------
     own, integrator : float or array
-        Of the tangential law, and of the integrator.
+        Resolutions of the tangential law and of the integrator.
     reason : str
         Why these, for a plan.
     """

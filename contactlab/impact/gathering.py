@@ -44,7 +44,7 @@ class Body:
     ----------
     shape : Sphere or RigidBody
     velocity, spin : vector
-        Of the centre of mass, in m/s, and in rad/s; at rest by default.
+        Velocity of the centre of mass in m/s, and spin in rad/s; at rest by default.
     force : vector
         A constant force at the centre of mass in N, such as the weight; none by default.
     position : vector, optional
@@ -364,7 +364,7 @@ class Gathering:
         bodies : mapping of str to Body, or sequence of Body
             Spheres, each with a ``position``.
         friction_coefficient, restitution : float or array
-            Of every contact.
+            Coefficients of every contact.
         walls : sequence of (HalfSpace, point, normal)
             A point of the surface in m, and the normal into the half-space.
         reach : float

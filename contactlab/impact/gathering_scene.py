@@ -60,9 +60,9 @@ class Assembly:
     gathering : Gathering
     count : int
     frames : list of Frame
-        Of each contact, arrays of shape (count,), or floats of one gathering.
+        The frame of each contact: arrays of shape (count,), or floats of one gathering.
     reaches : list of dict
-        Of each body, by the number of the contact: the body as that contact has it.
+        For each body a dict from contact to the body as that contact has it.
     """
 
     def __init__(self, gathering: _Given) -> None:

@@ -63,7 +63,7 @@ class OfImpacts:
     Attributes
     ----------
     numbers : float or array
-        Of the shape of the scene.
+        Numbers in the shape of the scene.
     whole : str
         A hash of the whole array, by which its own parts are known.
     """

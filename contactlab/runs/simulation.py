@@ -335,7 +335,7 @@ class Simulation:
             If a chunk cannot be written into ``keep`` or ``into``. Chunks before the failure stay
             there, and the same sweep resumes from them.
         KeyboardInterrupt
-            Of Ctrl-C, when finished chunks are in ``keep`` or ``into``.
+            After Ctrl-C, when finished chunks are in ``keep`` or ``into``.
         """
         from contactlab.impact.grid import GridParts
         from contactlab.numeric.progress import follow

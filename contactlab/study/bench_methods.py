@@ -59,7 +59,7 @@ class Method:
     tangential, integrator, normal : str
         Names without the kind.
     restitution : float or None
-        Of the normal law; None for what it takes.
+        Restitution of the normal law; None for its default.
     """
 
     tangential: str

@@ -51,7 +51,7 @@ class Measurements:
     taken : tuple of str
         Sentences on numbers that were taken where no column has them.
     thrown : mapping of str to array, shape (n,)
-        Of a film without an angle: the ``velocity`` along the floor in the first flight of each
+        For a film without an angle, the ``velocity`` along the floor in the first flight of each
         throw and its standard ``error``, in m/s; empty otherwise.
     headings : mapping of str to tuple of str
         Heading of each column, sign, ``"-"`` or empty, and unit that its name was given with.

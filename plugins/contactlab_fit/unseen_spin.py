@@ -26,7 +26,7 @@ def with_spins(table: Measurements, scene: Scene, spin: Real | None) -> Measurem
     table : Measurements
         With ``thrown``.
     scene : Scene
-        Of a ball on a level floor.
+        Impacts of a ball on a level floor.
     spin : float or None
         Spin before the first bounce, in rad/s, if the scene has it; None takes 0.
 

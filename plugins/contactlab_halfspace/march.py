@@ -59,7 +59,7 @@ def join_impacts(parts: Sequence[Followed], order: Places) -> Followed:
 
 
 def follow(
-    pressure: Prescribed, psi1: Array, chi: Array, w1: Array, chi_w: Array, *, fields: bool = False
+    pressure: Prescribed, psi1: Array, chi: Array, w1: Array, chi_w: Array, *, fields: bool
 ) -> Followed:
     """Return impacts with slip velocities ``psi1`` at first touch.
 

@@ -77,7 +77,7 @@ def settle(table: Modes, contact: Contact, target: Array, slowing: Array, start:
     along, aim, joint = metric * table.along, metric * target, contact.limit is None
     answer = Settled(*np.empty((2, *start.shape)), *np.empty((3, impacts)))
     left, now, mixing, applied = np.arange(impacts), start, _Mixing(start.shape), 0
-    # Loads, displacements and limits that each impact has, divided by where there are any.
+    # A divisor of infinity leaves no share where a contact has no load.
     limit = np.zeros((impacts, 1)) if contact.limit is None else contact.limit
     load, yielding, slows = (
         each + np.zeros(impacts) for each in (contact.load, contact.yielding, slowing)
